@@ -4,21 +4,29 @@ An effect is one module with a class derived from :class:`.effect.Effect`, with 
 one entry in `EFFECTS`.
 """
 
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
 from ehlpetsc.effects.heat.effect import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
 from ehlpetsc.effects.roughness import RoughSurfaces
 from ehlpetsc.effects.wear import Wear
 
+if TYPE_CHECKING:
+    from ehlpetsc.effects.effect import Effect, Scene
+
+
 EFFECTS = (RoughSurfaces, PlasticDeformation, Wear, Heat)
 
 
-def effects_of(scene, records=()):
+def effects_of(scene: Scene, records: Collection[str] = ()) -> list[Effect]:
     """Effects of a scene: the effects of its case, and effects with a record of an earlier pass.
 
     Parameters
     ----------
-    scene : effect.Scene
-    records : collection of str
+    records
         Names of the records of an earlier pass or of a restart file.
     """
     return [kind(scene) for kind in EFFECTS if kind.is_in(scene.case) or kind.name in records]

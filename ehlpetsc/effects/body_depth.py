@@ -6,50 +6,60 @@ in which they formed would disturb the steady start. Depths ahead of the profile
 kept in the record; depths added during the pass are not hidden.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
+    from ehlpetsc.effects.effect import Step
+    from ehlpetsc.surfaces.profile import Profile
+
 
 class BodyDepth(Effect):
     """Effect whose record has `depth` and `hidden`, the part of the depth that is not in the gap."""
 
-    def start(self, before=None, **entries):
+    def start(self, before: Any | None = None, **entries) -> Any:
         """Depth zero with further entries of the record, or the record of the previous pass."""
         if before is None:
             zero = BodyFields.zero(self.scene.scales.dx)
             return self.record(depth=zero, hidden=zero, **entries)
         return before._replace(hidden=self._ahead_of_profiles(before.depth))
 
-    def inputs(self, record, inputs, step):
+    def inputs(self, record: Any, inputs: StepInputs, step: Step) -> StepInputs:
         """Add both depths to the gap."""
         return replace(inputs, phi=inputs.phi + sum(self.in_gap(record, step)) / self.scene.scales.h)
 
-    def in_gap(self, record, step):
+    def in_gap(self, record: Any, step: Step) -> list[np.ndarray]:
         """Depths of both bodies in the gap at the nodes [m], shape (nx,) each."""
         depths = self.scene.mesh_on_bodies.means(record.depth, step.travelled)
         hidden = self.scene.mesh_on_bodies.means(record.hidden, step.travelled)
         return [depth - hidden_depth for depth, hidden_depth in zip(depths, hidden, strict=True)]
 
-    def observe(self, record, solution, step):
+    def observe(self, record: Any, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Depths in the gap at the nodes."""
         return dict(zip(self.fields, self.in_gap(record, step), strict=True)), {}
 
-    def on_surfaces(self, record, points):
+    def on_surfaces(
+        self, record: Any, points: tuple[np.ndarray | None, np.ndarray | None]
+    ) -> dict[str, tuple[np.ndarray | None, np.ndarray | None]]:
         """Depth along both surfaces."""
         return {name: self.scene.mesh_on_bodies.at_points(record.depth, points) for name in self.surface}
 
-    def _ahead_of_profiles(self, depth):
+    def _ahead_of_profiles(self, depth: BodyFields) -> BodyFields:
         """Part of the depths of earlier passes ahead of the profiles, `BodyFields`."""
         roughness, faces = self.scene.roughness, self.scene.mesh_on_bodies.faces((0.0, 0.0))
         profiles = (roughness.surface_1, roughness.surface_2) if roughness else (None, None)
         return BodyFields(*map(_ahead, depth, profiles, faces))
 
 
-def _ahead(field, profile, faces):
+def _ahead(field: BodyField, profile: Profile | None, faces: np.ndarray) -> BodyField:
     """Depth ahead of a profile, in excess of the minimum between the faces of the mesh at the start."""
     if profile is None or not profile.is_moving or not profile.body_offset or not len(field.depth):
         return BodyField(field.spacing, 0, np.zeros(0))

@@ -4,11 +4,20 @@ The state of a run contains one record of each effect, a NamedTuple of arrays, n
 The record is saved in restart files by its field names; only the effect reads it.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, get_type_hints
+from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
+
+import numpy as np
 
 from ehlpetsc.keys import KeyTable
+
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
+    from ehlpetsc.surfaces.body_field import MeshOnBodies
+    from ehlpetsc.surfaces.roughness import Roughness
 
 
 @dataclass(frozen=True)
@@ -17,10 +26,7 @@ class Scene:
 
     Attributes
     ----------
-    case : case.loading.Case
-    scales : physics.scales.Scales
-    operation : physics.operation.ConstantOperation
-    positions : surfaces.roughness.SurfacePositions
+    positions
         Positions of both surfaces at the beginning of the run.
     """
 
@@ -30,7 +36,7 @@ class Scene:
     positions: object
 
     @classmethod
-    def of_pass(cls, case: Any, scales: Any, operation: Any, number: int) -> "Scene":
+    def of_pass(cls, case: Any, scales: Any, operation: Any, number: int) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
         from ehlpetsc.surfaces.roughness import SurfacePositions
 
@@ -40,19 +46,19 @@ class Scene:
         return cls(case, scales, operation, positions)
 
     @cached_property
-    def roughness(self):
+    def roughness(self) -> Roughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
         from ehlpetsc.surfaces.roughness import Roughness
 
         return Roughness.of(self.case, self.scales, self.positions)
 
     @property
-    def rq(self):
+    def rq(self) -> float:
         """Combined root mean square roughness [m]; 0: smooth."""
         return self.roughness.rq if self.roughness else 0.0
 
     @cached_property
-    def mesh_on_bodies(self):
+    def mesh_on_bodies(self) -> MeshOnBodies:
         """Cells of the mesh in both bodies, `surfaces.body_field.MeshOnBodies`."""
         from ehlpetsc.surfaces.body_field import MeshOnBodies
         from ehlpetsc.surfaces.roughness import directed_speeds
@@ -66,13 +72,12 @@ class Step(NamedTuple):
 
     Attributes
     ----------
-    time : float
+    time
         [s]
-    dt : float or None
+    dt
         Length of the step [s]; None: the steady start.
-    travelled : (float, float)
+    travelled
         Distances travelled by surfaces 1 and 2 since time 0 [m].
-    conditions : physics.operation.Conditions
     """
 
     time: float
@@ -88,21 +93,17 @@ class NoRecord(NamedTuple):
 class Effect:
     """Base class of effects: no influence, no quantities.
 
-    Parameters
-    ----------
-    scene : Scene
-
     Attributes
     ----------
-    name : str
+    name
         Name of the record in the state and in restart files.
-    record : type
+    record
         Type of the record, a NamedTuple.
-    table : KeyTable or None
+    table
         Table of the case file, :class:`ehlpetsc.keys.KeyTable`.
-    moves_with_surfaces : bool
+    moves_with_surfaces
         Whether its contribution to the gap moves with the surfaces from the first step on.
-    fields, scalars, surface : dict
+    fields, scalars, surface
         Quantities of the effect, see :mod:`ehlpetsc.quantities`: fields over the nodes, scalars of every time
         step, depths along each surface at the end of the run.
     """
@@ -115,33 +116,31 @@ class Effect:
     scalars: dict = {}
     surface: dict = {}
 
-    def __init__(self, scene):
+    def __init__(self, scene: Scene) -> None:
         self.scene = scene
 
     @classmethod
-    def is_in(cls, case):
+    def is_in(cls, case: Any) -> bool:
         """Whether a case has this effect: by default its table of keys."""
         return cls.table is not None and getattr(case, cls.table.name) is not None
 
-    def start(self, before=None):
+    def start(self, before: Any | None = None) -> Any:
         """Record at time 0.
 
         Parameters
         ----------
-        before : NamedTuple, optional
+        before
             Record at the end of the previous pass.
         """
         return self.record()
 
-    def inputs(self, record, inputs, step):
+    def inputs(self, record: Any, inputs: StepInputs, step: Step) -> StepInputs:
         """Inputs of the solve with the contribution of the effect.
 
         Parameters
         ----------
-        record : NamedTuple
+        record
             Record at the beginning of the step.
-        inputs : discretisation.step_inputs.StepInputs
-        step : Step
 
         Returns
         -------
@@ -149,37 +148,36 @@ class Effect:
         """
         return inputs
 
-    def accept(self, record, solution, step):
+    def accept(self, record: Any, solution: Solution, step: Step) -> Any:
         """Record at the end of an accepted step.
 
         Parameters
         ----------
-        record : NamedTuple
+        record
             Record at the beginning of the step.
-        solution : discretisation.ehl_problem.Solution
-        step : Step
         """
         return record
 
-    def is_settled(self, before, after):
+    def is_settled(self, before: Any | None, after: Any) -> bool:
         """Whether a steady solution is consistent with the record after it; otherwise it is solved again."""
         return True
 
-    def film_shear(self, record, solution, shear):
+    def film_shear(self, record: Any, solution: Solution, shear: np.ndarray | None) -> np.ndarray | None:
         """Mean shear stress of the film [Pa] by `shear`, that without this effect; None: isothermal."""
         return shear
 
-    def observe(self, record, solution, step):
+    def observe(self, record: Any, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Values of `fields` and `scalars` by name, in SI units."""
         return {}, {}
 
-    def on_surfaces(self, record, points):
+    def on_surfaces(
+        self, record: Any, points: tuple[np.ndarray | None, np.ndarray | None]
+    ) -> dict[str, tuple[np.ndarray | None, np.ndarray | None]]:
         """Values of the quantities `surface` at points of surfaces 1 and 2.
 
         Parameters
         ----------
-        record : NamedTuple
-        points : pair of ndarray or None
+        points
             Body points s [m]; None: not stored.
 
         Returns
@@ -189,7 +187,7 @@ class Effect:
         return {}
 
 
-def flat(record, name):
+def flat(record: Any, name: str) -> dict[str, Any]:
     """Fields of a record, and of records in it, by dotted names."""
     values = {}
     for key, value in record._asdict().items():

@@ -4,13 +4,19 @@ A step adds the depth :math:`\delta` of :mod:`ehlpetsc.discretisation.contact.yi
 the surfaces: to the softer surface, or half to each if both have the same yield pressure.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.effects.body_depth import BodyDepth
 from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
+
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.ehl_problem import Solution
+    from ehlpetsc.effects.effect import Scene, Step
 
 
 class PlasticRecord(NamedTuple):
@@ -44,22 +50,22 @@ class PlasticDeformation(BodyDepth):
     }
     surface = {"set": Field("m", "depth of the plastic deformation at the end", ("s",))}
 
-    def __init__(self, scene):
+    def __init__(self, scene: Scene) -> None:
         super().__init__(scene)
         yield_1, yield_2 = scene.case.contact.yield_pressure or (0.0, 0.0)
         is_equal = yield_1 == yield_2
         self._fractions = (0.5, 0.5) if is_equal else (float(yield_1 < yield_2), float(yield_2 < yield_1))
 
     @classmethod
-    def is_in(cls, case):
+    def is_in(cls, case: Any) -> bool:
         """Whether the solids yield."""
         return case.contact.yield_pressure is not None
 
-    def start(self, before=None):
+    def start(self, before: PlasticRecord | None = None) -> PlasticRecord:
         """No deformation, or the deformation of the previous pass."""
         return super().start(before, added=np.zeros(self.scene.scales.nx))
 
-    def accept(self, record, solution, step):
+    def accept(self, record: PlasticRecord, solution: Solution, step: Step) -> PlasticRecord:
         """Add the depth of the step to both bodies."""
         plastic = solution.nodes.plastic
         if plastic is None:
@@ -69,7 +75,7 @@ class PlasticDeformation(BodyDepth):
         depth = self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths)
         return PlasticRecord(depth, total, record.hidden)
 
-    def observe(self, record, solution, step):
+    def observe(self, record: PlasticRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Indentations at the nodes, number of yielding nodes, volume."""
         fields, _ = super().observe(record, solution, step)
         return fields, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}

@@ -7,12 +7,21 @@ the pressure of the solids in mixed contact and :math:`k_i` the specific wear ra
 coefficient over the hardness. Implicit in time: a step wears with the pressure at its end.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from ehlpetsc.effects.body_depth import BodyDepth
 from ehlpetsc.keys import KeyTable, Required
 from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
+
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.ehl_problem import Solution
+    from ehlpetsc.effects.effect import Step
+
 
 COEFFICIENT = Required(
     "wear rate k, dz/dt = k p_c |u1 - u2|, z the depth worn off a surface", "m^2/N", 0, 1e-10, many="both"
@@ -22,18 +31,18 @@ WEAR = KeyTable(
 )
 
 
-def wear_depth(coefficient, contact_pressure, sliding, dt):
+def wear_depth(coefficient: float, contact_pressure: np.ndarray, sliding: float, dt: float) -> np.ndarray:
     """Depth worn off a surface in a step [m].
 
     Parameters
     ----------
-    coefficient : float
+    coefficient
         k [m^2/N].
-    contact_pressure : ndarray
+    contact_pressure
         p_c at the end of the step [Pa].
-    sliding : float
+    sliding
         u1 - u2 [m/s].
-    dt : float
+    dt
         Length of the step [s].
     """
     return coefficient * abs(sliding) * dt * contact_pressure
@@ -67,7 +76,7 @@ class Wear(BodyDepth):
     }
     surface = {"wear": Field("m", "wear depth at the end", ("s",))}
 
-    def accept(self, record, solution, step):
+    def accept(self, record: WearRecord, solution: Solution, step: Step) -> WearRecord:
         """Wear both surfaces where the solids carry."""
         if step.dt is None or self.scene.case.wear is None:
             return record
@@ -75,7 +84,7 @@ class Wear(BodyDepth):
         depths = [wear_depth(k, pressure, sliding, step.dt) for k in self.scene.case.wear.coefficient]
         return record._replace(depth=self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
 
-    def observe(self, record, solution, step):
+    def observe(self, record: WearRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Wear depths at the nodes and worn volume."""
         fields, _ = super().observe(record, solution, step)
         return fields, {"wear_volume": record.depth.volume}

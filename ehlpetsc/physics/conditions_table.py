@@ -4,9 +4,15 @@ Between the points load, radius and speeds are monotone cubics (PCHIP, Fritsch &
 continuous first derivatives. Distances travelled are their exact integrals.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
 
 MIN_SAMPLES = 4096  # points at which a table is evaluated for time steps and extremes
 END_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
@@ -18,13 +24,13 @@ class ConditionsTable(NamedTuple):
 
     Attributes
     ----------
-    time : ndarray, shape (n,)
-        [s], increasing from 0 on.
-    load, radius, u1, u2 : ndarray, shape (n,)
-        [N/m], [m], [m/s], [m/s].
-    repeat : int
+    time
+        [s], increasing from 0 on, shape (n,).
+    load, radius, u1, u2
+        [N/m], [m], [m/s], [m/s], shape (n,).
+    repeat
         Number of repetitions of the table.
-    profile_offsets : (float, float), optional
+    profile_offsets
         Abscissas of both profiles at x = 0 at time 0 [m]; the profiles then extend over the whole contact
         from the beginning, as tooth flanks do. None: profiles enter at the inlet.
     """
@@ -38,21 +44,21 @@ class ConditionsTable(NamedTuple):
     profile_offsets: tuple | None = None
 
     @property
-    def varies(self):
+    def varies(self) -> bool:
         """Whether a condition changes with time."""
         return any(np.ptp(column) > 0.0 for column in self[1:5])
 
     @property
-    def speed(self):
+    def speed(self) -> np.ndarray:
         """Speed of the faster surface [m/s]."""
         return np.maximum(np.abs(self.u1), np.abs(self.u2))
 
     @property
-    def entrainment(self):
+    def entrainment(self) -> np.ndarray:
         """Entrainment speed [m/s]."""
         return 0.5 * (self.u1 + self.u2)
 
-    def sampled(self):
+    def sampled(self) -> ConditionsTable:
         """Same conditions at `MIN_SAMPLES` points or more, including the points of the table."""
         per_interval = -(-MIN_SAMPLES // (len(self.time) - 1))
         fractions = np.arange(per_interval) / per_interval
@@ -62,11 +68,11 @@ class ConditionsTable(NamedTuple):
         return self._replace(time=time, load=values[0], radius=values[1], u1=values[2], u2=values[3])
 
     @property
-    def is_periodic(self):
+    def is_periodic(self) -> bool:
         """Whether a repeated table has the same values at both ends; its cubics are then periodic."""
         return self.repeat > 1 and all(column[0] == column[-1] for column in self[1:5])
 
-    def cubics(self):
+    def cubics(self) -> list[PchipInterpolator]:
         """Monotone cubics of load, radius, u1 and u2."""
         from scipy.interpolate import PchipInterpolator
 
@@ -76,14 +82,14 @@ class ConditionsTable(NamedTuple):
             columns = [np.concatenate([v[-2:-1], v, v[1:2]]) for v in columns]
         return [PchipInterpolator(time, v) for v in columns]
 
-    def integrals(self):
+    def integrals(self) -> list:
         """Integrals of u1 and u2 over time, 0 at time 0."""
         integrals = [cubic.antiderivative() for cubic in self.cubics()[2:]]
         for integral in integrals:
             integral.c[-1] -= integral(0.0)
         return integrals
 
-    def extent(self):
+    def extent(self) -> tuple[tuple[float, float], ...]:
         """Minimum and maximum displacement of each body over all repetitions [m]: two pairs."""
         extents = []
         for integral in self.integrals():
@@ -93,17 +99,17 @@ class ConditionsTable(NamedTuple):
             extents.append((float(low), float(high)))
         return tuple(extents)
 
-    def directions(self):
+    def directions(self) -> tuple[int, ...]:
         """Direction of each body's motion: 1, -1, or 0 if it reverses or rests."""
         signs = [np.sign(u[np.abs(u) > END_TOLERANCE * self.speed.max()]) for u in (self.u1, self.u2)]
         return tuple(int(s[0]) if len(s) and (s == s[0]).all() else 0 for s in signs)
 
-    def swept_length(self):
+    def swept_length(self) -> float:
         r"""Distance of the faster surface, :math:`\int\max(|u_1|,|u_2|)dt` [m], over all repetitions."""
         fine = self.sampled()
         return self.repeat * float(cumulative(fine.speed, fine.time)[-1])
 
-    def reference(self):
+    def reference(self) -> tuple[float, float, float, float]:
         """Conditions of the scales: load and radius of the widest contact, speeds of the fastest entrainment.
 
         Surfaces in counter-motion have no entrainment speed; the speed of the faster surface is then the
@@ -122,6 +128,6 @@ class ConditionsTable(NamedTuple):
         return float(fine.load[widest]), float(fine.radius[widest]), float(abs(u)), float(sliding / u)
 
 
-def cumulative(values, time):
+def cumulative(values: np.ndarray, time: np.ndarray) -> np.ndarray:
     """Integral from the first point to each point by the trapezoidal rule."""
     return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time)))

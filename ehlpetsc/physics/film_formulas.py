@@ -4,15 +4,23 @@ Dimensionless groups of a line contact: :math:`U=\eta_0u/(E'R)`, :math:`G=\alpha
 u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=(h/R)(2U)^{-1/2}`.
 """
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.operation import Conditions
+    from ehlpetsc.physics.scales import Scales
+
 
 MIN_OVER_CENTRAL_FILM = 0.75  # of an incompressible oil
 FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half widths in place of infinity in Grubin's integral; its points
 
 
-def moes_central_film(M, L):
+def moes_central_film(M: float, L: float) -> float:
     r"""Central film H of a line contact by Moes' fit over all regimes (Moes 1992).
 
     :math:`H=\left[(H_{RI}^{7/3}+H_{EI}^{7/3})^{3s/7}+(H_{RP}^{-7/2}+H_{EP}^{-7/2})^{-2s/7}\right]^{1/s}`,
@@ -28,7 +36,7 @@ def moes_central_film(M, L):
     return (isoviscous + piezoviscous) ** (1.0 / s)
 
 
-def smooth_films(fluid, modulus, conditions):
+def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
     .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
@@ -41,10 +49,8 @@ def smooth_films(fluid, modulus, conditions):
 
     Parameters
     ----------
-    fluid : case.tables.fluid.Fluid
-    modulus : float
+    modulus
         E' [Pa].
-    conditions : physics.operation.Conditions
     """
     from ehlpetsc.physics.laws import density
     from ehlpetsc.physics.scales import hertz_line, moes_groups
@@ -60,7 +66,7 @@ def smooth_films(fluid, modulus, conditions):
     return incompressible * ratio, MIN_OVER_CENTRAL_FILM * incompressible * ratio**0.25
 
 
-def inlet_opening(film, points):
+def inlet_opening(film: float, points: int) -> float:
     r"""Opening of Hertz' gap over one node spacing outside the contact, over the film.
 
     :math:`\frac{2\sqrt2}{3}(\Delta x/a)^{3/2}` in :math:`a^2/R` over the film. At 0.25 the film
@@ -68,20 +74,20 @@ def inlet_opening(film, points):
 
     Parameters
     ----------
-    film : float
+    film
         Central film in a^2/R.
-    points : float
+    points
         Nodes per half width.
     """
     return 2.0 * np.sqrt(2.0) / 3.0 * points**-1.5 / film
 
 
-def points_for_opening(film, opening):
+def points_for_opening(film: float, opening: float) -> int:
     """Nodes per half width for a value of :func:`inlet_opening`."""
     return (inlet_opening(film, 1.0) / opening) ** (2.0 / 3.0)
 
 
-def film_left_by_inlet(film, inlet):
+def film_left_by_inlet(film: float, inlet: float) -> float:
     r"""Film with an inlet of finite length, over the film of the flooded contact.
 
     Grubin's integral :math:`\int(g/(h_c+g)^3)dX` over Hertz' gap g is prescribed by the pressure-viscosity
@@ -89,9 +95,9 @@ def film_left_by_inlet(film, inlet):
 
     Parameters
     ----------
-    film : float
+    film
         Central film of the flooded contact in a^2/R.
-    inlet : float
+    inlet
         Distance of the first node from the middle in half widths, above 1.
     """
     prescribed = _grubin(film, FAR_INLET)
@@ -102,7 +108,7 @@ def film_left_by_inlet(film, inlet):
     return float(np.exp(0.5 * (low + high)) / film)
 
 
-def _grubin(film, inlet):
+def _grubin(film: float, inlet: float) -> float:
     r"""Integral of g/(h_c+g)^3 over 1 < X < `inlet`; X = 1 + (inlet - 1) s^3 has nodes where g is small."""
     s = (np.arange(GRUBIN_POINTS) + 0.5) / GRUBIN_POINTS
     x = 1.0 + (inlet - 1.0) * s**3
@@ -110,7 +116,7 @@ def _grubin(film, inlet):
     return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
 
 
-def expected_film(case, scales):
+def expected_film(case: Any, scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0

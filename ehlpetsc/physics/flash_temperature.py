@@ -1,11 +1,17 @@
 """Flash temperature of a line contact by Blok's formula, and the friction expected of a case."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.rheology import wall_shear
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.scales import Scales
 
 
 class Solid(NamedTuple):
@@ -13,11 +19,11 @@ class Solid(NamedTuple):
 
     Attributes
     ----------
-    conductivity : float
+    conductivity
         k [W/(m K)].
-    density : float
+    density
         rho [kg/m^3].
-    heat_capacity : float
+    heat_capacity
         c [J/(kg K)].
     """
 
@@ -26,12 +32,12 @@ class Solid(NamedTuple):
     heat_capacity: float
 
     @property
-    def diffusivity(self):
+    def diffusivity(self) -> float:
         """Thermal diffusivity k/(rho c) [m^2/s]."""
         return self.conductivity / (self.density * self.heat_capacity)
 
     @property
-    def effusivity(self):
+    def effusivity(self) -> float:
         """Thermal effusivity sqrt(k rho c) [W s^(1/2)/(m^2 K)]."""
         return (self.conductivity * self.density * self.heat_capacity) ** 0.5
 
@@ -41,7 +47,15 @@ MAX_ISOTHERMAL_FLASH = 20.0  # K: above it a case should not be isothermal
 MAX_FRICTION = 0.1  # coefficient: isothermal Newtonian estimates have no bound
 
 
-def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
+def blok_flash_temperature(
+    friction: float,
+    load: float,
+    sliding: float,
+    u1: float,
+    u2: float,
+    a: float,
+    effusivities: Sequence[float],
+) -> float:
     r"""Largest flash temperature of a line contact [K] by Blok's formula.
 
     :math:`T=1.11\,\frac{\mu w'|u_1-u_2|}{(e_1\sqrt{|u_1|}+e_2\sqrt{|u_2|})\sqrt{2a}}` (Blok 1937, as in
@@ -49,15 +63,15 @@ def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
 
     Parameters
     ----------
-    friction : float
+    friction
         Coefficient of friction mu.
-    load : float
+    load
         w' [N/m].
-    sliding, u1, u2 : float
+    sliding, u1, u2
         [m/s]
-    a : float
+    a
         Hertz half-width [m].
-    effusivities : (float, float)
+    effusivities
         [W s^(1/2)/(m^2 K)]
     """
     carried = sum(e * abs(u) ** 0.5 for e, u in zip(effusivities, (u1, u2), strict=True))
@@ -66,15 +80,12 @@ def blok_flash_temperature(friction, load, sliding, u1, u2, a, effusivities):
     return 1.11 * friction * load * abs(sliding) / (carried * (2.0 * a) ** 0.5)
 
 
-def expected_friction(fluid, boundary_friction, scales, film):
+def expected_friction(fluid: Any, boundary_friction: float, scales: Scales, film: float) -> float:
     """Coefficient of friction of a smooth contact at its mean Hertz pressure; dry: of the boundary.
 
     Parameters
     ----------
-    fluid : case.tables.fluid.Fluid or None
-    boundary_friction : float
-    scales : physics.scales.Scales
-    film : float
+    film
         Expected film [m].
     """
     if fluid is None:
@@ -85,7 +96,7 @@ def expected_friction(fluid, boundary_friction, scales, film):
     return float(min(abs(stress[0]) / p[0], MAX_FRICTION))
 
 
-def flash_temperature(friction, scales, solids=(STEEL, STEEL)):
+def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Solid] = (STEEL, STEEL)) -> float:
     """Blok's flash temperature [K] of a contact with a coefficient of friction."""
     effusivities = [solid.effusivity for solid in solids]
     conditions = scales.load, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a

@@ -94,12 +94,12 @@ def _or_else(
     count, law = n_constants(function, state), inlined(function, cache=False)
     if other is None:
 
-        def call(k, at, c):
+        def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
             return law(*(at + c[:count]))
 
     else:
 
-        def call(k, at, c):
+        def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
             if k == kind:
                 return law(*(at + c[:count]))
             return other(k, at, c)

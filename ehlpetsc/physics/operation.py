@@ -4,9 +4,15 @@ r"""Operating conditions as functions of time: load, radius of relative curvatur
 state; the conditions at an instant are defined here.
 """
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.scales import Scales
+
 
 LEVEL_TOLERANCE = 1e-6  # of a time step: times nearer than this are equal
 
@@ -16,11 +22,11 @@ class Conditions(NamedTuple):
 
     Attributes
     ----------
-    load : float
+    load
         w' [N/m].
-    radius : float
+    radius
         Radius of relative curvature R [m].
-    u1, u2 : float
+    u1, u2
         Speeds of surfaces 1 and 2 [m/s], signed.
     """
 
@@ -30,12 +36,12 @@ class Conditions(NamedTuple):
     u2: float
 
     @property
-    def entrainment(self):
+    def entrainment(self) -> float:
         """Entrainment speed (u1 + u2)/2 [m/s]."""
         return 0.5 * (self.u1 + self.u2)
 
     @property
-    def sliding(self):
+    def sliding(self) -> float:
         """Sliding speed u1 - u2 [m/s]."""
         return self.u1 - self.u2
 
@@ -46,8 +52,7 @@ class ConstantOperation:
 
     Attributes
     ----------
-    conditions : Conditions
-    travel : float or None
+    travel
         Distance covered by the faster surface over the run [m]; None: steady.
     """
 
@@ -56,37 +61,31 @@ class ConstantOperation:
     varies = False
 
     @classmethod
-    def of(cls, case, scales):
-        """Operation of a case with constant load, radius and speeds.
-
-        Parameters
-        ----------
-        case : case.loading.Case
-        scales : physics.scales.Scales
-        """
+    def of(cls, case: Any, scales: Scales) -> Self:
+        """Operation of a case with constant load, radius and speeds."""
         travel = None if case.time is None else scales.duration * scales.u_max
         return cls(Conditions(scales.load, scales.R, scales.u1, scales.u2), travel)
 
-    def at(self, time):
+    def at(self, time: float) -> Conditions:
         """Conditions at a time [s]."""
         return self.conditions
 
-    def displacement(self, time, dt):
+    def displacement(self, time: float, dt: float) -> tuple[float, float]:
         """Distances that surfaces 1 and 2 travel from `time` to `time` + `dt` [m], signed."""
         return self.conditions.u1 * dt, self.conditions.u2 * dt
 
-    def travelled(self, time):
+    def travelled(self, time: float) -> tuple[float, float]:
         """Distances that both surfaces have travelled since time 0 [m], signed."""
         return self.displacement(0.0, time)
 
-    def remaining(self, time, travelled):
+    def remaining(self, time: float, travelled: tuple[float, float]) -> float:
         """Time to the end of the run [s].
 
         Parameters
         ----------
-        time : float
+        time
             Current time [s].
-        travelled : (float, float)
+        travelled
             Distances travelled by both surfaces [m]; after a restart at other speeds they differ from
             :meth:`travelled`.
         """
@@ -94,31 +93,31 @@ class ConstantOperation:
         distance = self.travel - max(map(abs, travelled))
         return max(distance, 0.0) / fastest if distance > 1e-9 * self.travel else 0.0
 
-    def extent(self):
+    def extent(self) -> tuple[tuple[float, float], ...] | None:
         """Minimum and maximum displacement of both surfaces over the run [m]: two pairs."""
         duration = 0.0 if self.travel is None else self.duration
         ends = self.conditions.u1 * duration, self.conditions.u2 * duration
         return tuple((min(end, 0.0), max(end, 0.0)) for end in ends)
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """Length of the whole run [s]; None: steady."""
         fastest = max(abs(self.conditions.u1), abs(self.conditions.u2))
         return None if self.travel is None else self.travel / fastest
 
-    def time_step(self, time, nominal):
+    def time_step(self, time: float, nominal: float) -> float:
         """Length of the time step that contains `time` [s]; `nominal`: of the reference state."""
         return nominal
 
-    def time_left(self, time, nominal):
+    def time_left(self, time: float, nominal: float) -> float:
         """Time to the next time level [s]."""
         left = nominal - time % nominal
         return left + nominal if left < LEVEL_TOLERANCE * nominal else left
 
-    def level(self, time, nominal):
+    def level(self, time: float, nominal: float) -> float:
         """Number of time levels at a time [s], with a fraction between two levels."""
         return time / nominal
 
-    def step_count(self, nominal):
+    def step_count(self, nominal: float) -> int:
         """Number of time steps of the whole run."""
         return math.ceil(self.duration / nominal - 1e-9)

@@ -1,5 +1,9 @@
 r"""Flow of a film: Eyring's factors, the mobility of the pressure flow and the shear stress at the walls."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -8,7 +12,7 @@ SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are e
 
 
 @compiled
-def flow_factors(sigma):
+def flow_factors(sigma: float) -> tuple[float, float, float, float]:
     r"""Eyring factors of rolling and sliding, of one number.
 
     :math:`S_0=3(\Sigma\cosh\Sigma-\sinh\Sigma)/\Sigma^3` and :math:`L=3(\Sigma\coth\Sigma-1)/\Sigma^2`
@@ -40,7 +44,9 @@ def flow_factors(sigma):
 
 
 @compiled
-def mobilities(h, gradient, fluidity_l, fluidity_r, eyring, slip):
+def mobilities(
+    h: float, gradient: float, fluidity_l: float, fluidity_r: float, eyring: float, slip: float
+) -> tuple[tuple, tuple]:
     r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, of two oils in one gap.
 
     :math:`12M=\sqrt{(h^3S_0/\eta)^2+(h^2(u_1-u_2)L/\tau_0)^2}` with
@@ -50,11 +56,11 @@ def mobilities(h, gradient, fluidity_l, fluidity_r, eyring, slip):
 
     Parameters
     ----------
-    h, gradient : float
+    h, gradient
         Film [m] and pressure gradient [Pa/m] of the face.
-    fluidity_l, fluidity_r : float
+    fluidity_l, fluidity_r
         :math:`1/\eta` [1/(Pa s)] on both sides.
-    eyring, slip : float
+    eyring, slip
         :math:`\tau_0` [Pa], infinite for a Newtonian fluid, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
 
     Returns
@@ -71,7 +77,14 @@ def mobilities(h, gradient, fluidity_l, fluidity_r, eyring, slip):
 
 
 @compiled
-def _mobility(h, per_film, fluidity, eyring, slip, factors):
+def _mobility(
+    h: float,
+    per_film: float,
+    fluidity: float,
+    eyring: float,
+    slip: float,
+    factors: tuple[float, float, float, float],
+) -> tuple[float, float, float, float]:
     """One of :func:`mobilities`; `per_film` is Sigma/h."""
     s0, ds0, el, del_ = factors
     square = h * h
@@ -90,7 +103,9 @@ def _mobility(h, per_film, fluidity, eyring, slip, factors):
     )
 
 
-def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
+def wall_shear(
+    h: float, gradient: float, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
 
     :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
@@ -123,7 +138,7 @@ def wall_shear(h, gradient, ln_eta, fluid, sliding, p=None):
     return mean - half, mean + half
 
 
-def _limited_mean(mean, fluid, p):
+def _limited_mean(mean: np.ndarray, fluid: Any, p: np.ndarray | None) -> np.ndarray:
     """Mean shear stress, limited if the fluid has a limiting shear stress."""
     if getattr(fluid, "limiting_shear", None) is None:
         return mean
@@ -133,7 +148,7 @@ def _limited_mean(mean, fluid, p):
     return np.sign(mean) * smaller * (1.0 + ratio**4) ** -0.25
 
 
-def limited_shear(stress, limit):
+def limited_shear(stress: float, limit: float) -> tuple[float, float, float]:
     r"""Shear stress of a film that bears `limit` at most, :math:`(\tau^{-4}+\tau_L^{-4})^{-1/4}`.
 
     Smooth, within 1.5 % of the smaller one where they differ by a factor of two. (Bair & Winer 1979
@@ -141,7 +156,7 @@ def limited_shear(stress, limit):
 
     Parameters
     ----------
-    stress, limit : float
+    stress, limit
         [Pa], not negative.
 
     Returns

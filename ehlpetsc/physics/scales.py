@@ -1,43 +1,49 @@
 """Hertz scales, speeds, mesh and dimensionless groups of a case."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 
 from ehlpetsc.physics.operation import Conditions
 
 
-def reduced_modulus(youngs_modulus, poisson_ratio):
+def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[float]) -> float:
     r"""Reduced modulus E' [Pa], :math:`2/E'=(1-\nu_1^2)/E_1+(1-\nu_2^2)/E_2`.
 
     Parameters
     ----------
-    youngs_modulus, poisson_ratio : pair of float
+    youngs_modulus, poisson_ratio
         E1, E2 [Pa] and nu1, nu2.
     """
     return 2.0 / sum((1.0 - nu * nu) / e for e, nu in zip(youngs_modulus, poisson_ratio, strict=True))
 
 
-def hertz_line(load, radius, modulus):
+def hertz_line(load: float, radius: float, modulus: float) -> tuple[float, float]:
     r"""Half width [m] and maximum pressure [Pa] of the dry smooth line contact.
 
     :math:`a=\sqrt{8w'R/(\pi E')}`, :math:`p_0=2w'/(\pi a)` (Johnson 1985, section 4.2).
 
     Parameters
     ----------
-    load : float
+    load
         w' [N/m].
-    radius : float
+    radius
         R [m].
-    modulus : float
+    modulus
         E' [Pa].
     """
     a = math.sqrt(8.0 * load * radius / (math.pi * modulus))
     return a, 2.0 * load / (math.pi * a)
 
 
-def moes_groups(viscosity, speed, alpha, load, radius, modulus):
+def moes_groups(
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float
+) -> tuple[float, float]:
     r"""Moes' load and lubricant numbers of a line contact.
 
     :math:`U=\eta_0u/(E'R)`, :math:`M=w'/(E'R)\,(2U)^{-1/2}`, :math:`L=\alpha E'(2U)^{1/4}`, u the mean speed.
@@ -52,26 +58,26 @@ class Scales:
 
     Attributes
     ----------
-    E, R, load : float
+    E, R, load
         E' [Pa], R [m], w' [N/m].
-    a, p0, h : float
+    a, p0, h
         Hertz half width [m], maximum pressure [Pa], film scale a^2/R [m].
-    u, xi, u1, u2 : float
+    u, xi, u1, u2
         Mean speed [m/s], slide/roll ratio, u1 = u (1 + xi/2) of surface 1 and u2 = u (1 - xi/2) of surface 2;
         with xi < 0 surface 1 is the slower one. 0 where nothing moves.
-    eta0 : float or None
+    eta0
         Viscosity at ambient pressure [Pa s]; None in a dry case.
-    moes_m, moes_l : float or None
+    moes_m, moes_l
         Moes' M and L; None in a dry case.
-    nx : int
+    nx
         Number of nodes.
-    x : ndarray, shape (nx,)
-        Nodes in half widths, from the inlet on.
-    dx : float
+    x
+        Nodes in half widths, from the inlet on, shape (nx,).
+    dx
         Spacing of the nodes [m].
-    dt : float or None
+    dt
         Time step [s], courant dx / u_max; None in a steady case.
-    duration : float or None
+    duration
         Time in which the faster surface covers the travel [s]; None in a steady case.
     """
 
@@ -95,17 +101,17 @@ class Scales:
     duration: float | None
 
     @property
-    def u_max(self):
+    def u_max(self) -> float:
         """Speed of the faster surface [m/s], whichever way it moves."""
         return max(abs(self.u1), abs(self.u2))
 
     @property
-    def conditions(self):
+    def conditions(self) -> Conditions:
         """Operating conditions of the reference state."""
         return Conditions(self.load, self.R, self.u1, self.u2)
 
     @classmethod
-    def of(cls, case):
+    def of(cls, case: Any) -> Self:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""
         contact, mesh = case.contact, case.mesh
         modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)

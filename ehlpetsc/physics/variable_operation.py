@@ -18,14 +18,13 @@ class VariableOperation:
 
     Attributes
     ----------
-    table : ConditionsTable
-    courant : float
+    courant
         Courant number of the time steps.
-    dx : float
+    dx
         Spacing of the nodes [m].
-    modulus : float
+    modulus
         E' [Pa].
-    travel : float, optional
+    travel
         Distance of the faster surface at the end of the run [m]; by default that of the whole table.
     """
 
@@ -37,26 +36,26 @@ class VariableOperation:
     varies = True
 
     @cached_property
-    def _cubics(self):
+    def _cubics(self) -> list:
         return self.table.cubics()
 
     @cached_property
-    def _integrals(self):
+    def _integrals(self) -> list:
         return self.table.integrals()
 
     @property
-    def period(self):
+    def period(self) -> float:
         """Length of the table [s]."""
         return float(self.table.time[-1])
 
     @property
-    def is_reversing(self):
+    def is_reversing(self) -> bool:
         """Whether the entrainment speed changes its sign."""
         u = self.table.sampled().entrainment
         scale = END_TOLERANCE * np.abs(u).max()
         return bool(u.min() < -scale and u.max() > scale)
 
-    def _local(self, time):
+    def _local(self, time: float) -> tuple[int, float]:
         """Repetitions completed at a time, and the time since the last one [s]."""
         period = self.period
         done = min(max(int(time // period), 0), self.table.repeat - 1)
@@ -66,12 +65,12 @@ class VariableOperation:
             done, local = done + 1, 0.0
         return done, local
 
-    def at(self, time):
+    def at(self, time: float) -> Conditions:
         """Conditions at a time [s]; before time 0 the conditions at time 0."""
         local = self._local(time)[1]
         return Conditions(*(float(cubic(local)) for cubic in self._cubics))
 
-    def _position(self, time):
+    def _position(self, time: float) -> tuple[float, float]:
         """Distances that both surfaces have travelled since time 0 [m]; before it at the speeds of time 0."""
         if time < 0.0:
             now = self.at(0.0)
@@ -79,26 +78,26 @@ class VariableOperation:
         done, local = self._local(time)
         return tuple(done * float(s(self.period)) + float(s(local)) for s in self._integrals)
 
-    def displacement(self, time, dt):
+    def displacement(self, time: float, dt: float) -> tuple[float, float]:
         """Distances that surfaces 1 and 2 travel from `time` to `time` + `dt` [m], signed."""
         before, after = self._position(time), self._position(time + dt)
         return after[0] - before[0], after[1] - before[1]
 
-    def travelled(self, time):
+    def travelled(self, time: float) -> tuple[float, float]:
         """Distances that both surfaces have travelled since time 0 [m], signed."""
         return self._position(time)
 
-    def extent(self):
+    def extent(self) -> tuple[tuple[float, float], ...] | None:
         """Minimum and maximum displacement of both surfaces over the run [m]: two pairs."""
         return self.table.extent()
 
-    def remaining(self, time, travelled):
+    def remaining(self, time: float, travelled: tuple[float, float]) -> float:
         """Time to the end of the run [s]."""
         left = self.duration - time
         return left if left > END_TOLERANCE * self.duration else 0.0
 
     @cached_property
-    def duration(self):
+    def duration(self) -> float:
         """Length of the whole run [s]."""
         table_duration = self.table.repeat * self.period
         if self.travel is None or self.travel >= self.table.swept_length() * (1.0 - END_TOLERANCE):
@@ -109,7 +108,7 @@ class VariableOperation:
         return min(repetitions * self.period + float(np.interp(distance, swept, fine.time)), table_duration)
 
     @cached_property
-    def _levels(self):
+    def _levels(self) -> np.ndarray:
         """Time levels of one repetition of the table [s], 0 and its end included."""
         fine = self.table.sampled()
         slopes = [cubic(fine.time, 1) for cubic in self._cubics]
@@ -130,24 +129,24 @@ class VariableOperation:
         count = multiple * max(int(np.ceil(steps[-1] * (1.0 - 1e-12) / multiple)), 1)
         return np.interp(np.linspace(0.0, steps[-1], count + 1), steps, fine.time)
 
-    def step_count(self, nominal):
+    def step_count(self, nominal: float) -> int:
         """Number of time steps of the whole run."""
         return int(np.ceil(self.level(self.duration, nominal) - LEVEL_TOLERANCE))
 
-    def level(self, time, nominal):
+    def level(self, time: float, nominal: float) -> float:
         """Number of time levels at a time [s], with a fraction between two levels."""
         done, local = self._local(time)
         levels = self._levels
         within = np.interp(local, levels, np.arange(len(levels)))
         return done * (len(levels) - 1) + float(within) + (time / levels[1] if time < 0.0 else 0.0)
 
-    def time_step(self, time, nominal):
+    def time_step(self, time: float, nominal: float) -> float:
         """Length of the time step from the level before `time` to the next one [s]."""
         levels = self._levels
         k = max(int(np.floor(self.level(time, nominal) + LEVEL_TOLERANCE)), 0) % (len(levels) - 1)
         return float(levels[k + 1] - levels[k])
 
-    def time_left(self, time, nominal):
+    def time_left(self, time: float, nominal: float) -> float:
         """Time to the next time level or to the end of the run, whichever is nearer [s]."""
         level, step = self.level(time, nominal), self.time_step(time, nominal)
         fraction = level - np.floor(level + LEVEL_TOLERANCE)

@@ -9,8 +9,11 @@ balance holds in every step. The stored film temperature is that of the solve: w
 fraction it is one state.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,11 +22,17 @@ from ehlpetsc.effects.heat.keys import HEAT
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.quantity import Field, StepScalar
 
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
+    from ehlpetsc.effects.effect import Step
+    from ehlpetsc.effects.heat.step import HeatStep
+
+
 STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
 MIN_TEMPERATURE_RISE = 1e-3  # K
 
 
-def _temperature(name, over_run):
+def _temperature(name: str, over_run: str) -> StepScalar:
     return StepScalar("K", name, over_run=over_run, summary=".5g" if over_run == "max" else "", compared=True)
 
 
@@ -57,18 +66,18 @@ class Heat(Effect):
     }
 
     @cached_property
-    def _steps(self):
+    def _steps(self) -> HeatStep:
         from ehlpetsc.effects.heat.step import HeatStep
 
         return HeatStep(self.scene)
 
     @cached_property
-    def _contact(self):
+    def _contact(self) -> slice:
         """Slice of the nodes in the Hertz contact."""
         inside = np.flatnonzero(np.abs(self.scene.scales.x) <= 1.0)
         return slice(inside[0], inside[-1] + 1)
 
-    def start(self, before=None):
+    def start(self, before: HeatRecord | None = None) -> HeatRecord:
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
         n, steps = self.scene.scales.nx, self._steps
         zeros, ones = np.zeros(n), np.ones(n)
@@ -77,13 +86,13 @@ class Heat(Effect):
         state = film, *walls, zeros, zeros, film, zeros, film, *[zeros] * 4, np.zeros(n + 1), *[zeros] * 5
         return HeatRecord(*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0)
 
-    def inputs(self, record, inputs, step):
+    def inputs(self, record: HeatRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Add the data of the film's temperature; the first steady solution is isothermal."""
         if not record.levels and self.scene.case.fluid is not None:
             return inputs
         return replace(inputs, heat=self._steps.film_heat(record, inputs, step))
 
-    def accept(self, record, solution, step):
+    def accept(self, record: HeatRecord, solution: Solution, step: Step) -> HeatRecord:
         """Temperatures and fluxes of a solution."""
         steps = self._steps
         temperatures, film, source, spread, solved = steps.solve(record, solution, step)
@@ -114,16 +123,18 @@ class Heat(Effect):
             levels=record.levels + 1,
         )
 
-    def is_settled(self, before, after):
+    def is_settled(self, before: HeatRecord | None, after: HeatRecord) -> bool:
         """Whether a steady solution and its temperatures agree."""
         rise = max(np.abs(after.film - self._steps.inlet).max(), MIN_TEMPERATURE_RISE)
         return self.scene.case.fluid is None or np.abs(after.film - before.film).max() < STEADY * rise
 
-    def film_shear(self, record, solution, shear):
+    def film_shear(
+        self, record: HeatRecord, solution: Solution, shear: np.ndarray | None
+    ) -> np.ndarray | None:
         """Mean shear stress of the film [Pa], resolved across it; None without oil."""
         return shear if solution.inputs.fluid is None else record.shear
 
-    def observe(self, record, solution, step):
+    def observe(self, record: HeatRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Temperatures and heat fluxes; their largest and mean values."""
         values = record.solved, record.wall_1, record.wall_2, record.flux_1, record.flux_2
         fields = dict(zip(self.fields, values, strict=True))

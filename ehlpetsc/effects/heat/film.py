@@ -131,7 +131,18 @@ def heated_nodal(
 
 
 @compiled
-def _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at):
+def _fill_fluidity(
+    i: int,
+    p: float,
+    t: float,
+    viscosity: tuple[float, float, float],
+    t_p: float,
+    t_h: float,
+    law: FilmLaw,
+    p0: float,
+    film: float,
+    at: np.ndarray,
+) -> None:
     """Fill in the fluidity of node i at the reference temperature, and the factor on it by the film's."""
     ln_eta, by_p, by_t = viscosity
     if law.is_linear:  # linear in T: no second power of the pressure
@@ -145,26 +156,34 @@ def _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at):
 
 
 @compiled
-def faces(at, law, oil, max_flow, couette, pressure_heat, spread, gradient):
+def faces(
+    at: np.ndarray,
+    law: FilmLaw,
+    oil: np.ndarray,
+    max_flow: tuple[float, float],
+    couette: np.ndarray,
+    pressure_heat: np.ndarray,
+    spread: np.ndarray,
+    gradient: np.ndarray,
+) -> None:
     r"""Couette flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
 
     Parameters
     ----------
-    at : ndarray, shape (10 or 13, nodes + 1)
-    law : tuple
+    law
         Of :func:`.finite_volumes.flux_through`.
-    oil : ndarray of bool, shape (nodes,)
-        Nodes where the Reynolds equation holds: flow through faces of other nodes has no meaning.
-    max_flow : (float, float)
+    oil
+        Nodes where the Reynolds equation holds: flow through faces of others has no meaning, shape (nodes,).
+    max_flow
         Largest pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
-    couette : ndarray, shape (nodes + 1,)
-        Filled in: mass flow of the surfaces' mean speed through the faces i-1/2, in u a^2/R.
-    pressure_heat : ndarray, shape (nodes,)
-        Filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node.
-    spread : ndarray, shape (nodes,)
-        Filled in: :math:`\ln(\sinh\Sigma/\Sigma)` of the nodes.
-    gradient : ndarray, shape (nodes,)
-        Filled in: central :math:`dp/dx` [Pa/m].
+    couette
+        Filled in: mass flow of the mean speed through the faces i-1/2, in u a^2/R, shape (nodes + 1,).
+    pressure_heat
+        Filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node, shape (nodes,).
+    spread
+        Filled in: :math:`\ln(\sinh\Sigma/\Sigma)` of the nodes, shape (nodes,).
+    gradient
+        Filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
     per_length, _, eyring, slip, entrainment = law

@@ -125,7 +125,7 @@ def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> Fi
 
 
 @inlined
-def exchange_law(kind, r, walls):
+def exchange_law(kind: int, r: float, walls: tuple) -> tuple[float, float]:
     """Flux into both surfaces per temperature [W/(m^2 K)], and the temperature without flux [K]."""
     w1, w2, r1, r2 = walls
     if kind == PARABOLA:
@@ -139,7 +139,9 @@ def exchange_law(kind, r, walls):
 
 
 @inlined
-def fluxes(kind, t, r, walls, exchange, alpha):
+def fluxes(
+    kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: float
+) -> tuple[float, float, float]:
     """Heat fluxes into both surfaces, and the derivative of their sum with respect to r."""
     w1, w2, r1, r2 = walls
     flow = (t - alpha) * exchange

@@ -11,14 +11,21 @@ The surface temperature under a flux q is, in the frame of the body,
 history is stored.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.compiled import compiled
 from ehlpetsc.effects.heat.record import BodyHeat
+from ehlpetsc.physics.flash_temperature import Solid
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.scales import Scales
+
 
 STEP = 1.2  # of the trapezoidal rule in y: its relative error is 2 |Gamma(1/2 + 2 pi i/STEP)|/sqrt(pi) = 8e-4
 FASTEST = 30.0  # rate of the fastest term times the time step
@@ -30,7 +37,7 @@ MAX_DIFFUSION_AREA = 1e-3  # m^2: over the diffusivity the longest history of a 
 
 
 @lru_cache
-def exponentials(shortest, longest):
+def exponentials(shortest: float, longest: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     r"""Rates [1/s] and weights [1/s^(1/2)] of a sum of exponentials for :math:`1/\sqrt{\pi t}`.
 
     Trapezoidal rule in y with the step `STEP`. All terms slower than the slowest one are one more term of
@@ -38,7 +45,7 @@ def exponentials(shortest, longest):
 
     Parameters
     ----------
-    shortest, longest : float
+    shortest, longest
         Range of t [s].
 
     Returns
@@ -62,11 +69,11 @@ class StepWeights:
 
     Attributes
     ----------
-    decay : ndarray, shape (terms,)
-        :math:`e^{-\lambda\Delta t}`.
-    begin, end : ndarray, shape (terms,)
-        Contributions of the flux at the begin and at the end of the step to A [s].
-    response : float
+    decay
+        :math:`e^{-\lambda\Delta t}`, shape (terms,).
+    begin, end
+        Contributions of the flux at the begin and at the end of the step to A [s], shape (terms,).
+    response
         Temperature at the end of the step per flux there [m^2 K/W], without lateral diffusion.
     """
 
@@ -76,7 +83,7 @@ class StepWeights:
     response: float
 
     @classmethod
-    def of(cls, rates, weights, dt, effusivity):
+    def of(cls, rates: np.ndarray, weights: np.ndarray, dt: float, effusivity: float) -> StepWeights:
         """Coefficients of a step of `dt` [s]; `rates` and `weights` as of :func:`exponentials`."""
         # equal steps of a run differ by rounding, which the cache must not see
         return cls._cached(
@@ -85,7 +92,7 @@ class StepWeights:
 
     @classmethod
     @lru_cache(maxsize=8)
-    def _cached(cls, rates, weights, dt, effusivity):
+    def _cached(cls, rates: np.ndarray, weights: np.ndarray, dt: float, effusivity: float) -> StepWeights:
         rates, weights = np.frombuffer(rates), np.frombuffer(weights)
         z = rates * dt
         decay = np.exp(-z)
@@ -99,7 +106,7 @@ class StepWeights:
 
 
 @compiled
-def diffuse(a, ratio, out):
+def diffuse(a: np.ndarray, ratio: float, out: np.ndarray) -> None:
     r"""Diffuse the terms along the surface for one step: :math:`(1-\theta Z)^{-1}(1+(1-\theta)Z)`.
 
     Z is the second difference times `ratio`; theta = 1/2 is second order and used where that keeps
@@ -107,10 +114,8 @@ def diffuse(a, ratio, out):
 
     Parameters
     ----------
-    a : ndarray, shape (cells, terms)
-    ratio : float
+    ratio
         chi dt/dx^2.
-    out : ndarray, shape (cells, terms)
     """
     cells, terms = a.shape
     theta = max(0.5, 1.0 - 0.5 / ratio) if ratio > 0.0 else 0.5
@@ -134,24 +139,32 @@ def diffuse(a, ratio, out):
 
 
 @compiled
-def advance_terms(terms, flux, shift, decay, begin, ratio, weights):
+def advance_terms(
+    terms: np.ndarray,
+    flux: np.ndarray,
+    shift: int,
+    decay: np.ndarray,
+    begin: np.ndarray,
+    ratio: float,
+    weights: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Terms at the end of a step but for the flux there.
 
     Parameters
     ----------
-    terms : ndarray, shape (cells, terms)
-        At its begin.
-    flux : ndarray, shape (cells,)
-        The same [W/m^2].
-    shift : int
+    terms
+        At its begin, shape (cells, terms).
+    flux
+        The same [W/m^2], shape (cells,).
+    shift
         Cells by which the first cell has moved in the body; what it leaves behind is lost, and the body
         brings in no heat.
-    decay, begin : ndarray, shape (terms,)
-        Of :class:`StepWeights`.
-    ratio : float
+    decay, begin
+        Of :class:`StepWeights`, shape (terms,).
+    ratio
         Of :func:`diffuse`.
-    weights : ndarray, shape (terms,)
-        Of the terms in the temperature.
+    weights
+        Of the terms in the temperature, shape (terms,).
 
     Returns
     -------
@@ -176,21 +189,23 @@ def advance_terms(terms, flux, shift, decay, begin, ratio, weights):
 
 
 @compiled
-def add_flux(terms, flux, first, fraction, end):
+def add_flux(
+    terms: np.ndarray, flux: np.ndarray, first: int, fraction: float, end: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Terms with the flux at the end of a step, and that flux shared out to the cells by overlap.
 
     Parameters
     ----------
-    terms : ndarray, shape (cells, terms)
-        Of :func:`advance_terms`.
-    flux : ndarray, shape (nodes,)
-        [W/m^2]
-    first : int
+    terms
+        Of :func:`advance_terms`, shape (cells, terms).
+    flux
+        [W/m^2], shape (nodes,).
+    first
         Cell of the first node.
-    fraction : float
+    fraction
         Fraction of a cell by which the nodes are ahead of the cells.
-    end : ndarray, shape (terms,)
-        Of :class:`StepWeights`.
+    end
+        Of :class:`StepWeights`, shape (terms,).
     """
     cells, count = terms.shape
     new, shared = np.empty((cells, count)), np.zeros(cells)
@@ -204,7 +219,9 @@ def add_flux(terms, flux, first, fraction, end):
 
 
 @compiled
-def moving_terms(q, rates, diffusivity, speed, dx, out):
+def moving_terms(
+    q: np.ndarray, rates: np.ndarray, diffusivity: float, speed: float, dx: float, out: np.ndarray
+) -> None:
     r"""Steady terms under a flux at rest, of a body that moves past: :math:`uA'=-\lambda A+\chi A''+q`.
 
     Exact for a flux that is linear between the nodes and zero beyond them:
@@ -213,13 +230,10 @@ def moving_terms(q, rates, diffusivity, speed, dx, out):
 
     Parameters
     ----------
-    q : ndarray, shape (nodes,)
-    rates : ndarray, shape (terms,)
-    diffusivity, speed : float
+    diffusivity, speed
         chi [m^2/s], u [m/s], signed.
-    dx : float
+    dx
         Spacing of the nodes [m].
-    out : ndarray, shape (nodes, terms)
     """
     n = len(q)
     for m in range(len(rates)):
@@ -244,7 +258,7 @@ def moving_terms(q, rates, diffusivity, speed, dx, out):
 
 
 @compiled
-def _linear_weights(z):
+def _linear_weights(z: float) -> tuple[float, float]:
     """Integrals of exp(-z s) (1 - s) and exp(-z s) s over 0 < s < 1."""
     if z < 1e-3:
         return 0.5 - z / 6.0 + z * z / 24.0, 0.5 - z / 3.0 + z * z / 8.0
@@ -259,15 +273,15 @@ class BodyStep(NamedTuple):
 
     Attributes
     ----------
-    body : BodyHeat
+    body
         Its terms with the flux of the begin of the step.
-    history : ndarray, shape (nx,)
-        Temperature above bulk at the nodes without the flux at the end of the step [K].
-    response : float
+    history
+        Temperature above bulk at the nodes without the flux at the end of the step [K], shape (nx,).
+    response
         Temperature per flux at the end of the step [m^2 K/W].
-    end : ndarray, shape (terms,)
-        Contribution of that flux to the terms [s].
-    fraction : float
+    end
+        Contribution of that flux to the terms [s], shape (terms,).
+    fraction
         Fraction of a cell by which the nodes are ahead of the cells.
     """
 
@@ -283,15 +297,13 @@ class Body:
 
     Parameters
     ----------
-    solid : effects.heat.body_heat.Solid
-    speed : float
+    speed
         Of its surface at the start [m/s].
-    scales : physics.scales.Scales
-    dt : float
+    dt
         Nominal time step [s].
     """
 
-    def __init__(self, solid, speed, scales, dt):
+    def __init__(self, solid: Solid, speed: float, scales: Scales, dt: float) -> None:
         self.solid, self.n, self.dx = solid, scales.nx, scales.dx
         chi, speed = solid.diffusivity, abs(speed)
         length = self.n * self.dx
@@ -303,7 +315,7 @@ class Body:
         reach = PADDING * chi / speed / self.dx if speed > 0.0 else self.n
         self.padding = int(min(np.ceil(reach), self.n)) + 2
 
-    def steady(self, flux, speed):
+    def steady(self, flux: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
         """Temperatures above bulk [K] at the nodes under a steady flux, and the terms of the cells."""
         q = np.pad(flux, (self.padding, self.padding + 1))
         terms = np.empty((len(q), len(self.rates)))
@@ -312,33 +324,33 @@ class Body:
         return rise[self.padding : self.padding + self.n], terms
 
     @property
-    def _tail(self):
+    def _tail(self) -> float:
         step = StepWeights.of(self.rates, self.weights, self.dt, self.solid.effusivity)
         return step.response - self.weights @ step.end / self.solid.effusivity
 
-    def record(self, flux, terms):
+    def record(self, flux: np.ndarray, terms: np.ndarray) -> BodyHeat:
         """Record of a steady flux."""
         q = np.pad(flux, (self.padding, self.padding + 1))
         return BodyHeat(-self.padding, terms, q, self.rates, self.weights)
 
-    def cold(self):
+    def cold(self) -> BodyHeat:
         """Record of a body without heat."""
         cells = self.n + 1 + 2 * self.padding
         zeros = np.zeros((cells, len(self.rates)))
         return BodyHeat(-self.padding, zeros, np.zeros(cells), self.rates, self.weights)
 
-    def advance(self, body, travelled, dt, speed):
+    def advance(self, body: BodyHeat, travelled: float, dt: float, speed: float) -> BodyStep:
         """The body at the end of a step.
 
         Parameters
         ----------
-        body : BodyHeat
+        body
             At its begin.
-        travelled : float
+        travelled
             Distance travelled at the end [m].
-        dt : float
+        dt
             [s]
-        speed : float
+        speed
             [m/s], signed.
 
         Returns
@@ -363,14 +375,14 @@ class Body:
         history = (1.0 - fraction) * here + fraction * next_one
         return BodyStep(body, history, step.response, step.end, fraction)
 
-    def _step_weights(self, body, dt):
+    def _step_weights(self, body: BodyHeat, dt: float) -> StepWeights:
         rates, step, _ = self._weights_of
         if rates is not body.rates or step != dt:
             weights = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
             self._weights_of = body.rates, dt, weights
         return self._weights_of[2]
 
-    def accept(self, step, flux):
+    def accept(self, step: BodyStep, flux: np.ndarray) -> BodyHeat:
         """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""
         body = step.body
         padding = (len(body.flux) - self.n - 1) // 2

@@ -10,14 +10,14 @@ class BodyHeat(NamedTuple):
 
     Attributes
     ----------
-    first : int
+    first
         Position of the first cell in the body, in cells.
-    terms : ndarray, shape (cells, terms)
-        :math:`A_m` [J/m^2].
-    flux : ndarray, shape (cells,)
-        Heat flux at the time level [W/m^2].
-    rates, weights : ndarray, shape (terms,)
-        Of the sum of exponentials.
+    terms
+        :math:`A_m` [J/m^2], shape (cells, terms).
+    flux
+        Heat flux at the time level [W/m^2], shape (cells,).
+    rates, weights
+        Of the sum of exponentials, shape (terms,).
     """
 
     first: int
@@ -59,12 +59,11 @@ class HeatRecord(NamedTuple):
         Change of the film's temperature over the last step [K/s]; 0: steady.
     extrapolated
         Heat of the film beyond that at its temperature, see :mod:`.transport` [J/m^2].
-    body_1, body_2 : BodyHeat
-    heat : float
+    heat
         Dissipated [W/m].
-    error : float
+    error
         Its imbalance over it.
-    levels : int
+    levels
         Number of solutions before this level; 0: none yet.
     """
 

@@ -1,7 +1,9 @@
 """Temperatures of one step: the data of a solve, and temperatures and heat of its solution."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,6 +18,11 @@ from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.physics.flash_temperature import Solid
 from ehlpetsc.physics.laws import slope_by_temperature
+
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.ehl_problem import Solution
+    from ehlpetsc.effects.effect import Scene
+
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
@@ -47,14 +54,9 @@ class Temperatures(NamedTuple):
 
 
 class HeatStep:
-    """Steps of one scene.
+    """Steps of one scene."""
 
-    Parameters
-    ----------
-    scene : effects.effect.Scene
-    """
-
-    def __init__(self, scene):
+    def __init__(self, scene: Scene) -> None:
         case, self.scales = scene.case, scene.scales
         self.heat, self.fluid = case.heat, case.fluid
         s, self.bulk, self.inlet = self.scales, case.heat.bulk_temperature, case.heat.oil_inlet_temperature
@@ -104,7 +106,9 @@ class HeatStep:
             at = record.base - rise / slope_by_temperature(record.pressure, at, fluid, self.heat)
         return at
 
-    def solve(self, record, solution, step):
+    def solve(
+        self, record: HeatRecord, solution: Solution, step: Step
+    ) -> tuple[Temperatures, Film, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures and heat of an accepted solution.
 
         Returns
@@ -150,7 +154,9 @@ class HeatStep:
         speed = film.left * abs(step.conditions.sliding)
         return np.divide(temperatures.shear, speed, out=np.zeros_like(speed), where=speed > 0.0)
 
-    def _flow(self, solution, heat):
+    def _flow(
+        self, solution: Solution, heat: FilmHeat
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures of the film in the solve; results of `film.faces`."""
         n, inputs = self.scales.nx, solution.inputs
         q, h, oil = solution.nodes.reynolds_unknown, solution.nodes.film, solution.loads.oil_mask
@@ -174,14 +180,16 @@ class HeatStep:
             return solved[:, ::-1].copy(), -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
         return solved, couette, pressure_heat, spread, gradient
 
-    def _max_flow(self, h, oil, inputs):
+    def _max_flow(self, h: np.ndarray, oil: np.ndarray, inputs: StepInputs) -> tuple[float, float]:
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
         if oil.all():
             return np.inf, np.inf
         speed, contact = MAX_FLOW_RATIO * abs(inputs.conditions.entrainment), np.abs(self.scales.x) <= 1.0
         return speed, speed * h[contact].mean() * self.scales.h
 
-    def _compression(self, record, film, gradient, step):
+    def _compression(
+        self, record: HeatRecord, film: Film, gradient: np.ndarray, step: Step
+    ) -> np.ndarray | float:
         r"""Heat of compression :math:`\beta_vTh(\partial_t+u\partial_x)p` [W/m^2]."""
         if not self.heat.thermal_expansion:
             return 0.0
@@ -190,7 +198,14 @@ class HeatStep:
             rate = rate + (film.pressure - record.pressure) / step.dt
         return self.heat.thermal_expansion * film.old * film.thickness * film.left * rate
 
-    def _nodes(self, heat, film, walls, responses, state):
+    def _nodes(
+        self,
+        heat: FilmHeat,
+        film: Film,
+        walls: Sequence[np.ndarray],
+        responses: Sequence[np.ndarray],
+        state: np.ndarray,
+    ) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, np.ndarray]:
         """State of the film, both fluxes, the heat of shear and e."""
         rubbed, fractions = _rubbed(walls, responses, film.rubbing)
         heat = heat.with_rows((W1, W2, R1, R2), (*rubbed, *responses))
@@ -202,7 +217,7 @@ class HeatStep:
         fluxes = [q + part * film.rubbing for q, part in zip(fluxes, fractions, strict=True)]
         return np.array((base, profile, new)), fluxes, shear, extrapolated
 
-    def _moving(self, heat, film):
+    def _moving(self, heat: FilmHeat, film: Film) -> Temperatures:
         responses = heat.of_nodes[[R1, R2]]
         state, fluxes, shear, extrapolated = self._nodes(heat, film, heat.walls, responses, heat.guess)
         walls = [w + r * q for w, r, q in zip(heat.walls, responses, fluxes, strict=True)]
@@ -212,7 +227,7 @@ class HeatStep:
         ]
         return Temperatures(state, walls, fluxes, shear, extrapolated, bodies, responses)
 
-    def _steady(self, record, heat, film, step):
+    def _steady(self, record: HeatRecord, heat: FilmHeat, film: Film, step: Step) -> Temperatures:
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
         speeds = step.conditions.u1, step.conditions.u2
         heated = (np.abs(self.scales.x) < HEATED) * 1.0
@@ -220,7 +235,7 @@ class HeatStep:
         responses = [np.maximum(response, response.max() * MIN_RESPONSE) for response in responses]
         temperatures = None
 
-        def fluxes(values):
+        def fluxes(values: np.ndarray) -> np.ndarray:
             nonlocal temperatures
             q = np.split(values, 2)
             risen = [body.steady(flux, u) for body, flux, u in zip(self.bodies, q, speeds, strict=True)]
@@ -243,7 +258,7 @@ class HeatStep:
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
         return temperatures
 
-    def balance(self, temperatures, film, source):
+    def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it.
 
         Next to no heat, as at a start from rest, is not the measure of the imbalance, but the heat that warms
@@ -269,11 +284,6 @@ def _rubbed(
 
 def mixing(function: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
     r"""Fixed point :math:`x=g(x)` by Anderson's acceleration (Walker & Ni 2011).
-
-    Parameters
-    ----------
-    function : callable
-    start : ndarray
 
     Returns
     -------

@@ -49,8 +49,8 @@ class Film(NamedTuple):
         By which the temperature would change in the step as fast as in the one before [K].
     extrapolated
         e at the begin of the step, over the step [W/m^2].
-    couette : ndarray, shape (nx + 1,)
-        Heat capacity that the mean speed of the surfaces moves through the faces, per cell [W/(m^2 K)].
+    couette
+        Heat capacity that the mean speed moves through the faces, per cell [W/(m^2 K)], shape (nx + 1,).
     rubbing
         Heat of the solids [W/m^2], which arises in the walls.
     """
@@ -76,9 +76,9 @@ def explicit_transport(
     ----------
     stored, flow
         As `stored` and `couette` of :class:`Film`.
-    t : ndarray, shape (nodes,)
-        [K]
-    inlet : float
+    t
+        [K], shape (nodes,).
+    inlet
         Temperature of the oil that enters [K].
 
     Returns
@@ -96,13 +96,20 @@ def explicit_transport(
 
 
 @compiled
-def _limited(difference, next_one):
+def _limited(difference: float, next_one: float) -> float:
     """Half of van Leer's limiter: the fraction of a difference by which half an interval extrapolates."""
     return next_one / (difference + next_one) if difference * next_one > 0.0 else 0.0
 
 
 @compiled
-def _limiters(t, old, change, couette, in_space, in_time):
+def _limiters(
+    t: np.ndarray,
+    old: np.ndarray,
+    change: np.ndarray,
+    couette: np.ndarray,
+    in_space: np.ndarray,
+    in_time: np.ndarray,
+) -> None:
     """Fill in both limiters of every node at temperatures t; oil enters and leaves as at the end nodes."""
     last = len(t) - 1
     for i in range(last + 1):
@@ -203,15 +210,23 @@ def transport(
 
 
 @compiled
-def heat_taken(old, stored, before_step, flow, inlet, t, extrapolated):
+def heat_taken(
+    old: np.ndarray,
+    stored: np.ndarray,
+    before_step: np.ndarray,
+    flow: np.ndarray,
+    inlet: float,
+    t: np.ndarray,
+    extrapolated: np.ndarray,
+) -> float:
     """Heat that the oil stores and takes out of the contact, summed over the cells [W/m^2].
 
     Parameters
     ----------
     old, stored, before_step, flow, inlet
         As of :func:`transport`.
-    t, extrapolated : ndarray, shape (nodes,)
-        As it fills them in.
+    t, extrapolated
+        As it fills them in, shape (nodes,).
     """
     nodes = len(t)
     # oil that the pressure moves takes its heat along from where it turns: the Couette flow alone carries
