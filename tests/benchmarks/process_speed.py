@@ -1,14 +1,10 @@
-"""Whole processes: ``python3 tests/benchmarks/process_speed.py [--ranks]``.
+"""Whole processes: ``python3 tests/benchmarks/process_speed.py``.
 
 5. the smooth steady case at a/200: CPU time after imports, and memory;
 6. a rough run with and without stored fields, CPU time, in turns;
-with ``--ranks``: one rank against two at a/200 and a/800, wall time of the steps, in turns; it means
-something on a machine with two cores to itself.
 """
 
-import argparse
 import os
-import re
 import statistics
 import subprocess
 import sys
@@ -77,26 +73,7 @@ def output(folder, repeats=5):
     )
 
 
-def ranks(folder, points, travel, repeats=3):
-    """Wall time of one rank over that of two."""
-    run = (*ROUGH, f"time.travel={travel}", f"mesh.points_per_half_width={points}", "output.every=1000000")
-    walls = {1: [], 2: []}
-    for _ in range(repeats):
-        for count in walls:
-            words = ["mpirun", "-n", str(count), *PYTHON, *case("table1_rough", folder, *run)]
-            text = usage(words, folder)[0]
-            walls[count].append(float(re.search(r"wall=(\S+)", text).group(1)))
-    one, two = min(walls[1]), min(walls[2])
-    print(f"a/{points}: one rank {one:.1f} s, two {two:.1f} s, {one / two:.2f} times as fast", flush=True)
-
-
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--ranks", action="store_true", help="two ranks against one")
-    chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         steady(scratch)
         output(scratch)
-        if chosen.ranks:
-            ranks(scratch, 200, 0.5)
-            ranks(scratch, 800, 0.1)

@@ -6,7 +6,6 @@ on each number of ranks, in turns, `--repeats` times; of each
 * milliseconds of an iteration of SNES, and of the whole step with its predictor and observables, medians;
 * how many times as fast the first number of ranks asked for is than this;
 * Newton and Krylov iterations: the same on any number of ranks;
-* with ``--count``: collectives an iteration, and bytes that a rank sends in them;
 * the largest memory that a rank has used.
 """
 
@@ -25,26 +24,16 @@ STEPS = 16
 FAST = 8.0  # nominal steps in one on the way
 
 
-def measured(points, ranks, count):
+def measured(points, ranks):
     """Figures of one process group."""
-    command = [
-        "mpirun",
-        "-n",
-        str(ranks),
-        "--oversubscribe",
-        sys.executable,
-        __file__,
-        "--inside",
-        str(points),
-    ]
-    if count:
-        command.append("--count")
+    mpirun = ["mpirun", "-n", str(ranks), "--oversubscribe"]
+    command = [*mpirun, sys.executable, __file__, "--inside", str(points)]
     environment = os.environ | ENVIRONMENT
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def inside(points, count):
+def inside(points):
     """Run on every rank; the first one prints the figures."""
     import resource
 
@@ -54,8 +43,7 @@ def inside(points, count):
     from ehlpetsc.nonlinear import gmres
     from ehlpetsc.run.simulation import Simulation
 
-    comm, traffic = MPI.COMM_WORLD, [0, 0]
-    kept = count_exchanges(traffic) if count else None  # noqa: F841, called by address
+    comm = MPI.COMM_WORLD
     mesh = (f"mesh.points_per_half_width={points}", "mesh.inlet=-1.5", "mesh.outlet=1.3")
     simulation = Simulation(load(ROOT / "cases" / "table1_rough.toml", mesh), comm)
     simulation.options.__enter__()  # for good: parts of steps are solved as well
@@ -65,9 +53,6 @@ def inside(points, count):
         simulation.advance(FAST * step)
     for _ in range(4):
         simulation.advance(step)
-    if count:
-        system = solver.system
-        system.ranks = system.factors.lu.ranks = Counting(system.ranks, traffic)
     spent = timed(solver, comm.Barrier)
     krylov, iterations = [0], gmres.iterations
 
@@ -75,7 +60,7 @@ def inside(points, count):
         krylov[0] += (number := iterations(*arguments))
         return number
 
-    gmres.iterations, traffic[:] = counting, (0, 0)
+    gmres.iterations = counting
     comm.Barrier()
     begun, newton = time.perf_counter(), 0
     for _ in range(STEPS):
@@ -92,43 +77,8 @@ def inside(points, count):
         "krylov": krylov[0],
         "memory": memory,
     }
-    if count:
-        figures |= {"collectives": traffic[0] / newton, "bytes": traffic[1] / newton}
     if comm.rank == 0:
         print(json.dumps(figures), flush=True)
-
-
-def count_exchanges(traffic):
-    """Count the collectives of compiled code and their bytes from now on; returns what must be kept."""
-    import ctypes
-
-    from ehlpetsc.nonlinear import ranks
-
-    word, number = ctypes.c_size_t, ctypes.c_int
-    kind = ctypes.CFUNCTYPE(number, *[word, number, word, word, number, word, word])
-    allgather = kind(ranks.ALLGATHER)
-
-    def counting(*arguments):
-        traffic[0], traffic[1] = traffic[0] + 1, traffic[1] + 8 * arguments[4]
-        return allgather(*arguments)
-
-    kept = kind(counting)
-    ranks.ALLGATHER = ctypes.cast(kept, ctypes.c_void_p).value
-    return kept
-
-
-class Counting:
-    """A communicator that counts its reductions."""
-
-    def __init__(self, ranks, traffic):
-        self._ranks, self._traffic = ranks, traffic
-
-    def __getattr__(self, name):
-        return getattr(self._ranks, name)
-
-    def Allreduce(self, mine, numbers, operation):
-        self._traffic[0], self._traffic[1] = self._traffic[0] + 1, self._traffic[1] + numbers.nbytes
-        self._ranks.Allreduce(mine, numbers, operation)
 
 
 def main():
@@ -137,17 +87,16 @@ def main():
     parser.add_argument("--meshes", type=int, nargs="+", default=[200, 800, 1600])
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--repeats", type=int, default=7)
-    parser.add_argument("--count", action="store_true", help="count collectives and bytes")
     parser.add_argument("--inside", type=int, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.inside:
-        inside(arguments.inside, arguments.count)
+        inside(arguments.inside)
         return
     for points in arguments.meshes:
         taken = {ranks: [] for ranks in arguments.ranks}
         for _ in range(arguments.repeats):
             for ranks, figures in taken.items():
-                figures.append(measured(points, ranks, arguments.count))
+                figures.append(measured(points, ranks))
         print_row(points, taken)
 
 
@@ -158,16 +107,11 @@ def print_row(points, taken):
         median = {name: statistics.median(f[name] for f in figures) for name in figures[0]}
         base = base or [f["snes"] for f in figures]
         ratio = statistics.median(b / f["snes"] for b, f in zip(base, figures, strict=True))
-        more = (
-            f"; {median['collectives']:.1f} collectives, {median['bytes']:.0f} bytes"
-            if "bytes" in median
-            else ""
-        )
         print(
             f"a/{points}, {median['nodes']:.0f} nodes, {ranks} ranks: "
             f"SNES {median['snes']:.2f} ms an iteration, step {median['step']:.2f} ms; "
             f"{ratio:.2f} times as fast; {median['newton']:.0f} Newton and {median['krylov']:.0f} Krylov "
-            f"iterations; {median['memory']:.0f} MB{more}",
+            f"iterations; {median['memory']:.0f} MB",
             flush=True,
         )
 

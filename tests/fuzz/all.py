@@ -33,18 +33,7 @@ LATE = ("python",)
 
 
 def fuzz(seed, show=False, keep=None, **numbers):
-    """Counts by kind and outcome.
-
-    Parameters
-    ----------
-    seed : int
-    show : bool
-        Print a line a draw, not only what must not be.
-    keep : path-like, optional
-        Folder for the files of what must not be.
-    numbers : int
-        Draws of each kind.
-    """
+    """Counts by kind and outcome."""
     found = {}
     for kind in sorted(KINDS, key=LATE.__contains__):
         if not numbers.get(kind):

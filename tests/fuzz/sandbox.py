@@ -7,17 +7,7 @@ import time
 
 
 def process(work, report, limit):
-    """Exit status and output of work(); negative status: a signal, None: a hang.
-
-    Parameters
-    ----------
-    work : callable
-        Returns an exit status.
-    report : Path
-        File for its output.
-    limit : float
-        Seconds.
-    """
+    """Exit status and output of work(); negative status: a signal, None: a hang."""
     child = os.fork()
     if child == 0:
         descriptor = os.open(report, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
@@ -66,21 +56,8 @@ def word_of(status, report):
     return WORDS[status]
 
 
-def beside_others(folder, inputs, work, limit, may_change=()):
-    """Outcome, one word, and output of work() in a folder of these files only.
-
-    Parameters
-    ----------
-    folder : Path
-    inputs : dict of str to bytes
-        Contents by name; the word is "changed" where one of them is another afterwards.
-    work : callable
-        Returns an exit status.
-    limit : float
-        Seconds.
-    may_change : tuple of str
-        Inputs that work() may replace, unless it refuses.
-    """
+def beside_others(folder, inputs, work, limit):
+    """Outcome, one word, and output of work() in a folder of these files only."""
     for path in folder.iterdir():
         path.unlink()
     for name, content in inputs.items():
@@ -92,8 +69,7 @@ def beside_others(folder, inputs, work, limit, may_change=()):
 
     status, report = process(inside, folder / "report", limit)
     word = word_of(status, report)
-    kept = [name for name in inputs if word == "refused" or name not in may_change]
-    changed = any((folder / name).read_bytes() != inputs[name] for name in kept)
+    changed = any((folder / name).read_bytes() != inputs[name] for name in inputs)
     if word not in BAD and (changed or list(folder.glob(".*.tmp*"))):
         word = "changed"
     return word, f"{status} {report[-1500:]}"

@@ -51,16 +51,6 @@ def test_signal_to_mpirun_writes_a_restart_file(tmp_path):
     assert_stopped_whole(tmp_path)
 
 
-def test_signal_to_a_single_process_writes_a_restart_file(tmp_path):
-    process = start(*LONG, cwd=tmp_path)
-    wait_for(tmp_path / "r.h5", process)
-    process.send_signal(signal.SIGHUP)
-    _, output, errors = ended(process)
-    assert process.returncode == 4 and "PETSC ERROR" not in errors
-    assert output.splitlines()[-1].startswith("ehlpetsc: stopped steps=")
-    assert_stopped_whole(tmp_path)
-
-
 @pytest.mark.slow
 def test_signal_interrupts_a_long_step(tmp_path):
     """mpirun kills one second after the signal: the state before the current step is saved by then."""

@@ -214,16 +214,6 @@ def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
     assert not (tmp_path / "case.h5").exists()
 
 
-def test_views_are_printed_once_and_monitors_have_headings(tmp_path):
-    words = [ROOT / "cases/ridge.toml", *settings(*MESH, "time.travel=0.1")]
-    text = run(*words, "-snes_view", "-snes_converged_reason", cwd=tmp_path).stdout
-    assert text.count("SNES Object") == 1
-    heads = [line for line in text.splitlines() if line.startswith(("steady start", "step "))]
-    heads = [line.split(" from ")[0] for line in heads]
-    assert heads == ["steady start", *[f"step {k}" for k in range(1, 5)]]
-    assert text.count("Nonlinear solve converged") == len(heads)
-
-
 @pytest.mark.slow
 def test_runs_in_a_minimal_environment(case, tmp_path):
     bare = {name: value for name, value in SCRIPT.items() if name not in ("PETSC_DIR", "OMP_NUM_THREADS")}

@@ -13,21 +13,7 @@ def is_line_with(text, *parts):
 
 
 def refused(capsys, command, *words):
-    """Error output of a command called in process that must end with exit status 2.
-
-    Parameters
-    ----------
-    capsys
-        Of pytest.
-    command : callable
-        Of a list of words, to an exit status.
-    *words
-        Arguments of the command.
-
-    Returns
-    -------
-    str
-    """
+    """Error output of a command called in process that must end with exit status 2."""
     capsys.readouterr()
     assert command([str(word) for word in words]) == 2
     message = capsys.readouterr().err

@@ -12,17 +12,7 @@ from ehlpetsc.run.simulation import Simulation
 
 
 class Scene:
-    """One case on one rank, its state kept at the last time level.
-
-    Parameters
-    ----------
-    name : str
-        File in cases/.
-    *overrides : str
-        ``table.key=value``.
-    **options
-        PETSc's.
-    """
+    """One case on one rank, its state kept at the last time level."""
 
     def __init__(self, name, *overrides, **options):
         self.simulation = Simulation(load(CASES / name, overrides), options=options)

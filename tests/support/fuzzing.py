@@ -21,19 +21,7 @@ def draws(usual):
 
 
 def faults_of(load, about):
-    """Fault messages of a case, none if a run can use it. Any other exception fails the test.
-
-    Parameters
-    ----------
-    load : callable
-        Loads the case.
-    about : callable
-        Description of the draw for the failure message.
-
-    Returns
-    -------
-    list of str
-    """
+    """Fault messages of a case, none if a run can use it. Any other exception fails the test."""
     try:
         _used(load())
     except CaseError as error:

@@ -62,12 +62,7 @@ def fields_at(x, time, viscosity):
 
 
 def make_result(path, **choices):
-    """Copy the result that `made` finds for these choices.
-
-    Returns
-    -------
-    path
-    """
+    """Copy the result that `made` finds for these choices."""
     shutil.copyfile(made(**choices), path)
     return path
 
@@ -134,12 +129,7 @@ def changed_case(text, changes):
 
 
 def change_case(path, changes):
-    """Change the case in a result file.
-
-    Returns
-    -------
-    path
-    """
+    """Change the case in a result file."""
     with h5py.File(path, "r+", libver="latest") as file:
         text = file.attrs["case"]
         file.attrs["case"] = changed_case(text.decode() if isinstance(text, bytes) else text, changes)
@@ -150,10 +140,6 @@ def with_solids(path, share=0.3, coefficient=0.08, scatter=0.2):
     """Add the fields of mixed contact to a result; `share` is the load fraction on the solids.
 
     The figures of the steps swing about their mean by `scatter` of it.
-
-    Returns
-    -------
-    path
     """
     with h5py.File(path, "r+", libver="latest") as file:
         touching = file["film_thickness"][:] < BOUNDARY_FILM

@@ -84,13 +84,6 @@ def load_kernels():
     Loading compiled code takes a third of a short run. The modules are dropped again: a run imports them with
     MPI and PETSc, and `ehlpetsc.compiled.compiled` then adds the code that is loaded already. Code for named
     tuples of a dropped module is not among it, as that module then has another class of the same name.
-
-    Returns
-    -------
-    kernels : dict
-        Compiled function by module and name.
-    modules : dict
-        Modules by name.
     """
     from numba.core.dispatcher import Dispatcher
 

@@ -63,18 +63,3 @@ def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     assert any("Ra 0.079 µm" in text and "Rpk" in text and "Rsk 0.08" in text for text in texts)
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert "travel 5 a" in titles[0] and "travel 1.50 a" in titles[0]
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ([str(CASES / "table1_smooth.toml")], "table1_smooth.toml: both surfaces"),
-        (["none.toml"], "none.toml: "),
-        ([str(CASES / "fig1.toml"), "a.h5"], "fig1.toml: a case"),
-        ([str(CASES / "fig1.toml"), "--set", "mesh.inlet=3"], "mesh.inlet = 3"),
-    ],
-)
-def test_undrawable_case_is_refused_in_one_line(words, message, capsys, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert plot.main(words) == 2
-    assert message in capsys.readouterr().err

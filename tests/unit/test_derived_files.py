@@ -1,13 +1,14 @@
 """Files made from results by every command: what lies in their place, and a disk that is full."""
 
+import contextlib
 import os
 import re
+import resource
 import shutil
 
 import pytest
 from support import CASES, COARSE_LIFE, ROOT, is_line_with, refused
 from support.made_results import make_result
-from test_output import file_size_limit
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.summary import main as summary
@@ -22,6 +23,17 @@ from ehlpetsc.results.restart_file import save_restart
 
 CASE = ROOT / "cases" / "dry_hertz.toml"
 PROFILE = "0.0,1e-7\n1e-6,2e-7\n"
+
+
+@contextlib.contextmanager
+def file_size_limit(size):
+    """Writing beyond `size` bytes gives the errors of a full disk."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def foreign(folder, name):

@@ -100,15 +100,6 @@ def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
     assert re.search(f'"mesh.csv": .*{sentence}', error.value.faults[0])
 
 
-def test_missing_table_is_named(with_table, tmp_path):
-    path = with_table(TABLE)
-    (tmp_path / "mesh.csv").unlink()
-    with pytest.raises(
-        CaseError, match=rf'operation\.file = "mesh\.csv": .*{re.escape(str(tmp_path / "mesh.csv"))}$'
-    ):
-        load(path)
-
-
 def test_case_text_contains_its_table(with_table, tmp_path):
     path = with_table(TABLE, repeat=2)
     case = load(path, ["fluid.viscosity=0.004"])

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image as image
 from support import is_line_with
-from support.made_results import P0, TABLE_1, A, change_case, make_result, with_solids
+from support.made_results import TABLE_1, A, change_case, make_result, with_solids
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures import command as plot
@@ -174,13 +174,6 @@ def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
         drawing.choose_frames([fast, slow], step=40)
 
 
-def test_members_of_a_series_are_shown_at_the_same_time(tmp_path):
-    coarse = make_result(tmp_path / "a.h5", steps=11)
-    fine = make_result(tmp_path / "b.h5", steps=41)
-    with read_result(coarse) as a, read_result(fine) as b:
-        assert drawing.choose_frames([a, b], step=5) == [5, 20]
-
-
 def test_series_is_sorted_and_labelled_by_its_key(series):
     results = [read_result(path) for path in series]
     ordered = swept.in_order(results)
@@ -288,19 +281,6 @@ def test_contact_pressure_is_drawn_under_the_total(tmp_path):
             "of the solids",
             "Hertz",
         ]
-
-
-def test_different_contacts_have_their_title_and_hertz_pressure(tmp_path):
-    paths = [
-        make_result(tmp_path / f"{n}.h5", title=f"case {n}", p0=n * P0, nodes=81, steps=3) for n in (1, 2)
-    ]
-    results = [read_result(path) for path in paths]
-    figure = figures.draw_frame(results, plot._parser().parse_args(["x"]))
-    upper = figure.axes[0]
-    dotted = [line for line in upper.lines if line.get_linestyle() == ":"]
-    assert [line.get_ydata().max() for line in dotted] == pytest.approx([1.0, 2.0], rel=1e-3)
-    message = [text.get_text() for text in upper.get_legend().texts]
-    assert message[0].startswith("case 1\n") and message[1].endswith("p0 = 2 GPa")
 
 
 SPEEDS = (0.001, 0.02, 0.5, 5.0, 20.0)

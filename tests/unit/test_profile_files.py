@@ -198,14 +198,6 @@ def test_flat_profile_is_plausible_and_sub_atomic_roughness_is_not(rq, message):
     assert fault is None if message is None else message in fault
 
 
-def test_other_formats_name_the_package_they_need(tmp_path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)  # as where it is not installed
-    path = tmp_path / "p.x3p"
-    path.write_bytes(b"PK")
-    with pytest.raises(ProfileError, match=r"'\.x3p' .*SurfaceTopography"):
-        read_profile(path)
-
-
 def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
     class Topography:
         dim = 2

@@ -87,13 +87,6 @@ def test_invalid_profile_arrays_are_refused(surface, fault):
     assert re.search(fault, str(caught.value))
 
 
-def test_all_faults_are_one_exception():
-    with pytest.raises(ehlpetsc.CaseError) as caught:
-        ehlpetsc.solve({"title": "x", "mesh": {"inlet": 3}})
-    assert len(caught.value.faults) >= 4
-    assert all(fault.startswith("case: ") for fault in caught.value.faults)
-
-
 def test_result_in_memory_has_fields_scalars_and_attributes(case, result, tmp_path):
     assert result.pressure.shape == result.film_thickness.shape == (len(result.time), len(result.x))
     assert len(result.time) == len(result.steps.h_min) == 5
@@ -111,13 +104,6 @@ def test_result_on_disk_equals_that_in_memory(case, result, tmp_path):
     np.testing.assert_array_equal(stored.pressure, result.pressure)
     again = ehlpetsc.read_result(tmp_path / "run.h5")
     np.testing.assert_array_equal(again.steps.p_max, result.steps.p_max)
-
-
-def test_xarray_has_units_and_steps(result):
-    data = result.to_xarray()
-    assert data.pressure.dims == ("time", "x") and data.pressure.units == "Pa"
-    assert data.h_min.dims == ("step",) and data.h_min.long_name == "minimum film thickness"
-    assert float(data.film_thickness.isel(time=-1).min()) == result.steps.h_min[-1]
 
 
 def test_iteration_over_states_can_be_resumed(case, result):

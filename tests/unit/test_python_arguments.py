@@ -1,6 +1,5 @@
 """Arguments that Python callers may get wrong: refused by name before anything is computed."""
 
-import re
 import threading
 
 import matplotlib
@@ -8,7 +7,7 @@ import pytest
 from petsc4py import PETSc
 
 import ehlpetsc
-from ehlpetsc import CaseError, OutputError, Simulation, UsageError
+from ehlpetsc import Simulation, UsageError
 from ehlpetsc.nonlinear.options import RunOptions
 
 matplotlib.use("Agg")
@@ -29,11 +28,6 @@ def at_the_root(monkeypatch, request):
 @pytest.fixture(scope="module")
 def case(request):
     return ehlpetsc.load(request.config.rootpath / "cases" / "ridge.toml", RIDGE)
-
-
-@pytest.fixture(scope="module")
-def result(case):
-    return ehlpetsc.solve(case)
 
 
 def running_in(**changes):
@@ -128,27 +122,3 @@ def test_pass_follows_a_complete_pass(first):
     half.advance()
     with pytest.raises(UsageError, match="^after: .* end; .*states"):
         Simulation(running_in(), after=half)
-
-
-def test_passes_are_counted_onwards(first):
-    with pytest.raises(UsageError, match="^pass_number = 1: .* from 2 "):
-        Simulation(running_in(), after=first, pass_number=1)
-
-
-def test_members_need_a_series(case):
-    with pytest.raises(CaseError, match=r"ridge.toml: no \[series\]"):
-        ehlpetsc.members(case)
-    assert len(ehlpetsc.members("cases/stribeck.toml")) > 2
-
-
-@pytest.mark.parametrize("window", [(2, -2), (float("nan"), 1.0), (5, 6)])
-def test_window_must_contain_nodes(result, window):
-    with pytest.raises(UsageError, match=rf"^window = {re.escape(repr(window))}: .* from -2\.5 to 1\.5$"):
-        result.plot(window=window)
-
-
-def test_nearest_frame_needs_one_criterion(result):
-    assert result.nearest_frame(step=3) == 3
-    for given in ({}, {"step": 1, "time": 0.0}):
-        with pytest.raises(OutputError, match=r"memory\.h5: nearest_frame .*time or step$"):
-            result.nearest_frame(**given)

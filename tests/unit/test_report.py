@@ -57,11 +57,6 @@ def test_remaining_time_follows_the_recent_rate(clock):
     assert last in ("49s", "50s", "51s")
 
 
-def test_quick_run_shows_first_and_last_step(clock):
-    steps = [line.split()[0] for line in run(io.StringIO(), clock, seconds_a_step=1e-3).splitlines()[1:]]
-    assert steps == ["1", "100"]
-
-
 def test_progress_bar_stays_on_one_line(clock, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.delenv("OMPI_COMM_WORLD_RANK", raising=False)
@@ -75,15 +70,6 @@ def test_progress_bar_stays_on_one_line(clock, monkeypatch):
     assert drawn.count("#") == pytest.approx(drawn.count("."), abs=1)
     assert "50.0 %" in bars[4] and "5s left" in bars[4] and "p_max 1.250 GPa" in bars[4]
     assert "." not in bars[-1].split("]")[0]
-
-
-@pytest.mark.parametrize("where, watched", [("/dev/pts/3", True), ("/a/log", False), ("pipe:[17]", False)])
-def test_progress_bar_under_mpirun_needs_a_terminal(monkeypatch, where, watched):
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "0")
-    monkeypatch.setattr(report.os, "readlink", lambda path: where)
-    assert report.on_terminal(Terminal()) is watched
-    assert not report.on_terminal(io.StringIO())
 
 
 def test_progress_of_a_restarted_run_counts_from_its_restart(clock):

@@ -149,20 +149,6 @@ def catches(pid, number):
     return int(re.search(r"SigCgt:\s*(\w+)", status)[1], 16) >> (number - 1) & 1
 
 
-def test_environment_of_another_python_is_ignored(script):
-    done = script(
-        "case.toml",
-        PYTHONHOME="/nowhere",
-        PYTHONPATH="/nowhere",
-        VIRTUAL_ENV="/nowhere",
-        HOME="",
-        PETSC_DIR="/nowhere",
-        PETSC_ARCH="nothing",
-    )
-    assert done.returncode == 0
-    assert "HOME None" in done.stdout
-
-
 @pytest.mark.parametrize(
     "arguments", [["-n"], ["-n", "0", "c.toml"], ["-n", "two", "c.toml"], ["-v", "c.toml"]]
 )

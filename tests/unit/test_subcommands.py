@@ -116,23 +116,6 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
     assert is_line_with(message, f"ehlpetsc {name}: ", " --deph;", f"; ehlpetsc {name} -h")
 
 
-@pytest.mark.parametrize(
-    ("name", "words", "what"),
-    [
-        ("post", ["a.h5", "--count", "all"], ["--count: ", "'all'", "'von_mises'"]),
-        ("post", ["a.h5", "--within", "-1"], ["--within -1: ", " 0 "]),
-        ("post", [], ["required: RESULT.h5"]),
-        ("plot", ["a.h5", "--step", "one"], ["--step: ", "'one'"]),
-        ("plot", ["a.h5", "--map", "--movie"], ["--movie: ", " --map;"]),
-        ("compare", ["a.h5"], ["required: B.h5"]),
-        ("compare", ["a.h5", "b.h5", "--rtol", "-1"], ["--rtol: -1 ", " >= 0;"]),
-    ],
-)
-def test_command_line_fault_is_named(name, words, what, capsys):
-    message = message_of(name, words, capsys)
-    assert is_line_with(message, f"ehlpetsc {name}: ", *what, f"; ehlpetsc {name} -h")
-
-
 STRIBECK = "cases/stribeck.toml"
 NO_TEXT = "a\udcffb"  # a byte that is no UTF-8, as the command line hands it on
 
