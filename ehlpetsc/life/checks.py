@@ -134,9 +134,6 @@ def stored_or_new(case: Case, path: Path, overwrite: bool, after: int | None) ->
     history = read_life(path)
     if _tables_of_surfaces(history.case) != _tables_of_surfaces(case.text):
         raise OutputError(f"{path}: the life of another case; give another -o, or --overwrite to lose it")
-    history.case = case.text  # it may extend the life
-    if after is None:
-        return history
-    if not 1 <= after <= len(history.rows):
+    if after is not None and not 1 <= after <= len(history.rows):
         raise UsageError(f"--after {after}: allowed: 1 to {len(history.rows)}, the rows of {path}")
-    return history.up_to(after)
+    return history.up_to(after or len(history.rows), case.text)  # the case may extend the life

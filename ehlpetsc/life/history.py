@@ -182,9 +182,9 @@ class LifeHistory:
         self.bodies.append(bodies)
         self.plastic.append(plastic)
 
-    def up_to(self, count: int) -> LifeHistory:
-        """Copy of the life up to a row."""
-        life = LifeHistory(self.case, self.title)
+    def up_to(self, count: int, case: str | None = None) -> LifeHistory:
+        """Copy of the life up to a row, by default with its own case."""
+        life = LifeHistory(case or self.case, self.title)
         for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
             life.add(*values)
         return life

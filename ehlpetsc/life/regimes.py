@@ -151,10 +151,10 @@ class _Lives:
         self.members = members_of(case, _stem(output))
         for member in self.members:
             check_case(member.case)
-        self.index.rows = [
+        self.index.begin(
             {"value": member.value, "file": self.file(member).name, "state": "waiting"}
             for member in self.members
-        ]
+        )
 
     @staticmethod
     def file(member: Member) -> Path:

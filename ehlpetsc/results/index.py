@@ -67,6 +67,10 @@ class Index:
         self._lock.acquire()
         remove_stale(self.path)
 
+    def begin(self, rows: Iterable[dict]) -> None:
+        """Replace all rows."""
+        self.rows = list(rows)
+
     def release(self) -> None:
         """Release the lock."""
         self._lock.release()

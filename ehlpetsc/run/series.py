@@ -157,10 +157,10 @@ class Series:
         self.index = Index(output.with_name(f"{output.stem}.series.json"), case, "members", **keys)
         on_root(world, self._acquire, overwrite)
         states = world.bcast([m.state_of_files() for m in self.members] if world.rank == 0 else None)
-        self.index.rows = [
+        self.index.begin(
             {"value": m.value, "file": m.output.name, "state": "done" if state == "done" else "waiting"}
             for m, state in zip(self.members, states, strict=True)
-        ]
+        )
         missing = [n for n, state in enumerate(states) if state != "done"]
         missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
         self.queue = WorkQueue(world, ranks, missing, self._note_end)

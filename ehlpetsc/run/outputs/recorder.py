@@ -193,7 +193,7 @@ class Recorder:
         simulation = self.simulation
         for side, name, depth in stored_depths(simulation):
             self._writer.put_depth(side, name, depth)
-        self.totals.means = self._writer.means()
+        self.totals = Totals(self.totals.values, self._writer.means())
         figures = self.totals.values | self.totals.means
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures)
         self._writer.close(status.words, self.limits)
