@@ -42,16 +42,11 @@ ONE_RANK = (
 )
 MORE_RANKS = (
     "",
-    *(
-        f"{pc} {NEAR}"
-        for pc in (
-            "-pc_type bjacobi -sub_pc_type lu",
-            "-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu",
-            "-pc_type lu -pc_factor_mat_solver_type mumps",
-            "-pc_type lu -pc_factor_mat_solver_type superlu_dist",
-            "-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1",
-        )
-    ),
+    f"-pc_type bjacobi -sub_pc_type lu {NEAR}",
+    f"-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu {NEAR}",
+    f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}",
+    f"-pc_type lu -pc_factor_mat_solver_type superlu_dist {NEAR}",
+    f"-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1 {NEAR}",
 )
 
 

@@ -66,12 +66,11 @@ def test_signal_interrupts_a_long_step(tmp_path):
 
 
 # on a fast machine the run has started by then and stops too
-@pytest.mark.parametrize("name, delay", [("SIGINT", 0.5), ("SIGTERM", 0.8), ("SIGHUP", 1.1)])
-def test_signal_during_imports_prints_one_line_at_most(tmp_path, name, delay):
+def test_signal_during_imports_prints_one_line_at_most(tmp_path):
     endless = [*STEADY, *settings("time.courant=1.0", "time.travel=500"), "-ehl_overwrite"]
     process = start(*endless, cwd=tmp_path)
-    time.sleep(delay)
-    process.send_signal(getattr(signal, name))
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
     _, _, errors = ended(process)
     assert process.returncode == 4, errors
     assert "Traceback" not in errors and "PETSC ERROR" not in errors

@@ -146,8 +146,6 @@ REFUSED = {
     "header of numbers": ("4000\n" + lines("{},{}\n"), {}, "^line 1: 1 numbers, .* 2; .* header_lines = 1 "),
     "text in it": (lines("{},{}\n") + "end\n", {}, "^line 7: 'end'; .*header_lines"),
     "no numbers": ("a\nb\n", {}, "^0 points"),
-    "few points": ("0,0\n1,1\n", {}, "^2 points; .* 4$"),
-    "infinite": (lines("{},{}\n") + "1e-4,inf\n", {}, r"^point 7 .* 1e\+06 m;"),
     "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, r"^point 7 .* 1e\+06 m;"),
     "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "^x = 1e-05 appears twice; .*spacing"),
 }
@@ -256,7 +254,7 @@ def test_block_reading_equals_line_reading(tmp_path, monkeypatch):
             return str(error)
 
     table = text_columns._Words.table
-    for _ in range(1500):
+    for _ in range(500):
         text = drawn_text(draw)
         path.write_text(text, newline="")
         layout = draw.choice([None, None, None, ",", "."]), draw.choice([None, None, None, 0, 1, 2])
@@ -264,4 +262,4 @@ def test_block_reading_equals_line_reading(tmp_path, monkeypatch):
         for choice in ((1 << 20, True), (15, True), (60, True), (15, False)):
             assert outcome(*choice, *layout) == line_by_line, (text, layout, choice)
         refused += isinstance(line_by_line, str)
-    assert 200 < refused < 1300  # both ends are tried
+    assert 70 < refused < 430  # both ends are tried

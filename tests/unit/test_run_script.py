@@ -101,20 +101,19 @@ sys.exit(4)
 """
 
 
-@pytest.mark.parametrize("name, ranks", [("SIGINT", 1), ("SIGUSR1", 1), ("SIGTERM", 2)])
-def test_signal_reaches_every_rank(script, tmp_path, name, ranks):
+@pytest.mark.parametrize("name", ["SIGUSR1", "SIGTERM"])
+def test_signal_reaches_every_rank(script, tmp_path, name, ranks=2):
     done = signalled(script, tmp_path, ranks, [name], "case.toml")
     assert done.returncode == 4, done.stderr
     assert sorted(done.stdout.splitlines()) == [f"RANK {rank} SIGNALLED" for rank in range(ranks)]
     assert done.stderr == ""
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_signal_before_the_start_ends_with_status_4(script, tmp_path, name):
+def test_signal_before_the_start_ends_with_status_4(script, tmp_path):
     """To the script while it looks for packages, and to ranks without a signal handler."""
     for wait in (False, True):
         program = "import pathlib, time\npathlib.Path('ready0').touch()\ntime.sleep(30)\n"
-        done = signalled(script, tmp_path, 1, [name], "case.toml", program=program, wait=wait)
+        done = signalled(script, tmp_path, 1, ["SIGINT"], "case.toml", program=program, wait=wait)
         assert (done.returncode, done.stdout) == (4, "")
         assert is_line_with(done.stderr, "run_mpi.sh: stopped ")
 
