@@ -31,6 +31,7 @@ PROBE_OPERATIONS = 3000
 START_PROBES = 70.0  # time of imports and of loading compiled loops, over that of `probe`
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
+MIN_NODES_OF_TWO_RANKS = 8000  # with fewer, two ranks gain little on a quiet machine and lose on a busy one
 
 
 def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
@@ -190,9 +191,6 @@ def height_lines(rough: Roughness | None, s: Scales) -> Iterator[str]:
             )
             note = "means over cells, as the mesh has them"
             yield f"Surface {side}: heights from {heights} um; {note}, {means} um"
-
-
-MIN_NODES_OF_TWO_RANKS = 8000  # with fewer, two ranks gain little on a quiet machine and lose on a busy one
 
 
 def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:

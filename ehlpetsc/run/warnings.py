@@ -26,7 +26,11 @@ PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the prop
 MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
 MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
-MAX_INLET = 100.0  # half widths: largest distance of the proposed inlet
+MAX_INLET = 100.0  # half widths: maximum distance of the proposed inlet
+LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
+MAX_EHL_FILM = 0.1  # half widths: films of EHL contacts are at most a hundredth of a half width
+MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a straight line counts as tilted
+MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
 
 
 def domain_warnings(case: Case, scales: Scales) -> list[str]:
@@ -41,10 +45,7 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
 
 
 def domain_faults(case: Case, scales: Scales) -> list[str]:
-    """Faults of the domain that make the result meaningless, one message each; checked before a run.
-
-    Parameters as in :func:`domain_warnings`.
-    """
+    """Faults of the domain that make the result meaningless, one message each; checked before a run."""
     if case.contact.yield_pressure:
         return _too_narrow(case, scales)
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
@@ -100,12 +101,6 @@ def _finer_mesh_hint(case: Case, scales: Scales) -> str:
     points = math.ceil(points_for_opening(_smallest_expected_film(case, scales), MAX_FILM_SLOPE))
     other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
     return f"try mesh.points_per_half_width = {points}{other}"
-
-
-LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
-MAX_EHL_FILM = 0.1  # half widths: films of EHL contacts are at most a hundredth of a half width
-MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a straight line counts as tilted
-MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
 
 
 def warnings(case: Case, scales: Scales) -> list[str]:

@@ -21,7 +21,7 @@ ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
-MAX_DECADES = 300  # log10 of the largest viscosity that is printed with digits
+MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
 
 
 def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str, float]) -> list[str]:
@@ -82,7 +82,7 @@ def _viscosity(fluid: Any, totals: dict[str, float]) -> str | None:
         return None
     value = f"{10.0**decades:.1e}" if decades < MAX_DECADES else f"1e{decades:.0f}"
     return (
-        f"viscosity: {value} Pa s by the law at the oil's greatest pressure, {1e-9 * pressure:.2f} GPa; "
+        f"viscosity: {value} Pa s by the law at the oil's maximum pressure, {1e-9 * pressure:.2f} GPa; "
         "oils are measured up to about 1e7 Pa s"
     )
 

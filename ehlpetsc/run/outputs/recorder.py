@@ -273,10 +273,10 @@ def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
     if solution is None:
         return []
     offsets, sides = _offsets(simulation), stored_profiles(simulation)
-    points = [side and side[0] - offset for side, offset in zip(sides.values(), offsets, strict=True)]
+    first, second = (side and side[0] - offset for side, offset in zip(sides.values(), offsets, strict=True))
     depths = []
     for effect in simulation.stepper.effects:
-        for name, pair in effect.on_surfaces(solution.records[effect.name], points).items():
+        for name, pair in effect.on_surfaces(solution.records[effect.name], (first, second)).items():
             stored = [(side, name, depth) for side, depth in zip(sides, pair, strict=True)]
             depths += [entry for entry in stored if entry[2] is not None]
     return depths
