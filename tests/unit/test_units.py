@@ -75,31 +75,19 @@ def test_rotational_speed_of_gears_counts_revolutions():
 
 
 def test_case_with_units_equals_the_case_in_si(tmp_path):
-    overrides = {
-        "contact.radius": "19.1 mm",
-        "contact.load": "527 N/mm",
-        "contact.youngs_modulus": "207 GPa",
-        "fluid.viscosity": "5 mPa s",
-        "fluid.pressure_viscosity": "11.1 1/GPa",
-        "motion.entrainment_speed": "5 m/s",
-        "surface.1.synthetic": {"kind": "ridge", "amplitude": "0.2 um", "wavelength": "0.1 mm"},
-        "time.travel": 4.0,
-    }
-    plain = {
-        "contact.radius": 0.0191,
-        "contact.load": 527e3,
-        "fluid.viscosity": 0.005,
-        "surface.1.synthetic": {"kind": "ridge", "amplitude": 2e-7, "wavelength": 1e-4},
-        "time.travel": 4.0,
-    }
-    one, other = load(SMOOTH, overrides), load(SMOOTH, plain)
+    ridge = {"kind": "ridge", "amplitude": "0.2 um", "wavelength": "0.1 mm"}
+    given = {"contact.radius": "19.1 mm", "contact.load": "500 N/mm", "fluid.viscosity": "6 mPa s"}
+    plain = {"contact.radius": 0.0191, "contact.load": 500e3, "fluid.viscosity": 0.006}
+    given |= {"contact.youngs_modulus": "206 GPa", "motion.entrainment_speed": "4 m/s", "time.travel": 4.0}
+    plain |= {"contact.youngs_modulus": 206e9, "motion.entrainment_speed": 4.0, "time.travel": 4.0}
+    one = load(SMOOTH, given | {"surface.1.synthetic": ridge})
+    other = load(SMOOTH, plain | {"surface.1.synthetic": ridge | {"amplitude": 2e-7, "wavelength": 1e-4}})
     assert one.as_dict() == other.as_dict()
     table = tomllib.loads(one.text)  # what results hold and their readers take
-    assert table["contact"]["load"] == 527e3 and table["surface"]["1"]["synthetic"]["amplitude"] == 2e-7
+    assert table["contact"]["load"] == 500e3 and table["surface"]["1"]["synthetic"]["amplitude"] == 2e-7
     path = tmp_path / "c.toml"
     path.write_text(SMOOTH.read_text().replace("load = 527e3 ", 'load = "527 N/mm" ', 1))
-    case = load(path)
-    assert case.contact.load == 527e3
+    assert load(path).contact.load == 527e3
 
 
 def test_series_accepts_units():
@@ -117,10 +105,8 @@ def test_series_accepts_units():
     [
         ("contact.load", "350 N", 'contact.load = "350 N": not a unit'),
         ("contact.radius", "12 mmm", 'contact.radius = "12 mmm": unknown'),
-        ("contact.radius", "twelve", 'contact.radius = "twelve": allowed: '),
         ("motion.slide_roll_ratio", "25 mm", 'motion.slide_roll_ratio = "25 mm": not a unit'),
         ("surface.1.synthetic", {"kind": ["sine"], "amplitude": "1 um"}, '"ground" | "sine"'),
-        ("series", {"keys": 5, "values": ["1 mm"]}, "series.keys = 5"),
         ("contact.load", "-1 N/mm", "contact.load = -1000.0: "),
     ],
 )
