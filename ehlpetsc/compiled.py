@@ -9,8 +9,9 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Container, Iterable
+from collections.abc import Callable, Container, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -85,7 +86,7 @@ if COMPILED:
         drop_stale_code(Path(__file__).parent)
 
 
-def compiled(function=None, **options):
+def compiled(function: Callable | None = None, **options: Any) -> Any:
     """Compile `function` at its first call, once for all runs if the code can be cached.
 
     Division by zero is infinity as in numpy; with ``error_model="python"`` it is an error as in Python.
@@ -102,7 +103,7 @@ def compiled(function=None, **options):
         return numba.njit(**(options | {"cache": False}))(function)
 
 
-def inlined(function, **options):
+def inlined(function: Callable, **options: Any) -> Any:
     """Compile a small function of a law into its callers.
 
     A call from compiled code hands over the law's constants one by one, which takes as long as the law.
@@ -113,10 +114,12 @@ def inlined(function, **options):
 if COMPILED:
 
     @intrinsic
-    def call_allgather(typing, function, send, number, received, count, communicator):
+    def call_allgather(
+        typing: Any, function: Any, send: Any, number: Any, received: Any, count: Any, communicator: Any
+    ) -> tuple[Any, Callable]:
         """``function(send, count, number, received, count, number, communicator)`` of C in compiled loops."""
 
-        def code(context, builder, signature, arguments):
+        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             function, send, number, received, count, communicator = arguments
             word, integer = ir.IntType(64), ir.IntType(32)
             kind = ir.FunctionType(integer, [word, integer, word, word, integer, word, word])

@@ -273,7 +273,9 @@ def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
     if solution is None:
         return []
     offsets, sides = _offsets(simulation), stored_profiles(simulation)
-    first, second = (side and side[0] - offset for side, offset in zip(sides.values(), offsets, strict=True))
+    first, second = (
+        side[0] - offset if side else None for side, offset in zip(sides.values(), offsets, strict=True)
+    )
     depths = []
     for effect in simulation.stepper.effects:
         for name, pair in effect.on_surfaces(solution.records[effect.name], (first, second)).items():
