@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 from ehlpetsc.case.checking import Fault, Tables, check, is_number, values_of
+from ehlpetsc.case.tables.contact import LAYER_NODES
 from ehlpetsc.case.tables.oil import GRADE
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import CaseError, ProfileError
@@ -106,6 +107,21 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
         return []
     contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
     return []
+
+
+def with_layer_stiffness(case: Values) -> Values:
+    """Case whose layer has the stiffness of its longest wave, unless it is given."""
+    contact = case.contact
+    if contact is None or contact.law != "compliant" or contact.asperity_stiffness is not None:
+        return case
+    from ehlpetsc.physics.asperities import asperity_stiffness
+    from ehlpetsc.physics.scales import Scales
+
+    profiles = [case.surface.side(side) for side in ("1", "2")]
+    cutoffs = [profile.short_cutoff for profile in profiles if profile and profile.short_cutoff]
+    longest = max(cutoffs, default=None) or LAYER_NODES * Scales.of(case).dx
+    stiffness = asperity_stiffness(contact.asperity_height, longest)
+    return case.copy({"contact": contact.copy({"asperity_stiffness": stiffness})})
 
 
 def _removed(folder: Path, profile: Values) -> float:

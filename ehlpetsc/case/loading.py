@@ -12,7 +12,7 @@ from typing import Any
 from ehlpetsc.case.checking import Fault, Tables, check, in_si
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.conditions_file import TableFault
-from ehlpetsc.case.derived import resolve_measured_layer, with_derived
+from ehlpetsc.case.derived import resolve_measured_layer, with_derived, with_layer_stiffness
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.profiles import profile_faults
 from ehlpetsc.case.settings import parsed, put
@@ -138,7 +138,7 @@ def _checked(
         faults.append(Fault("motion", SPEEDS, "gears" in data or "operation" in data))
     case, found = check(CASE, data, known=known)
     if case:
-        case = case.copy({"_conditions": conditions})
+        case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         faults += [Fault("mesh", line) for line in reversal_faults(case, conditions)] if conditions else []
     return (case if case and not faults else None), faults + found
 

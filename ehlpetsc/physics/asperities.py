@@ -24,15 +24,20 @@ Formula and range of g (0.42 to 0.45) were compared with the open source of a la
 (github.com/xylcsi/PerssonModelFudgeFactor). For spectra without roll-off, Hurst exponents 0.5 to 0.9, over
 one to three decades of wavelengths (`tests/verification/test_asperities.py`), the result is
 :math:`\gamma=0.44\ldots0.54`,
-and :math:`\beta=(1.4\ldots2.4)\,q_0\sigma` in the limit of light load or :math:`(1.0\ldots1.7)\,q_0\sigma`
-where :math:`0.5\sigma<h<3\sigma`, with :math:`q_0=2\pi/\lambda` of the longest wave of the roughness. Hence
-:math:`\beta` is of the order of the slope of that wave: 0.008 to 0.02 for 10 nm below 8 um. A larger
-:math:`\beta` measures the film from a plane lower by :math:`\gamma\sigma\ln(\beta/\beta_{theory})`, as
-an adsorbed film of that thickness would: 20 to 24 nm for :math:`\beta=1` in this example.
+and :math:`\beta=(1.4\ldots2.4)\,q_0\sigma` in the limit of light load, with :math:`q_0=2\pi/L` of the
+longest wave of the roughness. From the first touch to flattened asperities the separation is about
 
-Range: elastic asperities, :math:`p_c` below about :math:`\beta E^*/e`, where :math:`h>\gamma\sigma`. Thinner
-films have the continuation :math:`p_c=\beta E^*\gamma\sigma/(e\,h)` with the same slope, which keeps h
-positive. At light load the law holds for a large contact: over few waves of the layer the stiffness
+.. math:: h=\frac{\gamma\sigma}3\ln\Big[1+\Big(\frac{\beta E^*}{p_c}\Big)^3\Big],\qquad
+   p_c=\beta E^*\big(e^{3h/(\gamma\sigma)}-1\big)^{-1/3}
+
+the exponential far out, and next to nothing beyond :math:`\beta E^*`, where the asperities are flattened; a
+fit of ours to the theory at all pressures. With :math:`\gamma=0.5` and :math:`\beta=c\,q_0\sigma` it is
+within 0.14 sigma of it, c being 0.74 to 1.25 for Hurst exponents 0.7 to 0.9, and 1.1 to 2.1 for 0.5 (one to
+three decades). Hence c = 1: the slope of the longest wave, 0.008 for 10 nm below 8 um. A larger
+:math:`\beta` measures the film from a plane lower by :math:`\gamma\sigma\ln(\beta/\beta_{theory})`, as an
+adsorbed film of that thickness would.
+
+Range: at light load the law holds for a large contact: over few waves of the layer the stiffness
 :math:`-dp_c/dh` is not linear in the pressure (abstract of Pastewka et al. 2013, Phys. Rev. E 87, 062809;
 arXiv:1210.4635), up to a pressure that was not available. The separation depends on the ratio of the longest
 to the shortest wave too, the real area hardly on the Hurst exponent (abstract of Prodanov, Dapp and Mueser
@@ -45,8 +50,12 @@ import numpy as np
 
 from ehlpetsc.compiled import compiled
 
+EXPONENTIAL = 12.5  # separation over the decay length beyond which the law is an exponential in all digits
+MAX_RATIO = 1e6  # of prefactor to pressure up to which the law differs from it
+STIFFNESS = 1.0  # beta over the slope 2 pi sigma/L of the longest wave of the layer
 GAMMA = 0.5  # decay length of the pressure over the rms height
 CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
+MIN_HARDNESS = 0.2  # over the width of the stresses: below it all contact is plastic
 KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, at light load
 
 
@@ -68,19 +77,22 @@ def asperity_pressure(h: float, decay: float, prefactor: float) -> tuple[float, 
     pressure, derivative : float
         In the unit of `prefactor`, and in this unit per unit of h.
     """
-    if h >= decay:
-        pressure = prefactor * math.exp(-h / decay)
+    ratio = h / decay
+    if ratio > EXPONENTIAL:
+        pressure = prefactor * math.exp(-ratio)
         return pressure, -pressure / decay
-    pressure = prefactor * math.exp(-1.0) * decay / h
-    return pressure, -pressure / h
+    rest = math.expm1(3.0 * ratio)
+    pressure = prefactor * rest ** (-1.0 / 3.0)
+    return pressure, -pressure * (1.0 + 1.0 / rest) / decay
 
 
 @compiled
 def asperity_separation(pressure: float, decay: float, prefactor: float) -> float:
     """Separation at which asperities carry a positive pressure: the inverse of :func:`asperity_pressure`."""
-    if pressure <= prefactor * math.exp(-1.0):
-        return decay * math.log(prefactor / pressure)
-    return prefactor * math.exp(-1.0) * decay / pressure
+    ratio = prefactor / pressure
+    if ratio > MAX_RATIO:
+        return decay * math.log(ratio)
+    return decay / 3.0 * math.log1p(ratio * ratio * ratio)
 
 
 def asperity_pressures(h: np.ndarray, decay: float, prefactor: float) -> tuple[np.ndarray, np.ndarray]:
@@ -110,18 +122,46 @@ def _separations(pressure: np.ndarray, decay: float, prefactor: float) -> np.nda
     return h
 
 
-def real_area_fraction(pressure: np.ndarray, slope_modulus: float) -> np.ndarray:
-    r"""Real over nominal area of contact, :math:`A/A_0=\mathrm{erf}\left(\frac{\sqrt\pi}{2}
-    \frac{\kappa p}{E^*h'_{rms}}\right)`.
+def asperity_stiffness(height: float, longest_wave: float) -> float:
+    """beta of a layer of this rms height and longest wave, both in m."""
+    return STIFFNESS * 2.0 * math.pi * height / longest_wave
 
-    Persson's law (2001, J. Chem. Phys. 115, 3840) has this form with :math:`\kappa=\sqrt{8/\pi}=1.6`;
-    simulations give :math:`\kappa` about 2 at light load (Hyun, Pei, Molinari & Robbins 2004, Phys. Rev. E
-    70, 026117), the value used here.
+
+def real_area_fraction(pressure: np.ndarray, slope_modulus: float, hardness: float = np.inf) -> np.ndarray:
+    r"""Real over nominal area of contact of asperities whose pressure is at most the hardness H.
+
+    Persson's theory (2001, J. Chem. Phys. 115, 3840) makes the stress at growing magnification a diffusion
+    from p with absorption at 0, where the solids are apart, and at H, where they flow,
+
+    .. math:: \frac A{A_0}=1-\sum_{k=0}^\infty\Big[\mathrm{erfc}\frac{2kH+p}w
+       -\mathrm{erfc}\frac{2(k+1)H-p}w\Big],\qquad w=\frac{2E^*h'_{rms}}{\sqrt\pi\,\kappa}:
+
+    :math:`\mathrm{erf}(p/w)` of elastic asperities, p/H of steep ones, and complete contact at p = H. There
+    :math:`\kappa=\sqrt{8/\pi}=1.6`; simulations give about 2 at light load (Hyun, Pei, Molinari & Robbins
+    2004, Phys. Rev. E 70, 026117), the value used here.
 
     Parameters
     ----------
+    pressure
     slope_modulus
         :math:`E^*h'_{rms}` in the unit of the pressure, h'_rms the rms slope of the roughness.
+    hardness
+        In the unit of the pressure.
     """
-    argument = 0.5 * math.sqrt(math.pi) * KAPPA / slope_modulus * np.asarray(pressure, dtype=float)
-    return np.array([math.erf(value) for value in argument])
+    width = 2.0 * slope_modulus / (math.sqrt(math.pi) * KAPPA)
+    area = [_area(float(p), width, hardness) for p in np.ravel(pressure)]
+    return np.array(area).reshape(np.shape(pressure))
+
+
+def _area(pressure: float, width: float, hardness: float) -> float:
+    if pressure >= hardness:
+        return 1.0
+    if hardness == np.inf:
+        return math.erf(pressure / width)
+    if hardness < MIN_HARDNESS * width:
+        return pressure / hardness
+    apart = 0.0
+    for k in range(math.ceil(3.0 * width / hardness) + 1):  # beyond six widths erfc vanishes
+        near, far = 2.0 * k * hardness + pressure, 2.0 * (k + 1.0) * hardness - pressure
+        apart += math.erfc(near / width) - math.erfc(far / width)
+    return 1.0 - apart

@@ -34,7 +34,7 @@ def film_at_contact(result: Result) -> float:
 def layer_film(contact: Contact) -> float:
     """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; `contact`: table of a case."""
     modulus = 0.5 * reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
-    prefactor = (contact.asperity_stiffness or 1.0) * modulus
+    prefactor = contact.asperity_stiffness * modulus
     return asperity_separation(CONTACT_PRESSURE, GAMMA * contact.asperity_height, prefactor)
 
 

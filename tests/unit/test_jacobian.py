@@ -36,15 +36,31 @@ SCENES = {
     "mixed": ("table1_smooth.toml", ["contact.model='mixed'"]),
     "yielding": ("table1_smooth.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
     "dry, yielding": ("dry_hertz.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
-    "compliant": ("table1_smooth.toml", ["contact.model='mixed'", "contact.asperity_height=2e-9"]),
-    "dry, compliant": ("dry_hertz.toml", ["contact.model='mixed'", "contact.asperity_height=2e-9"]),
+    "compliant": (
+        "table1_smooth.toml",
+        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"],
+    ),
+    "dry, compliant": (
+        "dry_hertz.toml",
+        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"],
+    ),
     "compliant, yielding": (
         "table1_smooth.toml",
-        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.yield_pressure=1.05e9"],
+        [
+            "contact.model='mixed'",
+            "contact.asperity_height=2e-9",
+            "contact.asperity_stiffness=1.0",
+            "contact.yield_pressure=1.05e9",
+        ],
     ),
     "dry, compliant, yielding": (
         "dry_hertz.toml",
-        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.yield_pressure=1.05e9"],
+        [
+            "contact.model='mixed'",
+            "contact.asperity_height=2e-9",
+            "contact.asperity_stiffness=1.0",
+            "contact.yield_pressure=1.05e9",
+        ],
     ),
     "starved": ("table1_smooth.toml", ["fluid.inlet_film=1e-7"]),
     "dry": ("dry_hertz.toml", []),

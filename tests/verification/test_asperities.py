@@ -6,9 +6,11 @@ from scipy.integrate import trapezoid
 from scipy.special import erf
 
 from ehlpetsc.physics.asperities import (
+    EXPONENTIAL,
     GAMMA,
     asperity_pressures,
     asperity_separations,
+    asperity_stiffness,
     real_area_fraction,
 )
 
@@ -61,14 +63,46 @@ def test_pressure_and_separation_are_inverse_and_smooth():
     assert (h > 0.0).all()
     found, slope = asperity_pressures(h, decay, prefactor)
     np.testing.assert_allclose(found, pressure, rtol=1e-12)
-    step = 1e-6 * decay
+    step = 1e-6 * h
     forward, backward = (asperity_pressures(h + k * step, decay, prefactor)[0] for k in (1, -1))
     np.testing.assert_allclose(slope, (forward - backward) / (2.0 * step), rtol=1e-4)
-    thick = h >= decay
+    thick = h >= 12.0 * decay
     np.testing.assert_allclose(found[thick], prefactor * np.exp(-h[thick] / decay), rtol=1e-14)
-    edge = asperity_pressures(decay * np.array([1.0 - 1e-9, 1.0 + 1e-9]), decay, prefactor)
+    edge = asperity_pressures(decay * EXPONENTIAL * np.array([1.0 - 1e-9, 1.0 + 1e-9]), decay, prefactor)
     for value in edge:
-        assert abs(value[1] / value[0] - 1.0) < 1e-8
+        assert abs(value[1] / value[0] - 1.0) < 1e-7
+
+
+def test_slope_of_the_law_equals_its_complex_step():
+    h = np.geomspace(1e-4, 12.0, 60)
+    complex_step = np.imag((np.exp(3.0 * (h + 1e-30j)) - 1.0) ** (-1.0 / 3.0)) / 1e-30
+    np.testing.assert_allclose(asperity_pressures(h, 1.0, 1.0)[1], complex_step, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    "hurst, decades", [(0.7, 1), (0.7, 2), (0.8, 1), (0.8, 2), (0.8, 3), (0.9, 1), (0.9, 2)]
+)
+def test_law_with_the_default_stiffness_is_that_of_the_theory(hurst, decades):
+    """From first touch to flattened asperities, in rms heights; 0.3 is a factor of 1.8 in pressure."""
+    pressure = np.geomspace(3e-3, 30.0, 40)
+    beta = asperity_stiffness(1.0, 2.0 * np.pi)  # wavenumbers in 1/h_rms, q_0 = 1
+    expected = separations(pressure, hurst, decades)
+    found = asperity_separations(pressure, GAMMA, beta)
+    assert np.abs(found - expected).max() < 0.3
+    assert found[-1] < 1e-4 and expected[-1] < 1e-4  # flattened
+
+
+def test_real_area_is_complete_at_the_hardness_and_bounds_the_pressure():
+    pressure = np.linspace(1e-3, 1.0, 200)
+    for slope_modulus in (0.1, 0.5, 1.0, 2.0, 20.0):
+        area = real_area_fraction(pressure, slope_modulus, 1.0)
+        assert area[-1] == 1.0 and (np.diff(area) > -1e-12).all()
+        assert (pressure <= area * (1.0 + 1e-9)).all()
+        assert (area >= real_area_fraction(pressure, slope_modulus) - 1e-12).all()
+    np.testing.assert_allclose(real_area_fraction(pressure, 50.0, 1.0), pressure, rtol=1e-9)
+    light = 0.2 * pressure
+    elastic = real_area_fraction(light, 0.2)
+    np.testing.assert_allclose(real_area_fraction(light, 0.2, 1.0), elastic, rtol=1e-9)
 
 
 def test_real_area_is_linear_at_light_load_and_complete_at_heavy_load():

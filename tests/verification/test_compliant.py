@@ -10,7 +10,7 @@ petsc4py.init([])
 from support.convergence import order_and_limit as order
 
 import ehlpetsc
-from ehlpetsc.case.loading import load
+from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.asperities import GAMMA
 from ehlpetsc.surfaces.samples import samples
@@ -24,12 +24,14 @@ SMOOTH = {"surface": None, "time": None}
 def case(more=(), sigma=SIGMA, file="resolved_mixed.toml"):
     """A case of mixed contact with a compliant layer."""
     layer = {"contact.model": "mixed", "contact.boundary_film": None, "contact.asperity_height": sigma}
+    layer |= {"contact.asperity_stiffness": 1.0}
     return load(CASES / file, layer | dict(more))
 
 
 def layer_pressure(state, simulation, sigma=SIGMA):
     """The law at the films of a state [Pa]."""
-    return 0.5 * simulation.scales.E * np.exp(-state.film_thickness / (GAMMA * sigma))
+    flattened = np.expm1(np.minimum(3.0 * state.film_thickness / (GAMMA * sigma), 600.0))
+    return 0.5 * simulation.scales.E * flattened ** (-1.0 / 3.0)
 
 
 def run(more, options=None, **kind):
@@ -99,6 +101,23 @@ def test_share_friction_and_lengths_converge():
     for name, finest in (("contact_length_10mpa", 2.0096), ("contact_length_100mpa", 1.7058)):  # on a/400
         assert means[name][0] > means[name][1] > means[name][2]
         assert means[name][2] / A == pytest.approx(finest, rel=0.01), name
+
+
+def test_default_stiffness_is_the_slope_of_the_longest_wave():
+    """The S-filter's, or eight nodes; the same from a stored case."""
+    default = {"contact.asperity_stiffness": None, "mesh.points_per_half_width": 50}
+    filtered, smooth = case(RESOLVED | default), case(SMOOTH | default)
+    assert filtered.contact.asperity_stiffness == pytest.approx(2.0 * np.pi * SIGMA / 25e-6)
+    assert smooth.contact.asperity_stiffness == pytest.approx(2.0 * np.pi * SIGMA / (8.0 * A / 50), rel=1e-5)
+    assert stored_case(filtered.text).contact.asperity_stiffness == filtered.contact.asperity_stiffness
+
+
+@pytest.mark.parametrize("speed", [20.0, 1.0, 0.05, 1e-3, 1e-4])
+def test_steady_contacts_converge_with_the_default_stiffness(speed):
+    default = {"contact.asperity_stiffness": None, "mesh.points_per_half_width": 100}
+    simulation = ehlpetsc.Simulation(case(SMOOTH | default | {"motion.entrainment_speed": speed}))
+    state = simulation.advance()
+    assert state.load_error < 1e-10 and state.mass_error < 1e-6 and state.h_min > 0.0
 
 
 def test_a_thin_layer_tends_to_rigid_contact():

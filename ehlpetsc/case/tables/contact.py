@@ -8,7 +8,8 @@ from ehlpetsc.keys import Key, KeyTable, Required, Values
 from ehlpetsc.materials import STEELS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
-ASPERITY_DEFAULTS = {"asperity_stiffness": 1.0, "asperity_slope": 0.1}  # ground and superfinished steel
+ASPERITY_SLOPE = 0.1  # ground and superfinished steel
+LAYER_NODES = 8  # longest wave of a layer whose surfaces have no short_cutoff, in nodes
 MIXED = 'contact.model = "mixed"'
 CONDITIONS = ("[gears]", "[operation]")
 LAYER = "contact.asperity_height"
@@ -32,7 +33,7 @@ def _complete(contact: Contact) -> dict[str, Any]:
     if contact.law == "mixed":
         return {"boundary_film": contact.boundary_film or BOUNDARY_FILM}
     if contact.law == "compliant":
-        return {key: getattr(contact, key) or value for key, value in ASPERITY_DEFAULTS.items()}
+        return {"asperity_slope": contact.asperity_slope or ASPERITY_SLOPE}
     return {}
 
 
@@ -69,16 +70,22 @@ KEYS = {
         'rms height of the roughness finer than the mesh; "measured": that which short_cutoff removes',
         *("m", 1e-11, 1e-6),
         needs=(MIXED,),
-        equation="p_c = beta E* exp(-h/(0.5 sigma)), E* = E'/2, sigma = asperity_height",
+        equation="p_c = beta E* (exp(3 h/(0.5 sigma)) - 1)^(-1/3), E* = E'/2, sigma = asperity_height; "
+        "about beta E* exp(-h/(0.5 sigma))",
     ),
     "asperity_stiffness": Key(
-        "beta of that law [1]; theory: 6 to 11 times asperity_height over the longest wave",
+        "beta of that law [2 pi sigma/L, L = short_cutoff, or eight nodes without one]",
         *("", 1e-4, 1e4),
         needs=(LAYER,),
     ),
     "asperity_slope": Key(
         "rms slope s of that roughness [0.1], real area of contact A/A0 = erf(sqrt(pi) p_c/(E* s))",
         *("", 1e-4, 10),
+        needs=(LAYER,),
+    ),
+    "asperity_hardness": Key(
+        "hardness of the asperities, which bounds their pressure: more real area; left out: elastic",
+        *("Pa", 1e6, 1e18),
         needs=(LAYER,),
     ),
     "boundary_film": Key(

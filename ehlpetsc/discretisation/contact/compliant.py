@@ -1,6 +1,6 @@
 r"""Mixed contact through a compliant layer: roughness finer than the mesh carries before the film closes.
 
-.. math:: p=\max(q,0)+p_c(h),\qquad p_c(h)=\beta E^*e^{-h/(\gamma\sigma)},
+.. math:: p=\max(q,0)+p_c(h),\qquad p_c(h)=\beta E^*\big(e^{3h/(\gamma\sigma)}-1\big)^{-1/3},
 
 see :mod:`ehlpetsc.physics.asperities`. The unknowns are (q, h): nothing is bounded or semismooth but
 cavitation, and the Reynolds equation holds at every node with the film h. Flow factors of the layer are
@@ -54,8 +54,8 @@ class Layer:
         gamma sigma.
     prefactor
         beta E*.
-    slope_modulus
-        E* h'_rms.
+    slope_modulus, hardness
+        E* h'_rms; infinite for elastic asperities.
     contact_pressure, high_pressure
         Thresholds of the lengths in contact.
     """
@@ -63,6 +63,7 @@ class Layer:
     decay: float
     prefactor: float
     slope_modulus: float
+    hardness: float
     contact_pressure: float
     high_pressure: float
 
@@ -74,6 +75,7 @@ class Layer:
             gamma * contact.asperity_height / scales.h,
             contact.asperity_stiffness * modulus,
             contact.asperity_slope * modulus,
+            (contact.asperity_hardness or np.inf) / scales.p0,
             CONTACT_PRESSURE / scales.p0,
             HIGH_PRESSURE / scales.p0,
         )
@@ -169,7 +171,10 @@ class CompliantContact(SeparatedContact):
 
     def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
         """Integral of the real area fraction [m]."""
-        return scales.dx * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus).sum()
+        return (
+            scales.dx
+            * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus, self.layer.hardness).sum()
+        )
 
     def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         """See :class:`.model.ContactModel`."""
