@@ -51,7 +51,6 @@ MIN_HEATING = 1e-280
 SERIES_LIMIT = 0.1  # y below which the series of coth(y) - 1/y is exact to 1e-13
 MEAN_SERIES_LIMIT = 0.2  # y/2 below which the series of the mean rise is exact to 1e-14
 ITERATIONS = 200
-MIN_DROP = 1e-7  # drop of ln(eta) to the middle below which all is that of this one
 ACCURACY = 1e-7  # relative change of y in an iteration of Newton's method, after which it is exact to 1e-14
 
 _limited = inlined(rheology.limited_shear)
@@ -235,23 +234,19 @@ def resolved_stress(
 
 
 @inlined
-def _mean_of(s: float, w: float) -> float:
-    r""":math:`2\ln\cosh s-(2/s)\int_0^s\ln\cosh x\,dx` by the dilogarithm, :math:`w=\ln(1+e^{-2s})`."""
+def _mean_between_equal_walls(y: float) -> tuple[float, float]:
+    r""":math:`2\ln\cosh s-(2/s)\int_0^s\ln\cosh x\,dx`, s = y/2, by the dilogarithm; derivative by y."""
+    s = 0.5 * y
     if s.real < MEAN_SERIES_LIMIT:
         t = s * s
         tail = t * (34 / 2835 - t * (124 / 31185 - t * (2764 / 2027025 - t * (43688 / 91216125))))
-        return t * (2 / 3 - t * (2 / 15 - t * (4 / 105 - tail)))
-    t = w * w
-    tail = t * (1 / 3600 - t * (1 / 211680 - t * (1 / 10886400 - t / 526901760)))
-    dilogarithm = -w * (1.0 + w * (1 / 4 + w * (1 / 36 - tail)))  # Li2(-exp(-2 s))
-    return s + 2.0 * w - (0.8224670334241132 + dilogarithm) / s  # pi^2/12
-
-
-@inlined
-def _mean_between_equal_walls(y: float) -> tuple[float, float]:
-    """Mean rise by y between equal walls, and its derivative."""
-    s = 0.5 * y
-    value = _mean_of(s, np.log(1.0 + np.exp(-y)))
+        value = t * (2 / 3 - t * (2 / 15 - t * (4 / 105 - tail)))
+    else:
+        w = np.log(1.0 + np.exp(-y))
+        t = w * w
+        tail = t * (1 / 3600 - t * (1 / 211680 - t * (1 / 10886400 - t / 526901760)))
+        dilogarithm = -w * (1.0 + w * (1 / 4 + w * (1 / 36 - tail)))  # Li2(-exp(-y))
+        value = s + 2.0 * w - (0.8224670334241132 + dilogarithm) / s  # pi^2/12
     return value, np.tanh(s) - value / y
 
 
@@ -268,40 +263,6 @@ def mean_rise(y: float, d: float) -> tuple[float, float]:
         unheated, _ = _mean_between_equal_walls(d if d.real > 0.0 else -d)
         value, by_y = factor * (value - unheated), factor * by_y
     return value, by_y
-
-
-@inlined
-def profile(drop: float) -> tuple[float, float, float, float, float, float]:
-    r"""Film between equal walls by the drop :math:`D=\ln\eta(T_0)-\ln\eta(T_m)` to its middle.
-
-    For any law of temperature, with :math:`\beta=D/(T_m-T_0)`, the secant, and :math:`\cosh^2s=e^D`.
-
-    Returns
-    -------
-    ln_rate, by_drop
-        :math:`\ln(\sinh y/y)`, y = 2 s.
-    flux, by_drop
-        Heat of shear times :math:`h/(8k_f)`, over :math:`T_m-T_0`: from 1 to 1/2.
-    mean, by_drop
-        Mean temperature above :math:`T_0` over that of the middle: from 2/3 to 1/2.
-    """
-    given, drop = drop, max(drop, MIN_DROP)
-    less = -np.expm1(-drop)
-    tanh = np.sqrt(less)
-    ln_sum = np.log1p(tanh)
-    s = 0.5 * drop + ln_sum
-    s_d, over = 0.5 / tanh, 1.0 / drop
-    flux, heating_s = s * tanh * over, tanh + s * (1.0 - less)
-    rise = _mean_of(s, 0.6931471805599453 - ln_sum)
-    mean = rise * over
-    return (
-        (drop + np.log(tanh / s)) * min(given * over, 1.0),
-        ((1.0 + less) / tanh - 1.0 / s) * s_d,
-        flux,
-        (heating_s * s_d - flux) * over,
-        mean,
-        ((2.0 * tanh - rise / s) * s_d - mean) * over,
-    )
 
 
 @inlined
