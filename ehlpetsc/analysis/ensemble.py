@@ -233,7 +233,13 @@ def _run(chosen: argparse.Namespace, output: Path) -> None:
         results = open_all(chosen.results, stack)
         read = [*map(Path, chosen.results), *(result.path for result in results)]
         check_derived(output, read, tuple(TABLES), signature=TABLES.get(output.suffix.lower(), b""))
-        rows = table(ensembles(results), chosen.resamples, chosen.seed)
+        found = ensembles(results)
+    if len(found) == len(results) > 1:
+        raise OutputError(
+            f"{len(results)} results of as many conditions: no two differ in their seeds alone; "
+            "ehlpetsc summary lists single runs"
+        )
+    rows = table(found, chosen.resamples, chosen.seed)
     write(rows, output)
     print("\n".join(text(rows)))
     print(output)

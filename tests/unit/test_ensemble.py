@@ -52,6 +52,13 @@ def test_members_that_differ_in_seeds_form_one_ensemble(tmp_path):
     assert all(values.shape == (6,) for one in found for values in one.scalars.values())
 
 
+def test_results_without_common_conditions_are_refused(tmp_path, capsys):
+    """A series over speeds: its table was of nan."""
+    assert ensemble.main(made(tmp_path, (5.0, 1.0), [1])) == 2
+    (message,) = capsys.readouterr().err.splitlines()
+    assert message.startswith("ehlpetsc ensemble: 2 results ") and not list(tmp_path.glob("*.csv"))
+
+
 def test_run_statistics_are_time_means_and_extremes(tmp_path):
     (path, *_) = made(tmp_path, [50.0])
     with read_result(path) as result:
