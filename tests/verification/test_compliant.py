@@ -85,7 +85,7 @@ def test_share_friction_and_lengths_converge():
     """Second order on a/25, a/50 and a/100; the limit by Richardson's extrapolation.
 
     On a/100, a/200 and a/400 the orders are 1.97, 1.98 and 1.97 and the limits .3250, .0362 and .0896. Waves
-    down to 25 um under a layer of 20 nm take a/400 for the same: table in cases/contact.md.
+    down to 25 um under a layer of 20 nm take a/400 for the same.
     """
     meshes = [SMOOTHED | {"mesh.points_per_half_width": points} for points in (25, 50, 100)]
     runs = [run(RESOLVED | mesh, {"snes_atol": 1e-9}, sigma=60e-9) for mesh in meshes]
