@@ -21,7 +21,7 @@ def arguments() -> CommandParser:
     """Parse the command line."""
     parser = CommandParser("gears", __doc__)
     parser.add_argument("case", help="case file with a [gears] table, or a result of one")
-    parser.add_argument("-o", "--output", help="picture (default: CASE.gears.png)")
+    parser.add_argument("-o", "--output", help="picture [CASE.path.png, RESULT.gears.png]")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="the path as a table for [operation]")
     return parser
@@ -92,6 +92,8 @@ def _picture(chosen: argparse.Namespace) -> Path | None:
     """Checked path of the picture; None: no picture."""
     if chosen.no_picture:
         return None
-    target = Path(f"{Path(chosen.case).stem}.gears.png" if chosen.output is None else chosen.output)
+    given = Path(chosen.case)
+    kind = "gears" if given.suffix == ".h5" else "path"
+    target = Path(f"{given.stem}.{kind}.png" if chosen.output is None else chosen.output)
     check_derived(target, [Path(chosen.case)], PICTURES)
     return target

@@ -232,7 +232,8 @@ def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsy
     assert [float(word) for word in line.split()[2:]] == pytest.approx(
         [3.871, 7.270, 8.382, 8.729, 7.651], rel=1e-3
     )
-    assert (tmp_path / "pair.gears.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "pair.path.png").read_bytes().startswith(b"\x89PNG")
+    assert not (tmp_path / "pair.gears.png").exists()  # the name of the picture of its result
     rows = np.loadtxt(tmp_path / "mesh.csv", delimiter=",", skiprows=1)
     assert rows[0, 0] == 0.0 and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1] > 0).all()
     assert main(["no.toml"]) == 2
