@@ -6,6 +6,7 @@ The record is saved in restart files by its field names; only the effect reads i
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
@@ -15,9 +16,12 @@ import numpy as np
 from ehlpetsc.keys import KeyTable
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
+    from ehlpetsc.physics.operation import Conditions, ConstantOperation
+    from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.body_field import MeshOnBodies
-    from ehlpetsc.surfaces.roughness import Roughness
+    from ehlpetsc.surfaces.roughness import Roughness, SurfacePositions
 
 
 @dataclass(frozen=True)
@@ -30,13 +34,13 @@ class Scene:
         Positions of both surfaces at the beginning of the run.
     """
 
-    case: object
-    scales: object
-    operation: object
-    positions: object
+    case: Case
+    scales: Scales
+    operation: ConstantOperation
+    positions: SurfacePositions
 
     @classmethod
-    def of_pass(cls, case: Any, scales: Any, operation: Any, number: int) -> Scene:
+    def of_pass(cls, case: Case, scales: Scales, operation: ConstantOperation, number: int) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
         from ehlpetsc.surfaces.roughness import SurfacePositions
 
@@ -83,7 +87,7 @@ class Step(NamedTuple):
     time: float
     dt: float | None
     travelled: tuple
-    conditions: object
+    conditions: Conditions
 
 
 class NoRecord(NamedTuple):
@@ -171,7 +175,7 @@ class Effect:
         return {}, {}
 
     def on_surfaces(
-        self, record: Any, points: tuple[np.ndarray | None, np.ndarray | None]
+        self, record: Any, points: Sequence[np.ndarray | None]
     ) -> dict[str, tuple[np.ndarray | None, np.ndarray | None]]:
         """Values of the quantities `surface` at points of surfaces 1 and 2.
 

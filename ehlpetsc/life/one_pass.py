@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -86,9 +85,7 @@ def start(case: Case, comm: MPI.Comm, position: int, records: dict[str, tuple]) 
     return Simulation(case, comm, pass_number=position + 1, records=records)
 
 
-def run_pass(
-    simulation: Simulation, before: dict[str, tuple], file: Path, stop: Callable | None = None
-) -> Pass:
+def run_pass(simulation: Simulation, before: dict[str, tuple], file: Path, stop: Any = None) -> Pass:
     """Solve a pass to its end and evaluate it.
 
     Parameters

@@ -11,7 +11,7 @@ import tomllib
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -92,7 +92,7 @@ def run_regimes(
     unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
-    stop: Callable | None = None,
+    stop: Any = None,
 ) -> Path:
     """Run a life for each member of a case's series.
 
@@ -160,7 +160,7 @@ class _Lives:
     def file(member: Member) -> Path:
         return member.output.with_name(f"{member.output.stem}.life.h5")
 
-    def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: Callable | None) -> Path:
+    def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: Any) -> Path:
         from ehlpetsc.run.ranks import WorkQueue, on_root
 
         rows = self.index.rows

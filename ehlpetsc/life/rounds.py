@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -31,7 +31,7 @@ class Ranks:
         is_shared = positions > 1 and comm.size > 1
         self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
 
-    def solve(self, positions: list[int], solve: Callable, stop: Callable | None = None) -> list[Pass]:
+    def solve(self, positions: list[int], solve: Callable, stop: Any = None) -> list[Pass]:
         """Solve the passes of a round; collective.
 
         Parameters

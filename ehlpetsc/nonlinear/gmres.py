@@ -59,8 +59,9 @@ class Basis(NamedTuple):
 class FlexibleGMRES:
     """Context of PETSc's Python Krylov method."""
 
-    def __init__(self):
-        self._size = self._basis = None
+    def __init__(self) -> None:
+        self._size: int = None
+        self._basis: Basis = None
 
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve from zero."""

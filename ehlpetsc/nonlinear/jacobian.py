@@ -71,7 +71,9 @@ class JacobianOperator:
     def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
         self.problem, self.halo, self.ranks, self.factors = problem, halo, ranks, factors
         self.active, self.inactive_nodes = slice(None), np.arange(0)
-        self.model = self.state = self.reynolds_derivatives = None
+        self.model: Any = None
+        self.state: Any = None
+        self.reynolds_derivatives: np.ndarray = None
         self.size = n_dofs(problem.local) + problem.load_is_local
         self._work = np.empty(problem.local), np.empty((3, len(halo.window)))
 

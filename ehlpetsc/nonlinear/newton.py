@@ -11,6 +11,7 @@ import ctypes
 import traceback
 import weakref
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from petsc4py import PETSc
@@ -59,11 +60,14 @@ class NewtonSolver:
         self.system, self.problem = system, system.problem
         self._options = options or RunOptions()
         self._petsc_objects = owned(self)
-        self._watch, self._needs_renewal = None, False
+        self._watch: Callable[[], object] | None = None
+        self._needs_renewal = False
         self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
         # other line searches may end at another point than the last trial point
         self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
-        self.snes = self._unconstrained_snes = self.tolerance = None
+        self.snes: Any = None
+        self._unconstrained_snes: Any = None
+        self.tolerance: float = None
         self._create()
         self.bounded = self.snes.getType() == "vinewtonrsls"
         self._max_it, self._atol, self._linear_max_it = self.snes.max_it, self.snes.atol, self.snes.ksp.max_it

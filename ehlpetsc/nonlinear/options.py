@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import importlib
 import threading
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -65,19 +66,21 @@ class RunOptions:
         Names in `of_case` and `given` that have not been read.
     """
 
-    def __init__(self, law: str = "direct", of_case: dict = (), given: dict = ()):
+    def __init__(self, law: str = "direct", of_case: dict | None = None, given: dict | None = None) -> None:
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
-        self._of_case, self._of_call, self._depth = dict(of_case), dict(given), 0
-        self._entered, self._saved = [], {}
+        self._of_case, self._of_call, self._depth = dict(of_case or {}), dict(given or {}), 0
+        self._entered: list = []
+        self._saved: dict = {}
         self.given = self._of_case | self._of_call
-        self.deferred_views, self.unused = [], set(self.given)
+        self.deferred_views: list[str] = []
+        self.unused = set(self.given)
 
     @property
     def user_set(self) -> set[str]:
         """Names of the options set by the user."""
         return set(self.given)
 
-    def value(self, name: str, default: object = None) -> object:
+    def value(self, name: str, default: Any = None) -> Any:
         """Value of an option, which counts as used."""
         if name in self.given:
             PETSc.Options().hasName(name)
@@ -279,7 +282,7 @@ def loose_tolerances(values: dict, atol: float) -> list[str]:
     return lines
 
 
-def _number(text: object) -> float | None:
+def _number(text: Any) -> float | None:
     try:
         return float(text)
     except (TypeError, ValueError):  # no value, or no number

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -177,7 +177,7 @@ def exchange(collective: tuple, everyone: np.ndarray) -> None:
             raise RuntimeError("MPI_Allgather failed")
 
 
-def gathered(ranks: MPI.Comm, record: NamedTuple, owned: slice) -> NamedTuple:
+def gathered(ranks: MPI.Comm, record: Any, owned: slice) -> Any:
     """Named tuple of the arrays of all nodes, from one of arrays of which `owned` are those of the rank."""
     if ranks.size == 1:
         return record

@@ -90,7 +90,9 @@ class TwoFields:
         self.halo = Halo.of(self.problem, cuts, self.ranks)
         self.linear_halo = Halo.of(self.problem, cuts, self.ranks, LINEAR_TOLERANCE)
         self._create_vectors()
-        self.inputs = self.x_evaluated = self.rows = self.operator = self.temperatures = None
+        self.inputs: StepInputs = None
+        self.rows: Rows = None
+        self.x_evaluated = self.operator = self.temperatures = None
         self.bound_reached = False
 
     def _create_vectors(self) -> None:

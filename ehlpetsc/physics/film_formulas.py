@@ -66,7 +66,7 @@ def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[fl
     return incompressible * ratio, MIN_OVER_CENTRAL_FILM * incompressible * ratio**0.25
 
 
-def inlet_opening(film: float, points: int) -> float:
+def inlet_opening(film: float, points: float) -> float:
     r"""Opening of Hertz' gap over one node spacing outside the contact, over the film.
 
     :math:`\frac{2\sqrt2}{3}(\Delta x/a)^{3/2}` in :math:`a^2/R` over the film. At 0.25 the film

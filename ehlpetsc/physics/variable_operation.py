@@ -70,7 +70,7 @@ class VariableOperation:
         local = self._local(time)[1]
         return Conditions(*(float(cubic(local)) for cubic in self._cubics))
 
-    def _position(self, time: float) -> tuple[float, float]:
+    def _position(self, time: float) -> tuple[float, ...]:
         """Distances that both surfaces have travelled since time 0 [m]; before it at the speeds of time 0."""
         if time < 0.0:
             now = self.at(0.0)

@@ -37,6 +37,7 @@ class Solver(Protocol):
 
     problem: EHLProblem
     tolerance: float
+    bounded: bool
 
     def solve(
         self, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None

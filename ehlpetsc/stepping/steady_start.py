@@ -102,7 +102,8 @@ class SolveAttempts:
 
     def __init__(self, solver: Solver, max_it: int | None = None, watch: Watch = None):
         self.solver, self.watch, self.max_it = solver, watch, solver.start_iterations(max_it)
-        self.made, self.spent, self.failure = 0, 0, None
+        self.made, self.spent = 0, 0
+        self.failure: SolveFailed | None = None
 
     def __call__(self, begin: Unknowns, inputs: StepInputs) -> Unknowns | None:
         """Solution; None if Newton's method does not converge."""

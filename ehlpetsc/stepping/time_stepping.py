@@ -6,6 +6,7 @@ The initial guess of a step is that of :mod:`.predictor`. A step that does not c
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -109,7 +110,7 @@ class TimeStepping:
         *solution, newton = self._inlet_first(
             inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
         )
-        state = self._state(*solution, inputs, self._step_end(), records, newton=newton)
+        state = self._state(solution[0], solution[1], inputs, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
 
     def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
@@ -125,7 +126,7 @@ class TimeStepping:
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
             newton += iterations
-            state = self._state(*solution, again, end, before, newton=newton)
+            state = self._state(solution[0], solution[1], again, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
     def _solve_step(
@@ -170,7 +171,7 @@ class TimeStepping:
         while state.time < -LEVEL_TOLERANCE * dt:
             state = self.advance(state, watch=watch)
             newton += state.newton
-        begun = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
+        begun: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
 
     def _roughness_ramp(self, time: float) -> float:
@@ -214,7 +215,7 @@ class TimeStepping:
         inputs: StepInputs,
         end: Step,
         records: dict,
-        **entries: object,
+        **entries: Any,
     ) -> State:
         solution = self.problem.solution(unknowns, residual, inputs)
         accepted = {e.name: e.accept(records[e.name], solution, end) for e in self.effects}
@@ -260,7 +261,8 @@ class TimeStepping:
                         f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
                     ) from error
         return self._state(
-            *solution,
+            solution[0],
+            solution[1],
             inputs,
             step,
             state.records,

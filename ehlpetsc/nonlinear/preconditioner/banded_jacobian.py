@@ -64,7 +64,7 @@ class BandedJacobian:
         self._under_pressures()
         self._under_reynolds()
         self.under_pressure = self._dense_rows()
-        self.entries = None
+        self.entries: BandEntries = None
 
     def _group(self, node: np.ndarray) -> np.ndarray:
         return (node - self.problem.first) // GROUP

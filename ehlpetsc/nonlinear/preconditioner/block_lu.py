@@ -126,7 +126,7 @@ def factor(
 
 
 @compiled(fastmath=FAST)
-def eliminate(a: np.ndarray, column: int, free: np.ndarray, pivots: np.ndarray) -> None:
+def eliminate(a: np.ndarray, column: np.ndarray, free: np.ndarray, pivots: np.ndarray) -> None:
     """Gauss and Jordan on SIZE columns and RIGHT more, rows left where they are.
 
     The unknown k is eliminated by the row ``pivots[k]``. Then column c has, in that row, what the unknown k
