@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Collection, Iterable
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from ehlpetsc.case.checking import Fault, Tables, check, in_si
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
@@ -139,7 +139,11 @@ def _checked(
     case, found = check(CASE, data, known=known)
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
-        faults += [Fault("mesh", line) for line in reversal_faults(case, conditions)] if conditions else []
+        faults += (
+            [Fault("mesh", line) for line in reversal_faults(cast(Case, case), conditions)]
+            if conditions
+            else []
+        )
     return (case if case and not faults else None), faults + found
 
 

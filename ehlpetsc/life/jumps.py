@@ -147,7 +147,7 @@ class Jumps:
         self, bodies: tuple[LifeBody, ...], rates: tuple[Rates, ...], solved_round: Round, left: int
     ) -> int:
         """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
-        passes = 1 if self.is_yielding(solved_round.yielded) else left
+        passes: float = 1 if self.is_yielding(solved_round.yielded) else left
         for body, rate in zip(bodies, rates, strict=True):
             passes = min(passes, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
         passes = max(int(passes), 1)
@@ -158,7 +158,7 @@ class Jumps:
                 for body, rate in zip(bodies, rates, strict=True)
             )
             passes = ends if ends < late else passes
-        return min(left, max(passes, len(solved_round.passes)))
+        return min(left, max(int(passes), len(solved_round.passes)))
 
     def expected_rounds(
         self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int

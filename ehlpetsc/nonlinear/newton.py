@@ -69,8 +69,9 @@ class NewtonSolver:
         self._unconstrained_snes: Any = None
         self.tolerance: float = None
         self._create()
-        self.bounded = self.snes.getType() == "vinewtonrsls"
-        self._max_it, self._atol, self._linear_max_it = self.snes.max_it, self.snes.atol, self.snes.ksp.max_it
+        snes: Any = self.snes
+        self.bounded = snes.getType() == "vinewtonrsls"
+        self._max_it, self._atol, self._linear_max_it = snes.max_it, snes.atol, snes.ksp.max_it
 
     @property
     def bound(self) -> float:

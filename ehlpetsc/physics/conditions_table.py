@@ -76,7 +76,7 @@ class ConditionsTable(NamedTuple):
         """Monotone cubics of load, radius, u1 and u2."""
         from scipy.interpolate import PchipInterpolator
 
-        time, columns = self.time, self[1:5]
+        time, columns = self.time, list(self[1:5])
         if self.is_periodic:  # one interval more on either side
             time = np.concatenate([[time[-2] - time[-1]], time, [time[-1] + time[1]]])
             columns = [np.concatenate([v[-2:-1], v, v[1:2]]) for v in columns]

@@ -85,7 +85,8 @@ class VariableOperation:
 
     def travelled(self, time: float) -> tuple[float, float]:
         """Distances that both surfaces have travelled since time 0 [m], signed."""
-        return self._position(time)
+        first, second = self._position(time)
+        return first, second
 
     def extent(self) -> tuple[tuple[float, float], ...] | None:
         """Minimum and maximum displacement of both surfaces over the run [m]: two pairs."""
