@@ -40,7 +40,7 @@ def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> No
     spec, faults = check(PROFILE, table)
     if faults:  # reported with its keys
         return
-    if case is None:
+    if case is None or case.contact is None:
         samples(folder, spec)
         return
     scales = Scales.of(case)
