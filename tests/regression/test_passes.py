@@ -18,14 +18,10 @@ from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 
 CASE = CASES / "running_in.toml"
-SHORT = (
-    "mesh.points_per_half_width=40",
-    "time.travel=1.2",
-    "time.passes=2",
-    "time.pass_shift=0.0",
-    "contact.yield_pressure=1.1e9",
-    "output.every=1",
-)
+SHORT = """
+mesh.points_per_half_width=40 time.travel=1.2 time.passes=2 time.pass_shift=0.0
+contact.yield_pressure=1.1e9 output.every=1
+""".split()
 
 
 @pytest.mark.slow

@@ -17,20 +17,9 @@ KEYS = (
 def test_series_of_lives_ends_on_two_ranks(tmp_path):
     """PETSc starts on all ranks together: one that met it alone in its first life waited for ever."""
     words = [word for key in KEYS for word in ("--set", key)]
+    life = [PYTHON, "-m", "ehlpetsc", "life", COARSE_LIFE, "--unresolved", "--no-picture", *words]
     done = subprocess.run(
-        [
-            "mpirun",
-            "-n",
-            "2",
-            PYTHON,
-            "-m",
-            "ehlpetsc",
-            "life",
-            COARSE_LIFE,
-            "--unresolved",
-            "--no-picture",
-            *words,
-        ],
+        ["mpirun", "-n", "2", *life],
         cwd=tmp_path,
         env=BARE | SCRIPT,
         capture_output=True,

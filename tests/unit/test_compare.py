@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from support import is_line_with
 from support.made_results import P0, A, make_result
 
 from ehlpetsc.analysis.compare import LinearInterpolation, compare, main
@@ -77,15 +76,6 @@ def test_nan_in_one_result_is_a_difference(tmp_path, result, capsys):
     status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
     assert status == 1
     assert "different: pressure;" in text
-
-
-def test_bad_input_to_compare_is_refused(tmp_path, result, capsys):
-    status, _, text = run(capsys, result, tmp_path / "no.h5")
-    assert status == 2 and is_line_with(text, f"ehlpetsc compare: {tmp_path / 'no.h5'}: ", "such file")
-    with pytest.raises(SystemExit) as stop:
-        main([str(result), str(result), "--rtol", "-1"])
-    assert stop.value.code == 2
-    assert is_line_with(capsys.readouterr().err, "--rtol: -1 ", " >= 0")
 
 
 def test_interpolation_is_exact_for_linear_data_and_at_the_ends():

@@ -13,7 +13,6 @@ from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.pictures.ensemble import draw_ensemble
-from ehlpetsc.results.index import distinguishing_names
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 
@@ -127,16 +126,6 @@ def test_ensemble_has_damage_quantiles(tmp_path):
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
     one = ensemble.Ensemble("", {}, {name: np.array([value]) for name, value in figures.items()})
     assert {row["units"] for row in ensemble.table([one]) if "flash" in row["figure"]} == {"K"}
-
-
-def test_labels_of_results_name_the_keys_that_differ(tmp_path):
-    results = opened(made(tmp_path, (5.0, 1.0), [1, 2]))
-    assert distinguishing_names(results)[2] == "entrainment_speed = 1, seed = 1"
-    assert distinguishing_names(results[:1] * 2) is None
-    for path, model in (("direct.h5", {}), ("mixed.h5", {"contact.model": "mixed"})):
-        change_case(make_result(tmp_path / path), model)
-    both = opened(tmp_path / name for name in ("direct.h5", "mixed.h5"))
-    assert distinguishing_names(both) == ["model = direct", "model = mixed"]
 
 
 @pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])

@@ -9,17 +9,15 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image as image
 from support import is_line_with
-from support.made_results import TABLE_1, A, change_case, make_result, with_solids
+from support.made_results import A, change_case, make_result, with_solids
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures import figures, labels, movies, over_time, stribeck
+from ehlpetsc.pictures import figures, movies, over_time, stribeck
 from ehlpetsc.pictures import frames as drawing
 from ehlpetsc.pictures.operating_points import time_statistics
-from ehlpetsc.results import index as swept
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.writer import Layout, ResultWriter
 
 
 @pytest.fixture
@@ -149,20 +147,6 @@ def test_default_instant_excludes_the_entering_profile_edge(tmp_path):
         assert filled[chosen] and r.steps("p_max")[chosen] == r.steps("p_max")[filled].max()
 
 
-def test_default_instant_is_stored(tmp_path):
-    x = np.linspace(-1, 1, 11)
-    layout = Layout(x * A, ["pressure", "film_thickness"])
-    case = TABLE_1.format(viscosity=0.005, speed=5.0)
-    attributes = {"title": "", "case": case, "a": A, "p0": 1e9, "u1": 5.0, "u2": 5.0}
-    writer = ResultWriter(tmp_path / "r.h5", layout, attributes, every=2)
-    for step, highest in enumerate([1.0, 9.0, 3.0, 8.0, 2.0]):  # the odd steps are not stored
-        values = {"pressure": np.full(11, highest), "film_thickness": np.ones(11)}
-        writer.append(step, step * 1e-6, values, {"p_max": highest, "contacts": 0}, np.zeros(11, bool))
-    writer.close("done")
-    with read_result(tmp_path / "r.h5") as r:
-        assert r.step[drawing.frame_to_show(r)] == 2
-
-
 def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
     """At 5 and 20 m/s, over the same 40 us: the faster one is shown after a quarter of the time."""
     slow, fast = (read_result(make_result(tmp_path / f"{u}.h5", speed=u)) for u in (5.0, 20.0))
@@ -172,17 +156,6 @@ def test_members_at_different_speeds_are_shown_at_equal_travel(tmp_path):
     assert drawing.instant([slow, fast], [40, 10]) == "travel 0.67 a"
     with pytest.raises(OutputError, match=r"5\.0\.h5: .* 0\.6673 a, .* 2\.669 a$"):
         drawing.choose_frames([fast, slow], step=40)
-
-
-def test_series_is_sorted_and_labelled_by_its_key(series):
-    results = [read_result(path) for path in series]
-    ordered = swept.in_order(results)
-    colours, names, key = labels.series_colours(ordered)
-    assert (key, names) == ("fluid.viscosity", ["0.002", "0.005", "0.01"])
-    brightness = [sum(colour[:3]) for colour in colours]
-    assert brightness == sorted(brightness)
-    same = [results[0], results[0]]
-    assert labels.series_colours(same)[1:] == (["0.01", "0.01"], None)
 
 
 def test_rough_result_shows_both_deformed_surfaces(tmp_path, drawn):

@@ -319,14 +319,6 @@ def test_output_replaces_nothing_without_overwrite(result, scene, tmp_path, caps
     assert {path.name for path in tmp_path.iterdir()} == {"run.h5", "run.post.h5", "notes.txt"}
 
 
-def test_bad_file_does_not_stop_the_others(result, tmp_path, capsys):
-    bad = tmp_path / "bad.h5"
-    bad.write_text("no HDF5")
-    assert main([str(bad), str(result), "--depths", "0.5"]) == ExitStatus.BAD_INPUT
-    assert f"{bad}: not an HDF5 file" in capsys.readouterr().err
-    assert result.with_name("run.post.h5").exists()
-
-
 def test_few_asperities_have_no_weibull_fit(tmp_path, capsys):
     path = write(tmp_path / "a.h5", Scene(per_width=20, ratio=0.5, travel=4.6), depths=(0.5,))
     assert main([str(path), "--surface", "1"]) == 0

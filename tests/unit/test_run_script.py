@@ -179,7 +179,6 @@ def machine(script, tmp_path):
 
 
 DEBIAN = 'ID=debian\nVERSION_ID="13"\nPRETTY_NAME="Debian GNU/Linux 13 (trixie)"\n'
-ELSEWHERE = 'ID=rocky\nVERSION_ID="9.4"\nPRETTY_NAME="Rocky Linux 9.4"\n'
 
 
 @pytest.mark.parametrize("system", [DEBIAN, DEBIAN.replace("13", "12"), "ID=debian\n"])
@@ -201,13 +200,6 @@ def test_root_installs_and_waits_for_the_apt_lock(machine):
     assert done.stderr.endswith(": nonesuch\n")
 
 
-def test_installed_packages_are_used_on_any_system(machine):
-    done, typed = machine(0, ELSEWHERE, wanted="")
-    assert done.returncode == 0
-    assert "SIZE 2" in done.stdout
-    assert typed == []
-
-
 def test_complete_python_on_the_path_is_used(script, tmp_path):
     debians = next(Path("/usr/lib/petscdir").glob("petsc*/*-real/lib/python3/dist-packages/petsc4py"))
     (tmp_path / "own").mkdir()
@@ -223,12 +215,6 @@ def test_complete_python_on_the_path_is_used(script, tmp_path):
     assert done.returncode == 0, done.stderr
     assert f"PYTHON {tmp_path / 'bin' / 'python3'}" in done.stdout
     assert "VENV own" in done.stdout
-
-
-@pytest.mark.parametrize("nodes, alone", [("1", True), ("2", False)])
-def test_mpi_uses_shared_memory_only_on_a_single_node(script, nodes, alone):
-    done = script("-n", "1", "case.toml", SLURM_JOB_NUM_NODES=nodes)
-    assert ("'OMPI_MCA_btl'" in done.stdout, "'PMIX_MCA_psec'" in done.stdout) == (alone, alone)
 
 
 def test_command_link_works_in_any_folder(script, tmp_path):

@@ -35,14 +35,6 @@ def test_files_are_named_after_output_and_value(tmp_path):
     assert last.restart == tmp_path / "out_viscosity_0.001.restart.h5"
 
 
-def test_table_values_are_named_by_differing_keys(tmp_path):
-    key = "series.key='surface.2.synthetic'"
-    one, two = (f"{{kind='sine',amplitude={z},wavelength=1e-4}}" for z in ("1e-7", "2e-7"))
-    values = f"series.values=[{one},{two}]"
-    names = [m.output.name for m in series(tmp_path, f"surface.2={{synthetic={one}}}", key, values)]
-    assert names == ["out_amplitude_1e-07.h5", "out_amplitude_2e-07.h5"]
-
-
 SEVERAL = {"series.key": None, "series.keys": ["fluid.viscosity", "motion.entrainment_speed"]}
 
 
@@ -149,13 +141,6 @@ def test_step_totals_equal_those_of_the_file(tmp_path):
         stored = Totals.of_result(result)
     assert str(Totals(totals.values, stored.means)) == str(stored)
     assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
-
-
-@pytest.mark.parametrize("every", [1, 7, 10**9])
-def test_stored_frames_follow_output_every(every):
-    nominal = 0.37e-6
-    stored = [k for k in range(50) if on_level(k * nominal / nominal, every)]
-    assert stored == list(range(0, 50, every)) and not on_level(7.5, every)
 
 
 @pytest.mark.parametrize("halvings", [1, 2, 5, 9])
