@@ -47,15 +47,13 @@ class Result(reader.Result):
         """
         from matplotlib import pyplot
 
-        from ehlpetsc.pictures import frames, labels
+        from ehlpetsc.pictures import frames, style
 
-        (index,), ((colour,), *_) = frames.choose_frames([self], step, time), labels.series_colours([self])
-        window = self._window(window)
-        figure, axes = pyplot.subplots(2, 1, figsize=(8.0, 5.2), sharex=True, layout="constrained")
-        frames.pressure_and_film(axes, [self], [index], [colour], window or frames.default_window([self]))
-        frames.frame_legend(axes, self, index, colour)
-        title = ": ".join(filter(None, [self.attrs["title"], frames.instant([self], [index])]))
-        axes[0].set_title(title, fontsize="medium")
+        indices = frames.choose_frames([self], step, time)
+        view = self._window(window) or frames.default_window([self])
+        figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
+        frames.fill_frame(axes, [self], indices, view)
+        style.set_title(figure, *frames.panel_title([self], indices))
         return figure
 
     def _window(self, window: tuple[float, float] | None) -> tuple[float, float] | None:

@@ -116,7 +116,7 @@ STEP_SCALARS = {
     "lambda_ratio": StepScalar(
         "1", "expected smooth minimum film over the combined Rq", over_run="last", summary=".4g"
     ),
-    "mean_gap_ratio": StepScalar("1", "film_central over the combined Rq", over_run="last", summary=".4g"),
+    "mean_gap_ratio": StepScalar("1", "mean film over the combined Rq", over_run="last", summary=".4g"),
     "oil_pressure": StepScalar(
         "Pa", "maximum pressure of the oil, nodes in direct contact left out", over_run="max", only="fluid"
     ),

@@ -42,9 +42,10 @@ def signals_as_before():
 def coarse_pictures():
     """Pictures of post-processing of few dots and in one format, but where a test asks for both."""
     from ehlpetsc.pictures import damage as gallery
+    from ehlpetsc.pictures import style
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(gallery, "DPI", 20)
+        patch.setattr(style, "DPI", 20)
         patch.setattr(gallery, "FORMATS", ("png",))
         yield
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.atomic_write import atomic_write, replacing
+from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 
 
@@ -56,8 +56,7 @@ def run(chosen: argparse.Namespace) -> None:
     if target:
         from ehlpetsc.pictures.gears import draw
 
-        with replacing(target, keep_ending=True) as temporary:
-            draw(path, stresses, temporary, str(case.get("title", chosen.case)))
+        draw(path, stresses, target, str(case.get("title", chosen.case)))
         print(target)
 
 
@@ -76,15 +75,13 @@ def _run_of(chosen: argparse.Namespace) -> None:
         check_derived(flanks, [Path(chosen.case), post], PICTURES)
     print("\n".join(gear_run.lines()))
     if target:
-        with replacing(target, keep_ending=True) as temporary:
-            draw_run(gear_run, temporary)
+        draw_run(gear_run, target)
         print(target)
     if post.exists():
         damage = FlankDamage(post, gear_run.profile_offsets)
         print("\n".join(damage.lines()))
         if flanks:
-            with replacing(flanks, keep_ending=True) as temporary:
-                draw_damage(damage, gear_run.path.pair, temporary, gear_run.title)
+            draw_damage(damage, gear_run.path.pair, flanks, gear_run.title)
             print(flanks)
 
 

@@ -54,20 +54,20 @@ def _run(chosen: Namespace) -> None:
 
 def _draw(chosen: Namespace, path: Path) -> None:
     from ehlpetsc.life.history import read_life
-    from ehlpetsc.pictures.life import draw
+    from ehlpetsc.pictures.lives import draw
 
     life, target = read_life(path), path.with_suffix(".png")
     draw(life, target)
     print(target)
     if chosen.movie:
-        from ehlpetsc.pictures.life_movie import save_movie
+        from ehlpetsc.pictures.lives import save_movie
 
         save_movie(life, Path(chosen.movie))
         print(chosen.movie)
 
 
 def _draw_regimes(chosen: Namespace, path: Path) -> None:
-    from ehlpetsc.pictures.regimes import draw_regimes, read_index
+    from ehlpetsc.pictures.lives import draw_regimes, read_index
 
     target = path.with_suffix(".png")
     draw_regimes(read_index(path), target)

@@ -8,21 +8,17 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.errors import PostError
 from ehlpetsc.pictures import damage_panels as plots
-from ehlpetsc.pictures.criteria import criteria_picture
-from ehlpetsc.pictures.distributions import depth_picture, ratio_picture
-from ehlpetsc.pictures.passes import passes_picture
+from ehlpetsc.pictures import style
+from ehlpetsc.pictures.distributions import criteria_picture, depth_picture, passes_picture, ratio_picture
 from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress
 from ehlpetsc.post.temperatures import temperature_history
-from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.post_result import PostResult
 
-STYLE = {"svg.hashsalt": "ehlpetsc", "font.size": 9}  # the salt makes SVG files reproducible
-DPI = 160
 FORMATS = ("png", "svg")
 FIELD_DEPTH = 1.5  # half widths
 SECTION_LENGTH = 2.0  # half widths of profile, as in the paper
@@ -30,22 +26,15 @@ LAYER_DEPTH = 0.2  # half widths in a picture of several results: damage below a
 
 
 def _save(figure, stem):
-    """Write all formats with one layout, whose computation takes longer than drawing."""
-    figure.set_dpi(DPI)
-    figure.get_layout_engine().execute(figure)
-    figure.set_layout_engine(None)
-    around = figure.get_tightbbox().padded(matplotlib.rcParams["savefig.pad_inches"])
+    """Write all formats; returns their names."""
     names = [f"{stem}.{kind}" for kind in FORMATS]
     for name in names:
         check_derived(Path(name), (), PICTURES, "--pictures")
-    for kind, name in zip(FORMATS, names, strict=True):
-        metadata = {"Date": None} if kind == "svg" else None
-        with replacing(name, keep_ending=True) as temporary:
-            figure.savefig(temporary, dpi=DPI, bbox_inches=around, metadata=metadata)
+    style.save(figure, *names)
     return names
 
 
-@matplotlib.rc_context(STYLE)
+@matplotlib.rc_context({"font.size": 9})
 def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
     """Draw all pictures; returns the names of the files.
 

@@ -6,8 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ehlpetsc.analysis.gear_run import FLANKS, SCALARS
+from ehlpetsc.pictures import style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,7 +18,6 @@ if TYPE_CHECKING:
     from ehlpetsc.gears.geometry import GearPair
     from ehlpetsc.gears.path import Path as ContactPath
 
-COLOUR = "#1f4e79"
 MAX_DEPTHS = 4
 
 
@@ -25,24 +26,22 @@ def draw(path: ContactPath, hertz: tuple[np.ndarray, np.ndarray] | None, target:
 
     `hertz` contains half width [m] and maximum pressure [Pa] along the path; None without moduli.
     """
-    from matplotlib.figure import Figure
-
     position = 1e3 * (path.rho - path.pair.points["C"])
     figure = Figure(figsize=(7.0, 7.5), layout="constrained")
     load, radius, speed = figure.subplots(3, 1, sharex=True)
-    load.plot(position, 1e-3 * path.load, color=COLOUR)
+    load.plot(position, 1e-3 * path.load, color=style.SINGLE)
     load.set_ylabel("load [kN/m]")
     load.set_ylim(bottom=0.0)
     if hertz is not None:
         pressure = load.twinx()
-        pressure.plot(position, 1e-9 * hertz[1], color="#d62728")
-        pressure.set_ylabel("Hertz pressure [GPa]", color="#d62728")
+        pressure.plot(position, 1e-9 * hertz[1], color=style.SECOND)
+        pressure.set_ylabel("Hertz pressure [GPa]", color=style.SECOND)
         pressure.set_ylim(bottom=0.0)
-    radius.plot(position, 1e3 * path.radius, color=COLOUR)
+    radius.plot(position, 1e3 * path.radius, color=style.SINGLE)
     radius.set_ylabel("radius of relative\ncurvature [mm]")
     for values, label, colour in (
-        (path.speed_1, "flank 1 (pinion)", COLOUR),
-        (path.speed_2, "flank 2 (wheel)", "#e08214"),
+        (path.speed_1, "flank 1 (pinion)", style.SURFACES["1"]),
+        (path.speed_2, "flank 2 (wheel)", style.SURFACES["2"]),
         (path.speed_1 - path.speed_2, "sliding", "#7f7f7f"),
     ):
         speed.plot(position, values, label=label, color=colour)
@@ -53,20 +52,18 @@ def draw(path: ContactPath, hertz: tuple[np.ndarray, np.ndarray] | None, target:
     for axes in (load, radius, speed):
         _mark(axes, places, with_names=axes is load)
     figure.suptitle(title, fontsize=10)
-    figure.savefig(target, dpi=150)
+    style.save(figure, target)
 
 
 def draw_run(run: GearRun, target: Path) -> None:
     """Draw the scalars of a run along the line of action into a file."""
-    from matplotlib.figure import Figure
-
     rows = [row for row in SCALARS if row[0] in run.scalars and np.isfinite(run.scalars[row[0]]).any()]
     figure = Figure(figsize=(7.0, 1.0 + 1.2 * len(rows)), layout="constrained")
     axes = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
     for axis, (name, factor, label) in zip(axes, rows, strict=True):
         values = factor * run.scalars[name]
-        axis.plot(1e3 * run.position, values, color=COLOUR, alpha=0.3, linewidth=0.5)
-        axis.plot(1e3 * run.position, run.averaged(values), color=COLOUR, linewidth=1.5)
+        axis.plot(1e3 * run.position, values, color=style.SINGLE, alpha=0.3, linewidth=0.5)
+        axis.plot(1e3 * run.position, run.averaged(values), color=style.SINGLE, linewidth=1.5)
         axis.set_ylabel(label, fontsize=7)
     c = run.path.pair.points["C"]
     for axis in axes:
@@ -74,29 +71,27 @@ def draw_run(run: GearRun, target: Path) -> None:
         _mark(axis, places, with_names=axis is axes[0])
     axes[-1].set_xlabel("position on the line of action from the pitch point [mm]")
     figure.suptitle(run.title, fontsize=10)
-    figure.savefig(target, dpi=120)
+    style.save(figure, target)
 
 
 def draw_damage(flanks: FlankDamage, pair: GearPair, target: Path, title: str) -> None:
     """Draw the damage along both flanks into a file."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     chosen = np.unique(np.linspace(0, len(flanks.depths) - 1, MAX_DEPTHS).round().astype(int))
     for k, axis in enumerate(figure.subplots(2, 1)):
-        for number, depth in enumerate(chosen) if flanks.damage[k] is not None else ():
-            colour = mpl.colormaps["viridis"](0.9 * number / max(len(chosen) - 1, 1))
-            label = f"{1e6 * flanks.depths[depth]:.0f} um deep"
-            style = {"color": colour, "linewidth": 0.7, "label": label}
-            axis.semilogy(1e3 * flanks.arcs[k], flanks.damage[k][depth], **style)
+        curves = zip(style.shades(len(chosen)), chosen, strict=True)
+        for colour, depth in curves if flanks.damage[k] is not None else ():
+            label = f"{1e6 * flanks.depths[depth]:.0f} µm deep"
+            axis.semilogy(
+                1e3 * flanks.arcs[k], flanks.damage[k][depth], color=colour, linewidth=0.7, label=label
+            )
         _mark(axis, {name: 1e3 * float(pair.flank_arcs(rho)[k]) for name, rho in pair.points.items()})
         axis.set_ylabel(f"damage of an engagement,\n{FLANKS[k]}")
         axis.set_xlabel("arc length along the flank from A [mm]")
     if flanks.damage[0] is not None:
         figure.axes[0].legend(fontsize=8)
     figure.suptitle(title, fontsize=10)
-    figure.savefig(target, dpi=120)
+    style.save(figure, target)
 
 
 def _mark(axis: Axes, places: dict[str, float], with_names: bool = True) -> None:

@@ -1,78 +1,228 @@
-"""Pressure over x and time, drawn into axes."""
+"""Pressure and temperatures over x and time; movies: GIF, or MP4 and WebM by ffmpeg."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.pictures.frames import ACROSS
-from ehlpetsc.pictures.labels import CONTACT_COLOUR
+from ehlpetsc.pictures import frames, style
+from ehlpetsc.pictures.style import ACROSS
+from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.contacts import in_contact
-from ehlpetsc.results.means import travelled
+from ehlpetsc.results.reader import Result
 
 MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
 MAX_MARKED_CONTACTS = 3000  # nodes in contact marked by dots, because single pixels would not be visible
-COLOUR_PERCENTILE = 99.9  # of pressure: upper end of the colours, without a few sharp peaks
+MAX_FILLED_CONTACT = 0.1  # of a map: larger areas in contact are outlined, as they would hide the pressure
+COLOUR_PERCENTILE = 99.9  # upper end of the colours, without a few sharp peaks
+MESH = dict(shading="nearest", rasterized=True)
+TEMPERATURES = {
+    "film_temperature": ("film", style.FILM),
+    "temperature_1": ("surface 1", style.SURFACES["1"]),
+    "temperature_2": ("surface 2", style.SURFACES["2"]),
+}
+HEIGHTS = (1, 1, 1, 1.5)  # of the panels of temperatures, the last one over time
+TEMPERATURE_SIZE, STEADY_SIZE = (8.4, 10.0), (8.4, 6.6)  # inches
+KELVIN = 273.15
 
 
-def space_time_map(axes, result, window, highest):
-    """Draw pressure over x and time with contacts marked; returns the image for a colour bar.
+def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
+    """Pressure over x and time, one panel for each result, with common colours."""
+    width, height = frames.SIZE
+    size = (width * max(1.0, 0.6 * len(results)), height)
+    figure, axes = style.new_figure(1, len(results), size, squeeze=False)
+    maps = [field_over_time(result, "pressure", frames.window([result], options)) for result in results]
+    highest = max(1e-9 * np.percentile(values, COLOUR_PERCENTILE) for *_, values in maps)
+    _, names, key = style.series_colours(results)
+    for panel, result, (columns, stride, values), name in zip(axes[0], results, maps, names, strict=True):
+        image = space_time_map(panel, result, columns, stride, 1e-9 * values, (0.0, highest), "viridis")
+        mark_contacts(panel, result, columns, stride)
+        if len(results) > 1:
+            panel.set_title(f"{key} = {name}" if key else name, fontsize="medium")
+    figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
+    if any(result.contact_count.any() for result in results):
+        mark = Line2D([], [], color=style.CONTACT, marker="s", ls="", ms=4, label="in contact")
+        axes[0][0].legend(handles=[mark], loc="upper left", fontsize="small")
+    title = str(results[0].attrs["title"]) if len(results) == 1 else ""
+    style.set_title(figure, title, style.conditions(results))
+    return figure
 
-    At most `MAX_MAP_ROWS` frames are drawn; contacts of the frames between them are also marked.
 
-    Parameters
-    ----------
-    axes : matplotlib Axes
-    result : Result
-    window : (float, float)
-        Limits of x/a.
-    highest : float
-        Pressure [GPa] at the upper end of the colours.
+def field_over_time(result: Result, name: str, window: tuple[float, float]) -> tuple[slice, int, np.ndarray]:
+    """Columns in view, stride of the drawn frames, and a field there, shape (frames, columns)."""
+    if len(result.time) < 2:
+        raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
+    stride = -(-len(result.time) // MAX_MAP_ROWS)
+    columns = style.in_view(result.x / result.attrs["a"], window)
+    return columns, stride, result[name][: len(result.time) : stride, columns].astype(float)
 
-    Raises
-    ------
-    OutputError
-        The result has one frame only.
-    """
-    x, time, pressure, columns, stride = _pressures(result, window)
-    rows = time[::stride]
-    mesh = dict(cmap="viridis", shading="nearest", rasterized=True)
-    image = axes.pcolormesh(x, rows, pressure, vmin=0.0, vmax=highest, **mesh)
-    touching, red = _contacts(result, columns, stride), ListedColormap([CONTACT_COLOUR])
-    axes.pcolormesh(x, rows, np.ma.masked_equal(touching, 0), **(mesh | {"cmap": red}))
-    row, node = np.nonzero(touching)
-    if len(row) < MAX_MARKED_CONTACTS:
-        axes.plot(x[node], rows[row], ".", color=CONTACT_COLOUR, ms=3, mew=0, rasterized=True)
-    scale = travelled(result)[-1] / result.attrs["a"] / max(time[-1], 1e-30)
-    constant = "steps/displacement_1" not in result
-    axes.set_xlabel(ACROSS)
-    axes.set_ylabel("time [µs]")
-    if constant and scale > 0.0:
+
+def space_time_map(
+    axes: Axes,
+    result: Result,
+    columns: slice,
+    stride: int,
+    values: np.ndarray,
+    limits: tuple[float | None, float],
+    colours: str,
+) -> ScalarMappable:
+    """Draw a field of every `stride`-th frame over x and time; returns the image for a colour bar."""
+    x, time = result.x[columns] / result.attrs["a"], 1e6 * result.time
+    low, high = limits
+    image = axes.pcolormesh(x, time[::stride], values, vmin=low, vmax=high, cmap=colours, **MESH)
+    axes.set(xlabel=ACROSS, ylabel="time [µs]", xlim=(x[0], x[-1]), ylim=(time[0], time[-1]))
+    scale = frames.travel_of(result)[-1] / max(time[-1], 1e-30)
+    if "displacement_1" not in result.scalars and scale > 0.0:
         travel = axes.secondary_yaxis("right", functions=(lambda t: t * scale, lambda x: x / scale))
         travel.set_ylabel("travel [a]")
-    axes.set_xlim(x[0], x[-1])
-    axes.set_ylim(time[0], time[-1])
     return image
 
 
-def colour_limit(results, window):
-    """Pressure [GPa] at the upper end of the colours of all results."""
-    return max(float(np.percentile(_pressures(result, window)[2], COLOUR_PERCENTILE)) for result in results)
+def mark_contacts(axes: Axes, result: Result, columns: slice, stride: int) -> None:
+    """Mark nodes in contact, also of the frames between the drawn ones; large areas by their outline."""
+    x, rows = result.x[columns] / result.attrs["a"], 1e6 * result.time[::stride]
+    touching = contacts_of_blocks(result, columns, stride)
+    if touching.mean() > MAX_FILLED_CONTACT:
+        axes.contour(x, rows, touching, [0.5], colors=style.CONTACT, linewidths=0.5)
+        return
+    red = ListedColormap([style.CONTACT])
+    axes.pcolormesh(x, rows, np.ma.masked_equal(touching, 0), cmap=red, **MESH)
+    row, node = np.nonzero(touching)
+    if len(row) < MAX_MARKED_CONTACTS:
+        axes.plot(x[node], rows[row], ".", color=style.CONTACT, ms=3, mew=0, rasterized=True)
 
 
-def _pressures(result, window):
-    """x/a and time [us] in view, pressure [GPa] of the drawn frames, their columns and stride."""
-    if len(result.time) < 2:
-        raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
-    x, time = result.x / result.attrs["a"], 1e6 * result.time
-    stride = -(-len(time) // MAX_MAP_ROWS)
-    in_view = np.flatnonzero((x >= window[0]) & (x <= window[1]))
-    columns = slice(in_view[0], in_view[-1] + 1)
-    pressure = 1e-9 * result["pressure"][: len(time) : stride, columns].astype(float)
-    return x[columns], time, pressure, columns, stride
-
-
-def _contacts(result, columns, stride):
+def contacts_of_blocks(result: Result, columns: slice, stride: int) -> np.ndarray:
     """1 where a node is in contact in any of `stride` frames, one row for every `stride` frames."""
     last = len(result.time)
     blocks = (slice(begin, min(begin + stride, last)) for begin in range(0, last, stride))
     return np.array([in_contact(result, block, columns).any(axis=0) for block in blocks], dtype=int)
+
+
+def draw_temperatures(results: list[Result], options: argparse.Namespace) -> Figure:
+    """Temperatures, pressure and film of one result at an instant, the hotter surface over x and time."""
+    if len(results) > 1:
+        raise OutputError(f"{len(results)} results; allowed: --temperatures of one")
+    result = results[0]
+    if missing := [name for name in TEMPERATURES if name not in result.fields]:
+        raise OutputError(
+            f"{result.path}: does not store {', '.join(missing)}: the case needs a table [heat], and "
+            "output.fields with them where it is given"
+        )
+    steady, view = len(result.time) == 1, frames.window(results, options)
+    size, heights = (STEADY_SIZE, HEIGHTS[:3]) if steady else (TEMPERATURE_SIZE, HEIGHTS)
+    figure, axes = style.new_figure(len(heights), 1, size, sharex=True, height_ratios=heights)
+    [index] = frames.choose_frames(results, options.step, options.time)
+    _temperatures_at(axes[0], result, index, view)
+    frames.pressure_and_film(axes[1:3], results, [index], [style.SINGLE], view)
+    frames.frame_legend(axes[1:3], result, index, style.SINGLE)
+    frames.mark_flow(axes[1], results, [index])
+    if not steady:
+        side = max("12", key=lambda name: np.nanmean(result.steps(f"temperature_{name}_mean")))
+        columns, stride, values = field_over_time(result, f"temperature_{side}", view)
+        limits = (None, float(np.percentile(values, COLOUR_PERCENTILE)))
+        image = space_time_map(axes[3], result, columns, stride, values, limits, "inferno")
+        figure.colorbar(image, ax=axes[3], label=f"temperature of\nsurface {side} [K]", pad=0.08)
+        axes[2].set_xlabel("")
+    style.set_title(figure, *frames.panel_title(results, [index]))
+    return figure
+
+
+def _temperatures_at(axes: Axes, result: Result, index: int, window: tuple[float, float]) -> None:
+    """Draw temperatures along the contact, in K and in degrees Celsius."""
+    x = result.x / result.attrs["a"]
+    columns = style.in_view(x, window)
+    for name, (label, colour) in TEMPERATURES.items():
+        axes.plot(x[columns], result.frame(name, index)[columns], color=colour, lw=1.0, label=label)
+    axes.set_ylabel("temperature [K]")
+    celsius = axes.secondary_yaxis("right", functions=(lambda t: t - KELVIN, lambda t: t + KELVIN))
+    celsius.set_ylabel("[°C]")
+    axes.grid(lw=0.3)
+    handles, names = axes.get_legend_handles_labels()
+    axes.legend(handles, names, fontsize="small", loc="upper left")
+
+
+MAX_FRAMES = 150
+RATE = 15  # frames per second
+DPI = 80
+EVEN_SIZE = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p"]  # of players
+CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
+
+
+def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
+    """Write at most `MAX_FRAMES` frames with common axes."""
+    last = len(results[0].time) - 1
+    chosen = np.unique(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int))
+    figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
+    window, limits = frames.window(results, options), _limits(results, chosen)
+    with recording(figure, path) as writer:
+        for index in chosen:
+            for panel in axes:
+                panel.clear()
+            indices = frames.choose_frames(results, time=results[0].time[index])
+            frames.fill_frame(axes, results, indices, window)
+            style.set_title(figure, *frames.panel_title(results, indices))
+            for panel, limit in zip(axes, limits, strict=True):
+                panel.set_ylim(0.0, limit)
+            grab(figure, writer)
+
+
+@contextlib.contextmanager
+def recording(figure: Figure, path: Path) -> Iterator[AbstractMovieWriter]:
+    """Context manager of the writer of a movie; see `grab`."""
+    writer = _writer(path)
+    with replacing(path, keep_ending=True) as temporary, _encoding(path):
+        with writer.saving(figure, temporary, DPI):
+            yield writer
+
+
+def grab(figure: Figure, writer: AbstractMovieWriter) -> None:
+    """Add a frame; the layout of the first one holds for all, so that the axes do not move."""
+    if figure.get_layout_engine() is not None:
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+    writer.grab_frame()
+
+
+@contextlib.contextmanager
+def _encoding(path: Path) -> Iterator[None]:
+    """Convert a failure of the encoder, as on a full disk, to an OutputError."""
+    try:
+        yield
+    except subprocess.CalledProcessError as error:
+        lines = str(error.stderr or error.output or "").strip().splitlines() or [f"status {error.returncode}"]
+        raise OutputError(f"{path}: not written, its encoder ended: {lines[-1]}") from None
+
+
+def _writer(path: Path) -> AbstractMovieWriter:
+    ending = path.suffix.lower()
+    if ending == ".gif":
+        return PillowWriter(fps=RATE)
+    if ending not in CODECS:
+        raise OutputError(f"{path}: allowed for a movie: .gif, {', '.join(CODECS)}")
+    if not FFMpegWriter.isAvailable():
+        raise OutputError(f"{path}: {ending} needs ffmpeg, which is not installed; without it, allowed: .gif")
+    return FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN_SIZE)
+
+
+def _limits(results: list[Result], chosen: np.ndarray) -> tuple[float, float]:
+    """Upper limits of the axes [GPa, µm] for all pressures and for the film inside the contact."""
+    film = 1e-9
+    for result in results:
+        inside = np.abs(result.x) <= result.attrs["a"]
+        shown = [index for index in chosen if index < len(result.time)]
+        film = max(film, *(result.frame("film_thickness", index)[inside].max() for index in shown))
+    pressure = max(np.nanmax(result.steps("p_max")) for result in results)
+    return 1.05e-9 * pressure, 1.15e6 * film

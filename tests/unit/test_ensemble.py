@@ -12,7 +12,7 @@ from support.made_results import change_case, make_result, with_solids
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.pictures.command import main as plot
-from ehlpetsc.pictures.ensemble import draw_ensemble
+from ehlpetsc.pictures.series import draw_ensemble
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 

@@ -12,7 +12,7 @@ from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.pictures.operating_points import operating_point
+from ehlpetsc.pictures.friction_curves import operating_point
 from ehlpetsc.results.means import both_fill, filled_from, means, travelled
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import pass_summary
@@ -80,7 +80,7 @@ def test_mean_friction_under_reversed_sliding_is_one_figure(reversal, capsys, tm
             "last line": means(result)["friction_coefficient"],
             "ensemble": run_scalars(result)["friction_coefficient"],
             "index": pass_summary(result)["friction_coefficient"],
-            "pictures": operating_point(result, 3.0).scalars["friction_coefficient"].mean,
+            "pictures": operating_point(result, 3.0).scalars["friction_coefficient"][0],
         }
     assert summary([str(reversal)]) == 0
     rows = csv.DictReader(capsys.readouterr().out.splitlines())

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from support.made_results import change_case, make_result
 
-from ehlpetsc.pictures.figures import FIGURES
-from ehlpetsc.pictures.stribeck import curves_by_contact
+from ehlpetsc.pictures.command import FIGURES
+from ehlpetsc.pictures.friction_curves import curves_by_contact
 from ehlpetsc.results.index import open_all
 
 HEAT = {"heat.bulk_temperature": 350.0}
@@ -20,7 +20,7 @@ RISES = {"film_temperature": 40.0, "temperature_1": 10.0, "temperature_2": 20.0}
 
 def drawn(kind, paths):
     with contextlib.ExitStack() as stack:
-        return FIGURES[kind](open_all(paths, stack), OPTIONS)
+        return FIGURES[kind][0](open_all(paths, stack), OPTIONS)
 
 
 def member(path, ratio, friction, heat=(), speed=5.0):

@@ -44,7 +44,7 @@ def found(tmp_path_factory):
 def test_report_opens_at_the_highest_pressure(found):
     assert found["errors"] == []
     assert found["first"]["pressure"] == pytest.approx(1.4)
-    assert found["first"]["when"] == "step 0, 0.000 µs, travel 0.00 a"
+    assert found["first"]["when"] == "step 0, 0 µs, travel 0.00 a"
 
 
 def test_slider_selects_the_instant_and_marks_the_map(found):

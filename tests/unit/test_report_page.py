@@ -12,7 +12,7 @@ from plotly.offline import get_plotlyjs
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures.page import report_data
+from ehlpetsc.pictures import report
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import read_result
 
@@ -69,7 +69,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
         assert frames["step"][frames["first"]] == r.step[plot_first(r)]
         facts, means = dict(data["facts"]), Totals.of_result(r).means
         assert facts["mean friction coefficient"] == f"{means['friction_coefficient']:.4g}"
-        assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.3g} %"
+        assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.4g} %"
         assert facts["oil"] == "5 mPa s, roelands" and "node-steps in contact" not in facts
     names = [figure["name"] for figure in data["steps"]["figures"]]
     assert names[:3] == ["friction coefficient", "contact share", "maximum pressure [GPa]"]
@@ -85,8 +85,8 @@ def plot_first(result):
 
 
 def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
-    monkeypatch.setattr(report_data, "MAX_NODES", 40)
-    monkeypatch.setattr(report_data, "MAX_ROWS", 9)
+    monkeypatch.setattr(report, "MAX_NODES", 40)
+    monkeypatch.setattr(report, "MAX_ROWS", 9)
     path = make_result(tmp_path / "r.h5", nodes=321)
     _, data = page(path)
     with read_result(path) as r:

@@ -43,17 +43,18 @@ function instantAndMap(frames) {
   const touching = k => row(fields.film_thickness, k).map((h, i) => (contact[k * n + i] ? h : NaN));
   const fine = Array.from({ length: 401 }, (_, i) => -1 + i / 200);
   const line = (name, colour, more) => ({ name, x, mode: "lines", line: { color: colour, width: 1.4 }, ...more });
-  const traces = [{ ...line("Hertz", GREY), x: fine, y: fine.map(v => frames.p0 * Math.sqrt(Math.max(0, 1 - v * v))), line: { color: GREY, dash: "dot" } }];
-  const moving = [];  // of each trace that changes with the instant: its values
+  const hertz = k => fine.map(v => frames.hertz[k][1] * Math.sqrt(Math.max(0, 1 - (v / frames.hertz[k][0]) ** 2)));
+  const traces = [], moving = [];  // each trace, and its values at an instant
   const add = (trace, values) => { moving.push(values); traces.push(trace); };
   const { pressure, contact_pressure: solids, film_thickness: film } = fields;
+  add({ ...line("Hertz", GREY), x: fine, line: { color: GREY, dash: "dot" } }, hertz);
   if (solids) add(line("of the solids", SOLIDS, { fill: "tozeroy", line: { color: SOLIDS, width: 0 } }), k => row(solids, k));
   if (pressure) add(line(solids ? "total pressure" : "pressure", BLUE), k => row(pressure, k));
   if (film) {
     add(line("film", BLUE, { yaxis: "y2", showlegend: false }), k => row(film, k));
     add({ name: "in contact", x, mode: "markers", yaxis: "y2", marker: { color: CONTACT, symbol: "triangle-down", size: 8 } }, touching);
   }
-  const highest = pressure ? Math.max(frames.p0, largest(pressure)) : frames.p0;
+  const highest = Math.max(largest(frames.hertz.map(([, p0]) => p0)), pressure ? largest(pressure) : 0);
   const thickest = film ? largest(film.filter((_, i) => Math.abs(x[i % n]) <= 1)) : 1;
   const box = chart("instant", 520, traces, {
     xaxis: { title: { text: "x/a" }, range: [x[0], x[n - 1]], anchor: "y2", zeroline: false },
@@ -64,8 +65,8 @@ function instantAndMap(frames) {
   const slider = document.getElementById("slider"), play = document.getElementById("play");
 
   function show(k) {
-    Plotly.restyle(box, { y: moving.map(values => values(k)) }, moving.map((_, i) => i + 1));
-    document.getElementById("when").textContent = many ? `step ${frames.step[k]}, ${time[k].toFixed(3)} µs, travel ${frames.travel[k].toFixed(2)} a` : "";
+    Plotly.restyle(box, { y: moving.map(values => values(k)) }, moving.map((_, i) => i));
+    document.getElementById("when").textContent = many ? `step ${frames.step[k]}, ${Number(time[k].toPrecision(4))} µs, travel ${frames.travel[k].toFixed(2)} a` : "";
     slider.value = k;
     if (map) Plotly.relayout(map, { "shapes[0].y0": time[k], "shapes[0].y1": time[k] });
   }

@@ -1,1 +1,0 @@
-"""HTML page of one result: template, style, script and data."""

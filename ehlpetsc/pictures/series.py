@@ -1,0 +1,217 @@
+"""Pictures of several runs: ensembles over seeds, and the passes of running-in."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ehlpetsc.analysis.ensemble import CONFIDENCE, Ensemble, bootstrap, ensembles
+from ehlpetsc.errors import OutputError
+from ehlpetsc.pictures import style
+from ehlpetsc.pictures.frames import frame_to_show
+from ehlpetsc.results.post_result import damage_beside
+from ehlpetsc.results.reader import Result
+from ehlpetsc.results.running_in import heights, pass_summary
+
+PANEL_SIZE = (3.1, 2.4)  # inches, of ensembles
+COLUMNS = 3
+PANELS = {  # of ensembles, by scalar: label, factor from SI units
+    "friction_coefficient": ("friction coefficient", 1.0),
+    "film_central": ("mean central film [µm]", 1e6),
+    "mean_gap_ratio": ("mean gap over the combined Rq", 1.0),
+    "h_min": ("minimum film [µm]", 1e6),
+    "p_max": ("maximum pressure [GPa]", 1e-9),
+    "contacts": ("nodes in contact", 1.0),
+    "contact_share": ("share of the load\non the solids", 1.0),
+    "contact_length": ("length in contact [µm]", 1e6),
+    "thin_length": ("length of thin film [µm]", 1e6),
+}
+RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
+PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
+FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
+MAX_SINGLE_PASSES = 30  # more passes are drawn as dots and means over several
+PASSES_PER_MEAN = 10
+MIN_ADDED = 1e-3  # of the area added by the first pass: smaller values are drawn at the edge
+
+
+def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) -> Figure:
+    """Runs, mean and interval of each scalar over the key that differs apart from seeds."""
+    all_ensembles = ensembles(results)
+    names = [name for name in PANELS if all(name in ensemble.scalars for ensemble in all_ensembles)]
+    if not names:
+        raise OutputError("no scalar that all runs have")
+    rows = -(-len(names) // COLUMNS)
+    size = (PANEL_SIZE[0] * COLUMNS + 1.2, PANEL_SIZE[1] * rows)
+    figure, axes = style.new_figure(rows, COLUMNS, size, squeeze=False)
+    at, label, ticks = _abscissae(all_ensembles)
+    span = np.ptp(at) or 1.0
+    for panel, name in zip(axes.flat, names, strict=False):
+        for x, ensemble in zip(at, all_ensembles, strict=True):
+            _draw_ensemble(panel, x, 0.03 * span, PANELS[name][1] * ensemble.scalars[name])
+        panel.set_ylabel(PANELS[name][0], fontsize="small")
+        panel.set_xlabel(label, fontsize="small")
+        panel.set_xlim(min(at) - 0.3 * span, max(at) + 0.3 * span)
+        panel.grid(axis="y", lw=0.3)
+        if ticks:
+            rotation = 20 if max(map(len, ticks)) > 6 else 0
+            panel.set_xticks(at, ticks, rotation=rotation, fontsize="small")
+    for panel in axes.flat[len(names) :]:
+        panel.set_axis_off()
+    interval = f"mean and its\n{100 * CONFIDENCE:g} % interval\n(bootstrap)"
+    handles = [
+        Line2D([], [], color=style.FAINT, marker="o", ls="", ms=3, label="one run"),
+        Line2D([], [], color=style.SINGLE, marker="o", ms=5, label=interval),
+    ]
+    style.legend_beside(axes[0, -1], handles)
+    style.set_title(figure, str(results[0].attrs["title"]))
+    return figure
+
+
+def _abscissae(all_ensembles: list[Ensemble]) -> tuple[list[float], str, list[str] | None]:
+    """Abscissas of the ensembles, their label, and tick labels if they are not numbers."""
+    keys = list(all_ensembles[0].values)
+    if len(keys) == 1:
+        values = [ensemble.values[keys[0]] for ensemble in all_ensembles]
+        if all(isinstance(value, int | float) for value in values):
+            return [float(v) for v in values], style.UNITS.get(keys[0], keys[0]), None
+    if len(all_ensembles) == 1:
+        return [0.0], f"{len(next(iter(all_ensembles[0].scalars.values())))} runs", [" "]
+    return list(map(float, range(len(all_ensembles)))), "", [ensemble.name for ensemble in all_ensembles]
+
+
+def _draw_ensemble(axes: Axes, x: float, shift: float, values: np.ndarray) -> None:
+    """Draw the runs left and their mean with its interval right of an abscissa."""
+    axes.plot(np.full(values.size, x - shift), values, "o", color=style.FAINT, ms=3, mew=0)
+    axes.plot(x + shift, values.mean(), "o", color=style.SINGLE, ms=5)
+    ends = bootstrap(values)
+    if np.isfinite(ends).all():
+        axes.vlines(x + shift, *ends, color=style.SINGLE, lw=1.6)
+
+
+def draw_running_in(results: list[Result], _options: argparse.Namespace | None) -> Figure:
+    """Heights and pressure before and after all passes of a run, and the changes in each pass."""
+    if len(results) < 2:
+        raise OutputError("one pass alone; allowed: --running-in of two passes or more")
+    if any("set_volume" not in result.scalars for result in results):
+        raise OutputError("solids that do not yield: no plastic deformation; needs contact.yield_pressure")
+    rows = [pass_summary(result) for result in results]
+    posts = [damage_beside(result) for result in results]
+    damages = [post.summary() for post in posts] if all(posts) else []
+    size = SIZE_WITH_DAMAGE if damages else RUNNING_IN_SIZE
+    figure, axes = style.new_figure(2, 3 if damages else 2, size)
+    draw_surface(axes[0, 0], results)
+    draw_pressure(axes[1, 0], results)
+    time = results[0].case.time
+    draw_plastic_area(axes[0, 1], rows, bool(time and time.pass_shift))
+    draw_contact(axes[1, 1], rows)
+    for row, side in zip(axes if damages else (), ("1", "2"), strict=False):
+        draw_fatigue(row[2], damages, side)
+    style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
+    return figure
+
+
+def draw_surface(axes: Axes, results: list[Result]) -> None:
+    """Draw the surface with the deepest indentation: original, after the first and after the last pass."""
+    sides = [side for side in ("1", "2") if heights(results[-1], side) is not None]
+    side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
+    s, original, last = heights(results[-1], side)
+    first, a = heights(results[0], side)[2], results[0].attrs["a"]
+    shown = np.abs(s - s[np.argmax(original - last)]) <= 0.5 * PROFILE_WIDTH * a
+    abscissa = 1e3 * (s.max() - s if results[0].attrs[f"u{side}"] > 0.0 else s - s.min())
+    for z, colour, name, dashes in (
+        (original, "k", "before", ":"),
+        (first, FIRST, "after pass 1", "-"),
+        (last, LAST, f"after pass {len(results)}", "-"),
+    ):
+        axes.plot(abscissa[shown], 1e6 * z[shown], dashes, color=colour, label=name)
+    around = "abscissa of the profile, around the deepest indentation [mm]"
+    axes.set(xlabel=around, ylabel=f"height of surface {side} [µm]")
+    style.legend_above(axes)
+
+
+def draw_pressure(axes: Axes, results: list[Result]) -> None:
+    """Draw the pressures of the first and the last pass at the maximum load on the solids of the first."""
+    first, last = results[0], results[-1]
+    frame = min(frame_to_show(first), len(first.time) - 1, len(last.time) - 1)
+    x = first.x / first.attrs["a"]
+    for result, colour, name in ((first, FIRST, "pass 1"), (last, LAST, f"pass {len(results)}")):
+        axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
+    axes.set(xlabel=style.ACROSS, ylabel="pressure [GPa]", xlim=(-1.2, 1.2))
+    style.legend_above(axes, title=f"at {style.digits(1e6 * first.time[frame])} µs")
+
+
+def draw_plastic_area(axes: Axes, rows: list[dict], is_shifted: bool) -> None:
+    """Draw the plastic area added by each pass, relative to the first, and Ra of both surfaces."""
+    numbers = np.arange(1, len(rows) + 1)
+    volumes = np.array([row["set_volume"] for row in rows])
+    axes.set_yscale("log")
+    draw_course(axes, numbers, np.maximum(np.diff(volumes, prepend=0.0) / volumes[0], MIN_ADDED), LAST, "o-")
+    axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
+    axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=_ticks(numbers))
+    axes.set_ylim(bottom=0.8 * MIN_ADDED)
+    ra_axes = axes.twinx()
+    names = {"1": "Ra 1", "2": "Ra 2, its stretch moves on" if is_shifted else "Ra 2"}
+    for side, marks in (("1", "^--"), ("2", "v:")):
+        if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
+            ra = [1e6 * row[side]["ra"] for row in rows]
+            thin = dict(color=style.SURFACES[side], ms=4 if len(rows) <= MAX_SINGLE_PASSES else 0, alpha=0.6)
+            ra_axes.plot(numbers, ra, marks, label=names[side], **thin)
+    ra_axes.set_ylabel("Ra [µm]")
+    style.legend_above(ra_axes, axes)
+
+
+def draw_course(axes: Axes, numbers: np.ndarray, values: np.ndarray, colour: str, marks: str) -> None:
+    """Draw a quantity over the passes; as dots and means above `MAX_SINGLE_PASSES`."""
+    if len(numbers) <= MAX_SINGLE_PASSES:
+        axes.plot(numbers, values, marks, color=colour, ms=4)
+        return
+    axes.plot(numbers, values, marks[0], color=colour, ms=3, alpha=0.4, mew=0)
+    begins = range(0, len(numbers), PASSES_PER_MEAN)
+    means = [np.mean(values[begin : begin + PASSES_PER_MEAN]) for begin in begins]
+    edges = [0.5, *(min(begin + PASSES_PER_MEAN, len(numbers)) + 0.5 for begin in begins)]
+    label = f"means of {PASSES_PER_MEAN} passes"
+    axes.stairs(means, edges, baseline=None, color=colour, lw=2.0, label=label)
+
+
+def draw_contact(axes: Axes, rows: list[dict]) -> None:
+    """Draw the means of the load fraction of the solids and of the contact length."""
+    numbers = np.arange(1, len(rows) + 1)
+    share, length = (
+        np.array([np.nan if row.get(name) is None else row[name] for row in rows])
+        for name in ("contact_share", "contact_length")
+    )
+    draw_course(axes, numbers, share, LAST, "o-")
+    axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=_ticks(numbers))
+    axes.set_ylim(0.0, 1.15 * np.nanmax(share, initial=0.0) or 1.0)
+    length_axes = axes.twinx()
+    draw_course(length_axes, numbers, 1e6 * length, style.SINGLE, "s--")
+    style.legend_above(axes)
+    length_axes.set_ylabel("length in contact [µm]", color=style.SINGLE)
+    # twice the room above, so that both curves stay apart
+    length_axes.set_ylim(0.0, 2.3e6 * np.nanmax(length, initial=0.0) or 1.0)
+    if not np.isfinite(share).any():
+        note = "the run ends before both surfaces\nfill the contact: no means over time"
+        axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
+
+
+def draw_fatigue(axes: Axes, damages: list[dict], side: str) -> None:
+    """Draw the maximum damage of a surface at each depth over the passes."""
+    numbers, depths = np.arange(1, len(damages) + 1), damages[0]["z_over_a"]
+    if any(side not in damage or damage["z_over_a"] != depths for damage in damages):
+        axes.set_axis_off()
+        return
+    for k, (depth, colour) in enumerate(zip(depths, style.shades(len(depths)), strict=True)):
+        maximum = [damage[side]["largest"][k] for damage in damages]
+        axes.semilogy(numbers, maximum, "o-", ms=4, color=colour, label=f"{depth:g} a")
+    axes.set(xlabel="pass", ylabel=f"maximum damage D of surface {side}", xticks=_ticks(numbers))
+    style.legend_beside(axes, title="depth")
+
+
+def _ticks(numbers: np.ndarray) -> Iterable[int]:
+    """At most ten of the numbers of passes."""
+    return numbers[:: -(-len(numbers) // 10)]
