@@ -19,7 +19,7 @@ test_fuzz test_cases test_lives_with_effects test_stops test_heat
 test_yielding test_lives_killed test_packaging test_asperities test_sweep test_figures test_derived_files
 test_waviness test_output test_starts test_mixed test_heat_with_effects test_dense_profiles
 test_body_point_temperatures test_outputs test_series_of_lives test_heat_runs test_post_criteria
-test_notebook test_case_fuzz test_docs test_life_regimes test_python test_case_text test_stored_figures
+test_notebook test_case_fuzz test_readme test_life_regimes test_python test_case_text test_stored_figures
 test_rough test_wear test_ensemble test_post_histories test_collisions test_compliant_runs test_order
 """.split()
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that

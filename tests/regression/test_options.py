@@ -244,10 +244,3 @@ def test_missing_packages_print_the_command_to_type(case, tmp_path):
     assert len(lines) == 2
     assert " numpy, scipy" in lines[0]
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
-
-
-def test_explain_prints_once_and_writes_no_file(case, tmp_path):
-    done = run("explain", case, cwd=tmp_path, ranks=2)
-    assert done.returncode == 0
-    assert done.stdout.count("Table 1, smooth and steady") == 1
-    assert [p.name for p in tmp_path.iterdir()] == ["case.toml"]

@@ -1,9 +1,15 @@
-"""Objects change themselves alone: no assignment to an attribute of another object, read from the source."""
+"""Objects change themselves alone, a scene loads what it needs, compiled code is that of the sources."""
 
 import ast
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from support import CASES
+from support.running import BARE, SCRIPT
+
+from ehlpetsc.compiled import drop_stale_code
 
 PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 FOREIGN = {"sys"}  # a module with settings of its own
@@ -54,3 +60,53 @@ def test_foreign_assignment_is_found():
     assert foreign_assignments("def f(solver):\n    solver.limited = True\n") == [(2, "solver.limited")]
     assert foreign_assignments("def f(self):\n    self.solver.watch = 1\n") == [(2, "self.solver.watch")]
     assert foreign_assignments("def f():\n    made = Thing()\n    made.x = 1\n    self.y = 2\n") == []
+
+
+MAX_MODULES = 110
+CODE = """
+import sys
+from ehlpetsc.__main__ import main
+status = main(sys.argv[1:])
+print(status, *sorted(name for name in sys.modules if name.startswith("ehlpetsc")), sep="\\n")
+"""
+
+
+def test_smooth_dry_contact_loads_few_modules(tmp_path):
+    words = [CASES / "dry_hertz.toml", "--set", "mesh.points_per_half_width=20"]
+    done = subprocess.run(
+        [sys.executable, "-c", CODE, *words], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True
+    )
+    status, *modules = done.stdout[done.stdout.rindex("wall=") :].split("\n")[1:-1]
+    assert status == "0", done.stderr
+    assert len(modules) <= MAX_MODULES
+    rooms = {name.split(".")[1] for name in modules if "." in name}
+    assert not rooms & {"post", "life", "analysis", "pictures"}
+    unneeded = {"series", "passes", "explain", "gauss_seidel", "mixed", "synthetic", "path"}
+    assert not {name.rpartition(".")[2] for name in modules} & unneeded
+
+
+def compiled_code_of(package, name):
+    kept = package / "room" / "__pycache__" / f"{name}.f-1.nbi"
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    kept.write_bytes(b"code")
+    return kept
+
+
+def test_compiled_code_of_changed_imported_and_moved_sources_is_removed(tmp_path):
+    package = tmp_path / "package"
+    room = package / "room"
+    law, other = compiled_code_of(package, "law"), compiled_code_of(package, "other")
+    (room / "base.py").write_text("C = 1\n")
+    (room / "law.py").write_text("from package.room.base import C\ndef f(): return C\n")
+    (room / "other.py").write_text("def f(): return 1\n")
+    drop_stale_code(package)
+    assert not law.exists() and not other.exists()  # of unknown sources
+    law, other = compiled_code_of(package, "law"), compiled_code_of(package, "other")
+    drop_stale_code(package)
+    assert law.exists() and other.exists()
+    (room / "base.py").write_text("C = 25\n")  # imported by law alone
+    drop_stale_code(package)
+    assert not law.exists() and other.exists()
+    (room / "other.py").rename(room / "moved.py")
+    drop_stale_code(package)
+    assert not other.exists()

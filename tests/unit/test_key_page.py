@@ -31,9 +31,7 @@ def test_every_key_of_the_cases_is_listed():
     ("name", "words"),
     [
         ("contact.load", "load: load per length of contact, w .*; a number >= 0.001"),
-        ("contact.load", "required without [gears] or [operation]"),
         ("fluid.viscosity", "required without grade"),
-        ("contact.youngs_modulus", "required without material"),
         ("asperity_height", 'contact.asperity_height: rms .* needs contact.model = "mixed"'),
         ("density", "fluid.grade.density: .*\n *heat.density: "),
     ],

@@ -92,14 +92,11 @@ def test_default_fatigue_constants_are_those_of_the_reference():
 @pytest.mark.parametrize(
     "keys, words",
     [
-        (
-            {"material": "16MnCr"},
-            'contact.material = "16MnCr": .*"16MnCr5", "100Cr6", "42CrMo4", "SAE4340"',
-        ),
+        ({"material": "16MnCr"}, 'contact.material = "16MnCr": .*"16MnCr5", "100Cr6"'),
         ({"material": None}, "contact.youngs_modulus .*missing"),
         (
-            {"material": None, "youngs_modulus": 2e11, "yield_pressure": "material"},
-            'contact.yield_pressure = "material": ',
+            {"youngs_modulus": 2e11, "material": None, "yield_pressure": "material"},
+            "contact.yield_pressure = ",
         ),
     ],
 )

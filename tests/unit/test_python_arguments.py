@@ -4,11 +4,9 @@ import threading
 
 import matplotlib
 import pytest
-from petsc4py import PETSc
 
 import ehlpetsc
 from ehlpetsc import Simulation, UsageError
-from ehlpetsc.nonlinear.options import RunOptions
 
 matplotlib.use("Agg")
 RIDGE = {"mesh.points_per_half_width": 20, "time.travel": 0.1}
@@ -41,23 +39,6 @@ def first(request):
     simulation = Simulation(ehlpetsc.load(request.config.rootpath / "cases" / "running_in.toml", PASS))
     list(simulation)
     return simulation
-
-
-def test_options_of_one_thread_do_not_reach_another():
-    """PETSc has one table for the process."""
-    found = []
-
-    def work():
-        with RunOptions(given={"ksp_rtol": "1e-6"}):
-            found.append(PETSc.Options().getString("ksp_rtol"))
-
-    other = threading.Thread(target=work)
-    with RunOptions(given={"ksp_rtol": "1e-3"}):
-        other.start()
-        other.join(0.2)
-        assert not found and PETSc.Options().getString("ksp_rtol") == "1e-3"
-    other.join()
-    assert found == ["1e-6"]
 
 
 def test_threads_may_solve_in_memory_at_once():

@@ -132,9 +132,7 @@ def at_the_root(monkeypatch, request):
         ["explain", ""],
         ["cases/dry_hertz.toml", "-ehl_set", f"title={NO_TEXT}"],
         ["cases/dry_hertz.toml", "-ehl_output", f"{NO_TEXT}.h5"],
-        ["cases/dry_hertz.toml", "-ksp_type", NO_TEXT],
         ["explain", "/dev/zero"],
-        ["explain", "cases"],
     ],
 )
 def test_unusual_input_is_refused_in_one_line(capfd, words):
