@@ -78,6 +78,14 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
     assert "contact share" in names and "time step [µs]" not in names  # what does not change is left out
 
 
+def test_template_words_in_a_title_stay_text(tmp_path, page):
+    """They were replaced by the data and by Plotly, in every place."""
+    path = make_result(tmp_path / "r.h5", title="{{data}} {{plotly}}", nodes=41, steps=3)
+    _, data = page(path)
+    assert data["title"] == "{{data}} {{plotly}}"
+    assert "<h1>{{data}} {{plotly}}</h1>" in path.with_suffix(".html").read_text(encoding="utf-8")
+
+
 def plot_first(result):
     from ehlpetsc.pictures.frames import frame_to_show
 
