@@ -150,9 +150,7 @@ def assert_as_uninterrupted(folder, whole):
             assert a.attrs["status"] == "done" and list(a.step) == list(b.step)
 
 
-@pytest.mark.parametrize(
-    "accident", [("SIGKILL@2", 0, 3), ("SIGKILL@1", 0, 9), ("SIGTERM@1", 0, 9), ("SIGINT@2", 0, 5)]
-)
+@pytest.mark.parametrize("accident", [("SIGKILL@2", 0, 3), ("SIGKILL@1", 0, 9), ("SIGTERM@1", 0, 9)])
 def test_same_command_continues_interrupted_passes(tmp_path, uninterrupted, accident):
     often = settings("output.checkpoint=1e-5") if accident[0] == "SIGKILL@1" else []
     ended = run(CASE, *BRIEF, *often, cwd=tmp_path, tampered=accident)
@@ -160,7 +158,6 @@ def test_same_command_continues_interrupted_passes(tmp_path, uninterrupted, acci
     done = run(CASE, *BRIEF, *often, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     restarted = done.stdout.index("restart: running_in.pass")
-    assert ("pass 1 of 2" in done.stdout) == (accident[0] != "SIGINT@2")
     assert restarted < done.stdout.index("ehlpetsc: done")
     if not often:
         assert_as_uninterrupted(tmp_path, uninterrupted)

@@ -41,9 +41,7 @@ def last_step(path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name, ranks, others, step", [("SIGTERM", 2, 0, 10), ("SIGUSR1", 0, 0, 30), ("SIGINT", 0, 0, 20)]
-)
+@pytest.mark.parametrize("name, ranks, others, step", [("SIGTERM", 2, 0, 10), ("SIGINT", 0, 0, 20)])
 def test_run_stopped_by_a_signal_restarts_on_other_ranks(whole, tmp_path, name, ranks, others, step):
     stopped = run(*CASE, cwd=tmp_path, ranks=ranks, tampered=(name, max(ranks - 1, 0), step))
     assert stopped.returncode == 4, stopped.stderr
@@ -169,14 +167,13 @@ def test_film_after_a_step_in_conditions_is_the_steady_one(tmp_path):
             np.testing.assert_allclose(*pressures, rtol=0, atol=1e-5 * steady.attrs["p0"])
 
 
-@pytest.mark.parametrize("speed, steps", [(7.5, 20), (2.5, 20)])
-def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path, speed, steps):
+def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path):
     """Roughness at the same travel is the same; the run ends at the travel of the case."""
     stopped = run(*CASE, cwd=tmp_path, tampered=("SIGTERM", 0, 20))
     assert stopped.returncode == 4, stopped.stderr
     faster = [
         *CASE,
-        *settings(f"motion.entrainment_speed={speed}"),
+        *settings("motion.entrainment_speed=7.5"),
         "-ehl_restart",
         "table1_rough.restart.h5",
     ]
@@ -187,7 +184,7 @@ def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path, speed, s
     done = run(*faster, "-ehl_output", "f.h5", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     with read_result(tmp_path / "f.h5") as after, read_result(whole / "table1_rough.h5") as one:
-        assert list(after.steps("step")) == list(range(21, 21 + steps))
+        assert list(after.steps("step")) == list(range(21, 41))
         for side, travelled in (("1", 0.5), ("2", 0.5 * 4.375 / 5.625)):
             # the profile where it lies at the end of both runs, by s = x - speed time of each file
             heights = []
