@@ -43,7 +43,9 @@ COMMANDS = {
     "life": Command("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
     "explain": Command("ehlpetsc.run.explain", (*READING, "h5py"), "a case in words, before it runs"),
     "keys": Command("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
-    "template": Command("ehlpetsc.case.templates", READING, "a commented case to begin with"),
+    "template": Command(
+        "ehlpetsc.case.key_page", READING, "a commented case to begin with", "template_command"
+    ),
     "docs": Command("ehlpetsc.docs", (), "these pages as one site, opened in a browser"),
 }
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import difflib
 import json
 import os
 import re
@@ -13,10 +11,6 @@ from typing import Any
 
 from ehlpetsc.errors import CaseError
 
-MAX_KEY_PARTS = 50  # of a dotted key
-MAX_BYTES = 2**26  # of a case file
-LONG_KEY = re.compile(rf"""(?<![\w"'.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){{{MAX_KEY_PARTS}}}""")
-
 
 def read_text(path: str | os.PathLike) -> str:
     """Text of a case file; raises `CaseError`."""
@@ -25,48 +19,20 @@ def read_text(path: str | os.PathLike) -> str:
     try:
         if not str(path):
             raise CaseError(["'': no name of a case file; allowed: a TOML file"])
-        with open(path, "rb") as file:  # a device has no size and no end
-            content = file.read(MAX_BYTES + 1)
-        if len(content) > MAX_BYTES:
-            raise CaseError([f"{path}: larger than {MAX_BYTES >> 20} MB; allowed: a TOML file of a case"])
-        return content.decode("utf-8-sig")
+        return Path(path).read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError([f"{path}: cannot be read: {reason}{_similar_name_hint(path)}"]) from None
-
-
-def _similar_name_hint(path: str | os.PathLike) -> str:
-    """Hint to a case file with a similar name in the same folder."""
-    with contextlib.suppress(OSError, ValueError):
-        neighbours = [p.stem for p in Path(path).parent.glob("*.toml") if p.name != Path(path).name]
-        close = difflib.get_close_matches(Path(path).stem, neighbours, n=1)
-        if close:
-            return f"; did you mean {Path(path).with_name(close[0] + '.toml')}?"
-    return ""
+        raise CaseError([f"{path}: cannot be read: {reason}"]) from None
 
 
 def parse_toml(path: str | os.PathLike, text: str) -> dict[str, Any]:
     """Tables of a TOML text, whose name in messages is `path`; raises `CaseError`."""
-    long_key = LONG_KEY.search(text)
-    if long_key:  # the time of tomllib grows as the square of their number
-        line = text.count("\n", 0, long_key.start()) + 1
-        raise CaseError(
-            [f"{path}: line {line}: a key of more than {MAX_KEY_PARTS} parts; allowed: table.key"]
-        )
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # some errors of number conversions pass tomllib
-        raise CaseError([f"{path}: not valid TOML: {error}{_decimal_comma_hint(text, str(error))}"]) from None
-
-
-def _decimal_comma_hint(text: str, error: str) -> str:
-    """Hint to a decimal comma in the line of an error."""
-    line = re.search(r"at line (\d+)", error)
-    typed = text.splitlines()[int(line[1]) - 1] if line else ""
-    decimal_comma = re.search(r"=\s*([+-]?\d+),(\d+)", typed)
-    return f"; a decimal point, as in {decimal_comma[1]}.{decimal_comma[2]}?" if decimal_comma else ""
+        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
 
 
 def is_plain(text: str) -> bool:

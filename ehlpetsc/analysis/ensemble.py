@@ -25,10 +25,9 @@ import numpy as np
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError, not_written
 from ehlpetsc.quantities import STEP_SCALARS
-from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.index import differences, open_all
 from ehlpetsc.results.means import filled_weights, mean
-from ehlpetsc.results.output_guard import check_derived
+from ehlpetsc.results.output_guard import atomic_write, check_derived
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 

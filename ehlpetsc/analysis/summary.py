@@ -21,10 +21,9 @@ import numpy as np
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import UsageError
 from ehlpetsc.quantities import STEP_SCALARS
-from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all, series_values
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
-from ehlpetsc.results.output_guard import check_derived
+from ehlpetsc.results.output_guard import atomic_write, check_derived
 from ehlpetsc.results.reader import Result
 
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")

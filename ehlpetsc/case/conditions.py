@@ -6,7 +6,6 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.case.checking import Tables, check, is_number
-from ehlpetsc.case.conditions_file import TableFault, read_table
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
@@ -22,6 +20,93 @@ from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.physics.conditions_table import ConditionsTable
+
+from ehlpetsc.units import UnitFault, factor
+
+SI = {key: OPERATION.keys[key].unit for key in COLUMNS}
+
+
+class TableFault(Exception):
+    """A table of conditions cannot be used; the message names the reason and the line."""
+
+
+def read_table(path: Path) -> tuple[dict[str, list[float]], list[int]]:
+    """Columns of a CSV file in SI units, by key of `COLUMNS`, and the line number of each row.
+
+    Raises `TableFault`.
+    """
+    rows = [(k, line.partition("#")[0].strip()) for k, line in enumerate(_text(path).splitlines(), 1)]
+    rows = [(k, line) for k, line in rows if line]
+    if not rows:
+        raise TableFault("no lines; allowed: a line of column names and one line a time")
+    separator = next((sign for sign in ";,\t" if sign in rows[0][1]), None)
+    head, keys, factors = rows[0], None, {}
+    if not _numbers(head[1], separator):
+        factors, rows = _factors(*head, separator), rows[1:]
+        keys = list(factors)
+    columns, lines = [], []
+    for number, line in rows:
+        values = _numbers(line, separator)
+        if keys is None and len(values) == len(COLUMNS):
+            keys = list(COLUMNS)
+        if keys is None:
+            names = ", ".join(names[0] for names in COLUMNS.values())
+            raise TableFault(f"line {number}: no column names; allowed: a first line with some of {names}")
+        if len(values) != len(keys):
+            raise TableFault(f"line {number}: {shown(line)}: allowed: {len(keys)} numbers")
+        columns.append(values)
+        lines.append(number)
+    return {
+        key: [row[k] * factors.get(key, 1.0) for row in columns] for k, key in enumerate(keys or ())
+    }, lines
+
+
+def shown(line: str) -> str:
+    """Line of a file, shortened for messages."""
+    return line if len(line) <= 40 else line[:37] + "..."
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise TableFault(f"not UTF-8 text (byte {error.start}); allowed: a CSV table") from None
+    except FileNotFoundError:
+        raise TableFault(f"no such file: {path}") from None
+    except (OSError, ValueError) as error:
+        raise TableFault(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def _numbers(line: str, separator: str | None) -> list[float]:
+    """Numbers of a line; empty if an entry is not a number."""
+    words = [word.strip() for word in line.split(separator)]
+    if separator == ";":
+        words = [word.replace(",", ".") for word in words]
+    try:
+        return [float(word) for word in words]
+    except ValueError:
+        return []
+
+
+def _factors(number: int, line: str, separator: str | None) -> dict[str, float]:
+    """Factor to SI units of each column named in a line, by key; units are in brackets: ``time [us]``."""
+    key_by_name = {name: key for key, names in COLUMNS.items() for name in names}
+    factors = {}
+    for word in line.split(separator):
+        name, _, unit = word.strip(" \"'").replace("(", "[").partition("[")
+        unit = unit.rstrip(")] ")
+        key = key_by_name.get(" ".join(name.lower().replace("_", " ").split()))
+        if key is None:
+            allowed = ", ".join(names[0] for names in COLUMNS.values())
+            raise TableFault(f"line {number}: column {shown(name.strip())!r}: allowed: {allowed}")
+        if key in factors:
+            raise TableFault(f"line {number}: a column twice")
+        try:
+            factors[key] = factor(unit or SI[key], SI[key])
+        except UnitFault as fault:
+            raise TableFault(f"line {number}: column {shown(word.strip())!r}: {fault}") from None
+    return factors
+
 
 MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
 
@@ -171,9 +256,4 @@ def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
     if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:
         return []
     fault = f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative"
-    points = mesh.points_per_half_width
-    cells = -2.0 * mesh.inlet * points
-    if abs(cells - round(cells)) < 1e-6:
-        return [f"{fault}; allowed: {-mesh.inlet:g}, as far out as mesh.inlet"]
-    end = math.ceil(-mesh.inlet * points) / points
-    return [f"{fault}; allowed: {end:.12g} with mesh.inlet = {-end:.12g}: a whole number of cells"]
+    return [f"{fault}; allowed: {-mesh.inlet:g}, as far out as mesh.inlet"]

@@ -6,8 +6,7 @@ import math
 from pathlib import Path
 
 from ehlpetsc.case.checking import Fault, Tables, check, is_number, values_of
-from ehlpetsc.case.tables.contact import LAYER_NODES
-from ehlpetsc.case.tables.oil import GRADE
+from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.keys import Values

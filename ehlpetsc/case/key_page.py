@@ -1,9 +1,10 @@
-"""Text of every key of a case file, from the table of keys: list, page, template with all keys."""
+"""Text of every key of a case file, from the table of keys: list and page; cases to begin with."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from pathlib import Path
 
 from ehlpetsc.case.messages import nearest, value_text
 from ehlpetsc.case.tables import CASE
@@ -11,12 +12,13 @@ from ehlpetsc.command_parser import CommandParser, exit_status, put
 from ehlpetsc.errors import UsageError
 from ehlpetsc.keys import Key, KeyTable
 
+EXAMPLES = ("roller", "gears")  # files beside this one
 PAGE = """# Every key of a case file
 
 `ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys asperity_height` one
-key; `ehlpetsc template roller` and `gears` print a case to begin with, `full` one with every key. Numbers are
-in SI units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys,
-values out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2.
+key; `ehlpetsc template roller` and `gears` print a case to begin with. Numbers are in SI units; a value may
+also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys, values out of bounds, nan and
+inf are rejected. A list of two is for surfaces 1 and 2.
 
 Symbols: a half width and p0 maximum pressure by Hertz, E' reduced modulus, h film thickness, p pressure, p_c
 pressure of the solids, q shear stress, theta void fraction, eta and rho viscosity and density, eta0 and rho0
@@ -134,6 +136,19 @@ def main(words: list[str]) -> int:
     )
     chosen = parser.parse_args(words)
     return exit_status("keys", lambda: put(keys(chosen.key), chosen))
+
+
+def template(kind: str = EXAMPLES[0]) -> str:
+    """Text of a case to begin with."""
+    return Path(__file__).with_name(f"{kind}.toml").read_text()
+
+
+def template_command(words: list[str]) -> int:
+    """Run the command ``ehlpetsc template``; returns its exit status."""
+    parser = CommandParser("template", "A commented case file to begin with.")
+    parser.add_argument("kind", nargs="?", choices=EXAMPLES, default=EXAMPLES[0])
+    chosen = parser.parse_args(words)
+    return exit_status("template", lambda: put(template(chosen.kind), chosen))
 
 
 if __name__ == "__main__":

@@ -10,15 +10,22 @@ from pathlib import Path
 from typing import Any, cast
 
 from ehlpetsc.case.checking import Fault, Tables, check, in_si
-from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
-from ehlpetsc.case.conditions_file import TableFault
+from ehlpetsc.case.combinations import member_tables, parsed, put, series_faults, settings_of
+from ehlpetsc.case.conditions import (
+    TableFault,
+    conditions_of,
+    reversal_faults,
+    with_columns,
+    with_reference_state,
+)
 from ehlpetsc.case.derived import resolve_measured_layer, with_derived, with_layer_stiffness
 from ehlpetsc.case.messages import shortened, show
-from ehlpetsc.case.profiles import profile_faults
-from ehlpetsc.case.settings import parsed, put
 from ehlpetsc.case.tables import CASE, GEARS, Case
-from ehlpetsc.errors import CaseError
+from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.gears.geometry import GearPair
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.toml_file import parse_toml, plain, read_text
 
 DICT_NAME = "case"  # name of a case without a file in messages
@@ -56,8 +63,6 @@ def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> 
     found += [Fault("", line) for line in profile_faults(folder, data.get("surface"), checked)]
     lines = _lines(path, faults + found)
     if checked and not lines and "series" in data:
-        from ehlpetsc.case.combinations import series_faults
-
         lines = series_faults(path, data, lambda member: _member_faults(path, member))
     if lines:
         raise CaseError(lines)
@@ -94,8 +99,6 @@ def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Cas
     For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
-    from ehlpetsc.case.combinations import member_tables, settings_of
-
     data, result = tomllib.loads(case.text), []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
@@ -158,3 +161,40 @@ def _lines(path: str | PathLike, faults: list[Fault]) -> list[str]:
     """Messages of faults, each once, without consequences of others."""
     own = [fault for fault in faults if not fault.is_consequence] or faults
     return list(dict.fromkeys(f"{path}: {fault.text}" for fault in own))
+
+
+def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
+    """Faults of the files or heights of both surfaces.
+
+    Without a case, as other tables have faults, the profiles are not compared with the contact.
+    """
+    faults = []
+    for side in SIDES:
+        table = surface.get(side) if isinstance(surface, dict) else None
+        if not isinstance(table, dict):
+            continue
+        key, kind = ("z", list) if "z" in table else ("file", str)
+        if isinstance(table.get(key), kind) and table[key]:
+            try:
+                _check_profile(folder, table, case)
+            except ProfileError as error:
+                faults.append(f"surface.{side}.{key} = {show(table[key])}: {error}")
+    return faults
+
+
+def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> None:
+    from ehlpetsc.surfaces.profile_checks import absurd  # smooth surfaces need none
+    from ehlpetsc.surfaces.samples import samples
+
+    spec, faults = check(PROFILE, table)
+    if faults:  # reported with its keys
+        return
+    if case is None or case.contact is None:
+        samples(folder, spec)
+        return
+    scales = Scales.of(case)
+    profile_samples = samples(folder, spec, scales.dx)
+    film = scales.h * expected_film(case, scales) if case.fluid else 0.0
+    fault = absurd(profile_samples, scales.a, scales.dx, scales.h, film)
+    if fault:
+        raise ProfileError(fault)

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from ehlpetsc.command_parser import CommandParser, exit_status
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.atomic_write import atomic_write
-from ehlpetsc.results.output_guard import PICTURES, check_derived
+from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 
 
 def arguments() -> CommandParser:
@@ -47,8 +46,9 @@ def run(chosen: argparse.Namespace) -> None:
     stresses = hertz(path, contact if isinstance(contact, dict) else {})
     target = _picture(chosen)
     if chosen.csv is not None:
-        head = ", ".join(COLUMNS).encode()
-        check_derived(Path(chosen.csv), [Path(chosen.case)], (".csv", ".txt"), "--csv", head)
+        check_derived(
+            Path(chosen.csv), [Path(chosen.case)], (".csv", ".txt"), "--csv", ", ".join(COLUMNS).encode()
+        )
     print("\n".join(rows(path, stresses)))
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(path).encode())

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.gears.losses import gear_loss_factor, ohlendorf_loss_factor
-from ehlpetsc.gears.path import describe
+from ehlpetsc.gears.path import describe, gear_loss_factor, ohlendorf_loss_factor
 from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 

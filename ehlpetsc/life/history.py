@@ -16,7 +16,6 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.atomic_write import os_reason, replacing
 from ehlpetsc.results.hdf5_file import (
     change,
     check_space,
@@ -26,6 +25,7 @@ from ehlpetsc.results.hdf5_file import (
     plain,
     put_fixed,
 )
+from ehlpetsc.results.output_guard import os_reason, replacing
 
 if TYPE_CHECKING:
     import h5py

@@ -19,8 +19,8 @@ from matplotlib.lines import Line2D
 from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.style import ACROSS
-from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
 MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map

@@ -19,9 +19,9 @@ from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.pictures.style import hertz_at
 from ehlpetsc.quantities import STEP_SCALARS
-from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import means
+from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.reader import Result
 

@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
-from ehlpetsc.results.atomic_write import replacing
 from ehlpetsc.results.index import distinguishing_names, series_values
+from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
 SURFACES = {"1": "#b35806", "2": "#1f4e79"}  # orange and blue, in every picture; pinion and wheel of gears

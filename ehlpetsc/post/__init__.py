@@ -15,7 +15,6 @@ _HOMES = {
     "damage": "fatigue.accumulate",
     "dang_van": "criteria.search",
     "equivalent_range": "fatigue.strain_life",
-    "largest_near": "fatigue.statistics",
     "out_of_plane": "stresses.half_plane",
     "pass_statistics": "passes",
     "rainflow": "fatigue.cycles",

@@ -21,7 +21,7 @@ from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, Counting
 from ehlpetsc.post.fatigue.cycles import RESIDUES
 from ehlpetsc.post.passes import note_damage, store_passes
-from ehlpetsc.post.run import ASPERITY_HALF_WIDTH, Job, run
+from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import check_output_path
 from ehlpetsc.results.post_result import SURFACES, PointTemperatures, PostResult, WeibullFit, post_path
@@ -45,8 +45,6 @@ HELP = {  # by destination
     "residue": "history repeated (default), or half cycles",
     "mean_stress": "morrow: with a floor to compression",
     "criterion": "also compute, beside the paper's damage: " + ", ".join(CRITERIA),
-    "within": "half widths either side of an asperity's peak in which its largest damage is sought "
-    f"(default {ASPERITY_HALF_WIDTH:g})",
     "jobs": "threads (default 1)",
     "pictures": "also draw PNG and SVG, in FOLDER or beside the result",
     "passes": "the results are passes of this surface against other parts or alignments of the other one: "
@@ -71,7 +69,6 @@ def _parser() -> CommandParser:
     add("--residue", choices=RESIDUES, default="closed")
     add("--mean-stress", choices=MEAN_STRESSES, default="none")
     add("--criterion", nargs="+", choices=CRITERIA, default=(), metavar="NAME")
-    add("--within", type=float, default=ASPERITY_HALF_WIDTH, metavar="W/A")
     add("--jobs", type=int, default=1, metavar="N")
     add("--pictures", nargs="?", const="", metavar="FOLDER")
     add("--passes", choices=SURFACES)
@@ -130,8 +127,6 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
             raise UsageError(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")
     if chosen.passes and len(files) < 2:
         raise UsageError("--passes: give the results of two passes or more")
-    if not 0 <= chosen.within < math.inf:
-        raise UsageError(f"--within {chosen.within:g}: must be 0 or more")
     if chosen.jobs < 1:
         raise UsageError(f"--jobs {chosen.jobs}: must be 1 or more")
 
@@ -192,7 +187,6 @@ def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> No
         Counting(chosen.count, chosen.residue, chosen.mean_stress),
         chosen.jobs,
         tuple(name for name in CRITERIA if name in chosen.criterion),
-        chosen.within,
         tuple(chosen.set),
     )
     start = time.perf_counter()

@@ -13,7 +13,6 @@ import numpy as np
 from ehlpetsc.post.fatigue.statistics import (
     CONFIDENCE,
     asperities,
-    largest_near,
     log_life,
     rank_correlation,
     weibull_bounds,
@@ -21,7 +20,7 @@ from ehlpetsc.post.fatigue.statistics import (
 )
 from ehlpetsc.post.prepare import Prepared
 from ehlpetsc.post.temperatures import point_temperatures
-from ehlpetsc.results.atomic_write import atomic_write
+from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import CRITERIA, SURFACES, WeibullFit, stored_names
 
 FORMAT_VERSION = 1
@@ -37,7 +36,7 @@ def main_surface(prepared: Prepared) -> str:
 
 
 def datasets_of(
-    prepared: Prepared, surface: str, values: np.ndarray, criteria: Sequence[tuple[str, str]], within: float
+    prepared: Prepared, surface: str, values: np.ndarray, criteria: Sequence[tuple[str, str]]
 ) -> tuple[dict[str, np.ndarray], list[str]]:
     """Datasets of a surface by name, and notes.
 
@@ -47,8 +46,6 @@ def datasets_of(
         Damage, cycles, peak range and columns of criteria, shape (depths, points, 3 ...).
     criteria
         Pairs (criterion, column) after the first three columns.
-    within
-        Half widths on either side of a peak in which the damage of its asperity is the maximum.
     """
     passed = prepared.motions[surface].complete
     found = {
@@ -64,7 +61,7 @@ def datasets_of(
             pairs = zip(values[:, passed, 0], values[:, passed, index], strict=True)
             ranks = np.array([rank_correlation(paper, other) for paper, other in pairs])
             found[f"criteria/{name}/{surface}_rank_correlation"] = ranks
-    of_asperities, notes = _of_asperities(prepared, surface, values[..., 0], within)
+    of_asperities, notes = _of_asperities(prepared, surface, values[..., 0])
     found |= of_asperities
     if surface in prepared.loads.heated([surface]):
         temperatures = point_temperatures(prepared.loads, surface, prepared.motions[surface], prepared.s.size)
@@ -73,7 +70,7 @@ def datasets_of(
 
 
 def _of_asperities(
-    prepared: Prepared, surface: str, damage: np.ndarray, within: float
+    prepared: Prepared, surface: str, damage: np.ndarray
 ) -> tuple[dict[str, np.ndarray], list[str]]:
     loads, depths = prepared.loads, prepared.settings.depths
     profile = loads.profiles[surface]
@@ -84,7 +81,6 @@ def _of_asperities(
         f"asperities/{surface}_s": peaks.s,
         f"asperities/{surface}_height": peaks.height,
         f"asperities/{surface}_damage": under,
-        f"asperities/{surface}_largest": largest_near(prepared.s, damage, peaks.s, within * loads.a),
         f"weibull/{surface}_at_least_one": at_least_one,
         f"weibull/{surface}_undamaged": (under == 0).sum(axis=1),
     }
@@ -118,7 +114,7 @@ def _distribution(under: np.ndarray) -> dict[str, np.ndarray]:
     return found
 
 
-def attributes_of(prepared: Prepared, within: float) -> dict[str, Any]:
+def attributes_of(prepared: Prepared) -> dict[str, Any]:
     """Root attributes: provenance and scales of the result."""
     loads = prepared.loads
     mean = (loads.speeds["1"] + loads.speeds["2"]) / 2
@@ -133,7 +129,6 @@ def attributes_of(prepared: Prepared, within: float) -> dict[str, Any]:
         "p0": loads.p0,
         "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
         "every": prepared.every,
-        "within": within,
         "bounds_level": CONFIDENCE,
         **{f"speed_{name}": loads.speeds[name] for name in prepared.motions},
     }

@@ -16,9 +16,8 @@ import numpy as np
 from ehlpetsc.case.loading import stored_case
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.contents import write_result
-from ehlpetsc.results.atomic_write import atomic_write
 from ehlpetsc.results.index import read_index
-from ehlpetsc.results.output_guard import Lock
+from ehlpetsc.results.output_guard import Lock, atomic_write
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 

@@ -19,10 +19,6 @@ DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5, 0.7, 1.0)  # z/a: down to the st
 MAX_POINTS = 5_000_000
 MIN_REPRESENTATIVE_POINTS = 30  # of a surface
 END_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
-MIN_SPEED = 1e-3  # of the faster surface's speed: slower surfaces take too long to pass
-DAMAGE_LOSS = {2: (5, 6), 4: (16, 14), 8: (35, 24)}
-# % of the median point's damage at z/a = 0 and 0.01, by steps between frames: cases/table1_damage.toml,
-# thinned by tests/benchmarks/post_every.py
 
 
 class Settings(NamedTuple):
@@ -132,33 +128,19 @@ def _warn(loads: Loads, every: int, motions: dict[str, Passage], report: Callabl
     if loads.status != "done":
         report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
     if every > 1:
-        steps = min(DAMAGE_LOSS, key=lambda studied: abs(studied - every))
-        top, below = DAMAGE_LOSS[steps]
         report(
-            f"warning: stored with output.every = {every}: peaks between frames are lost; with every "
-            f"{steps} two measured surfaces lost {top} % of a typical point's damage at z = 0 and {below} % "
-            "at z/a = 0.01, more where damage is largest"
+            f"warning: stored with output.every = {every}: peaks between frames are lost, "
+            "and damage is too small"
         )
     for surface, motion in motions.items():
         passed = np.count_nonzero(motion.complete)
         if not passed:
             report(
-                f"warning: no point of surface {surface} passed the whole contact: its damage is nan"
-                f"{_travel_needed(loads, surface, 'lets some through')}"
+                f"warning: no point of surface {surface} passed the whole contact: its damage is nan; "
+                "raise time.travel"
             )
         elif passed < MIN_REPRESENTATIVE_POINTS:
             report(
                 f"warning: only {passed} point{'s' if passed > 1 else ''} of surface {surface} passed "
-                "the whole contact, and its damage is theirs"
-                f"{_travel_needed(loads, surface, 'lets a half width through', 1.0)}"
+                "the whole contact, and its damage is theirs; raise time.travel"
             )
-
-
-def _travel_needed(loads: Loads, surface: str, why: str, passed: float = 0.0) -> str:
-    """Text of the travel for `passed` half widths of a surface to cross the mesh; "" if it hardly moves."""
-    distances = {name: abs(travelled[-1] - travelled[0]) for name, travelled in loads.travelled.items()}
-    distance, longest = distances[surface], max(distances.values())
-    if distance < MIN_SPEED * longest:
-        return ""
-    width = (loads.x[-1] - loads.x[0]) / loads.a + passed
-    return f"; time.travel = {np.ceil(10 * width * longest / distance + 0.5) / 10:g} or more {why}"

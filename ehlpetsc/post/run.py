@@ -24,7 +24,6 @@ from ehlpetsc.post.stresses.histories import HistoryCollector, runs_of_points, w
 from ehlpetsc.results.post_result import SURFACES, PostResult
 
 MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
-ASPERITY_HALF_WIDTH = 0.02  # half widths on either side of a peak, over which the damage is the maximum
 DEPTHS_AT_ONCE = 4  # with common reading and transforms of the loads
 
 
@@ -42,7 +41,6 @@ class Job(NamedTuple):
     counting: Counting = Counting()
     jobs: int = 1
     criteria: tuple[str, ...] = ()
-    within: float = ASPERITY_HALF_WIDTH
     settings: tuple[str, ...] = ()
 
     def overrides(self) -> list:
@@ -137,11 +135,11 @@ def run(
         depths = np.array(prepared.settings.depths)
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": depths}
         for surface, values in computed.items():
-            found, notes = datasets_of(prepared, surface, values, columns(job.criteria), job.within)
+            found, notes = datasets_of(prepared, surface, values, columns(job.criteria))
             datasets |= found
             for note in notes:
                 report(note)
-        attributes = attributes_of(prepared, job.within) | _settings_of(job, loads.case)
+        attributes = attributes_of(prepared) | _settings_of(job, loads.case)
         write_result(job.output, datasets, attributes | {"fingerprint": identity})
 
 

@@ -13,9 +13,16 @@ import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.atomic_write import atomic_write, remove_stale
 from ehlpetsc.results.hdf5_file import open_for_reading
-from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, check_output_path, exists, inputs_of
+from ehlpetsc.results.output_guard import (
+    OVERWRITE_ADVICE,
+    Lock,
+    atomic_write,
+    check_output_path,
+    exists,
+    inputs_of,
+    remove_stale,
+)
 from ehlpetsc.results.reader import Result, read_result
 
 if TYPE_CHECKING:

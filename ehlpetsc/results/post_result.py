@@ -47,9 +47,6 @@ DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "asperities/{n}_s": Dataset("m", "body coordinate of asperity peaks", "peak"),
     "asperities/{n}_height": Dataset("m", "height of asperity peaks", "peak"),
     "asperities/{n}_damage": Dataset("1", "damage under asperity peaks, at the nearest body point", "z peak"),
-    "asperities/{n}_largest": Dataset(
-        "1", "largest damage near asperity peaks, within the root attribute within (z/a)", "z peak"
-    ),
     "criteria/{criterion}/{n}_damage": Dataset("1", "damage of one pass on the worst plane", "z s"),
     "criteria/{criterion}/{n}_inclination": Dataset(
         "degrees", "of the worst plane's normal, from x towards z in the section", "z s"

@@ -205,17 +205,6 @@ class Result:
         value, stored = (time, self.time) if step is None else (step, self.step)
         return int(np.argmin(np.abs(stored - value)))
 
-    def contact_rate(self) -> np.ndarray:
-        """Contacts per millisecond at each node, Q of Holmes et al. 2005, figure 7; shape (nx,).
-
-        Every time step in contact counts as one contact, so that Q increases as the time step decreases. An
-        OutputError if the run is steady.
-        """
-        duration = np.nansum(self.steps("dt"))
-        if not duration > 0.0:
-            raise OutputError(f"{self.path}: a steady solution has no contacts per millisecond")
-        return self.contact_count / (1e3 * duration)
-
     def profile(self, surface: str) -> tuple[np.ndarray, np.ndarray, float] | None:
         """Roughness of surface "1" or "2" as ``(s, z, speed)``; None if the surface is smooth."""
         name = f"surface/{surface}"

@@ -15,9 +15,8 @@ import h5py
 import numpy as np
 
 from ehlpetsc.errors import OutputError
-from ehlpetsc.results.atomic_write import atomic_write, os_reason
 from ehlpetsc.results.hdf5_file import open_for_reading, plain
-from ehlpetsc.results.output_guard import OVERWRITE_ADVICE
+from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write, os_reason
 
 VERSION = 4  # of the format
 HEADER_BYTES = 512

@@ -22,9 +22,9 @@ import numpy as np
 from ehlpetsc.errors import OutputError
 from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS, of_every_case
 from ehlpetsc.quantity import Field
-from ehlpetsc.results.atomic_write import os_reason, replacing
 from ehlpetsc.results.hdf5_file import change, check_space, create, extend, put_fixed
 from ehlpetsc.results.means import means
+from ehlpetsc.results.output_guard import os_reason, replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 

@@ -1,4 +1,4 @@
-"""Checks of profiles: resolution by the mesh, times at which they reach and fill the contact."""
+"""Checks of profiles: units, resolution by the mesh, times at which they reach and fill the contact."""
 
 from __future__ import annotations
 
@@ -14,14 +14,53 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
     from ehlpetsc.surfaces.samples import Samples
+from typing import TYPE_CHECKING
 
-SPIKE_RQ_RATIO = 4.0  # distance of a spike from its surroundings over Rq
-MAX_WINDOW = 129  # points of a window whose median is exact: the work grows as points times window
+if TYPE_CHECKING:
+    from ehlpetsc.surfaces.samples import Samples
+
+
+MAX_SPACING = 0.25  # half widths between two points: wider than asperities
+MAX_RQ = 0.1  # half widths
+MAX_RQ_RATIO = 30.0  # Rq over the elastic approach a^2/R, or over the film
+MAX_SLOPE = 1.0  # root mean square
+
+
+def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) -> str | None:
+    """Message on a profile that is implausible for a contact, mostly by a wrong unit; None: plausible.
+
+    Parameters
+    ----------
+    a, dx
+        Half width and spacing of the mesh [m].
+    approach, film
+        a^2/R and expected film [m].
+    """
+    rq = float(samples.z.std())
+    slope = float(np.sqrt(np.mean((np.diff(samples.z) / np.diff(samples.X)) ** 2)))
+    highest = min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film))
+    if samples.spacing > MAX_SPACING * a:
+        fault = f"points {_um(samples.spacing)} apart beside a half width of {_um(a)}"
+    elif rq > highest:
+        fault = (
+            f"Rq {_um(rq)} beside a half width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
+        )
+    elif slope > MAX_SLOPE:
+        fault = f"slopes of {slope:.3g} in the root mean square"
+    else:
+        return None
+    return f'{fault}: not a profile of this contact; is it in another unit, unit = "um"?'
+
+
+def _um(length: float) -> str:
+    return f"{1e6 * length:.3g} um"
+
+
 MAX_UNRESOLVED = 0.01  # of the height variance: more in unresolved wavelengths causes a warning
 
 
 def mesh_warnings(rough: Roughness | None, scales: Scales) -> list[str]:
-    """Warnings of height variance and spikes that the mesh does not resolve, with values."""
+    """Warnings of height variance that the mesh does not resolve, with values."""
     notes = []
     for side in ("1", "2"):
         profile = rough.side(side) if rough else None
@@ -36,68 +75,7 @@ def mesh_warnings(rough: Roughness | None, scales: Scales) -> list[str]:
                 f"points_per_half_width = {needed_points(profile, scales, MAX_UNRESOLVED)} brings that under "
                 f"{100 * MAX_UNRESOLVED:.0f} %"
             )
-        if profile.given.measured:
-            notes += _spike_warning(side, profile.given, scales.dx)
     return notes
-
-
-def _spike_warning(side: str, samples: Samples, dx: float) -> list[str]:
-    count, highest, abscissa = spikes(samples, dx)
-    if not count:
-        return []
-    return [
-        f"surface.{side}: spikes narrower than a cell of the mesh ({dx * 1e6:.2f} um), up to "
-        f"{highest * 1e6:.3g} um beside their surroundings, {count} points, the first at "
-        f"{abscissa * 1e3:.4g} mm: they vanish between nodes; short_cutoff takes them off, "
-        "a finer mesh carries them"
-    ]
-
-
-def spikes(samples: Samples, dx: float) -> tuple[int, float, float]:
-    """Points of spikes and pits narrower than a cell, by a running median over twice its width.
-
-    Parameters
-    ----------
-    dx
-        Spacing of the mesh [m].
-
-    Returns
-    -------
-    highest, abscissa
-        Maximum distance from the median; abscissa of its first point [m].
-    """
-    window = 2 * round(dx / samples.spacing) + 1
-    if not samples.measured or window < 3:  # the mesh is finer than the profile
-        return 0, 0.0, 0.0
-    rq, samples = samples.z.std(), samples.source or samples
-    window = 2 * round(dx / samples.spacing) + 1
-    deviation = np.abs(samples.z - _running_median(samples.z, min(window, samples.z.size)))
-    in_spike = deviation > SPIKE_RQ_RATIO * rq
-    if not in_spike.any():
-        return 0, 0.0, 0.0
-    return int(in_spike.sum()), float(deviation.max()), float(samples.X[in_spike.argmax()])
-
-
-def _running_median(z: np.ndarray, window: int) -> np.ndarray:
-    """Medians over a window around each point; for wide windows medians of medians of parts.
-
-    Parameters
-    ----------
-    z
-        Shape (n,).
-    window
-        Number of points.
-    """
-    from scipy.ndimage import median_filter
-
-    size = window // MAX_WINDOW + 1
-    if size == 1:
-        return median_filter(z, window, mode="mirror")
-    block_count = z.size // size
-    block_medians = np.median(z[: block_count * size].reshape(block_count, size), axis=1)
-    return median_filter(block_medians, window // size | 1, mode="mirror")[
-        np.minimum(np.arange(z.size) // size, block_count - 1)
-    ]
 
 
 def needed_points(profile: Profile, scales: Scales, unresolved: float) -> int:

@@ -20,7 +20,7 @@ from ehlpetsc.run.cli import parse
 def kill_at_index(rank, count):
     from mpi4py import MPI
 
-    from ehlpetsc.results import atomic_write
+    from ehlpetsc.results import output_guard
 
     replace, seen = os.replace, []
 
@@ -30,7 +30,7 @@ def kill_at_index(rank, count):
             os.kill(os.getpid(), signal.SIGKILL)
         replace(beside, path)
 
-    atomic_write.os = SimpleNamespace(**{name: getattr(os, name) for name in dir(os)} | {"replace": killing})
+    output_guard.os = SimpleNamespace(**{name: getattr(os, name) for name in dir(os)} | {"replace": killing})
 
 
 def tamper(accident, rank, step):

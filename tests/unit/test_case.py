@@ -213,14 +213,6 @@ def test_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
     assert line.startswith(f'{path}: surface.1.file = "p.csv": ') and words in line
 
 
-@pytest.mark.parametrize("typed, meant", [("table1_ruff.toml", "table1_rough.toml"), ("nothing.toml", None)])
-def test_mistyped_file_name_has_a_hint(typed, meant):
-    with pytest.raises(CaseError) as error:
-        case.load(CASES / typed)
-    hint = f"; did you mean {CASES / meant}?" if meant else ""
-    assert error.value.faults == [f"{CASES / typed}: cannot be read: No such file or directory{hint}"]
-
-
 def test_needs_that_are_not_met_are_named():
     assert fault(SMOOTH, "wear.coefficient=1e-18").endswith('wear: needs contact.model = "mixed" and [time]')
     mixed = ("contact.model='mixed'", "contact.boundary_film=1e-8", "contact.asperity_height=2e-8")

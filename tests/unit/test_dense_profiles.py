@@ -11,7 +11,6 @@ from support import ROOT
 from ehlpetsc.surfaces import filters
 from ehlpetsc.surfaces.filters import MAX_POINTS_PER_CELL, MIN_THINNED_POINTS, thinned
 from ehlpetsc.surfaces.profile import Profile
-from ehlpetsc.surfaces.profile_checks import _running_median, spikes
 from ehlpetsc.surfaces.samples import Samples
 
 # a small process between: a child's largest memory begins with that of the process that started it
@@ -69,26 +68,6 @@ def test_filter_of_long_profiles_equals_that_of_short_ones(monkeypatch, cutoff):
     long = filters.low_pass(X, z, cutoff)
     monkeypatch.setattr(filters, "MAX_EXACT_LENGTH", 10**9)
     np.testing.assert_allclose(long, filters.low_pass(X, z, cutoff), rtol=0.0, atol=1e-7)
-
-
-def test_running_median_of_blocks_approximates_the_full_one():
-    X, z = waves(60_000, 1e-3, [4e-4, 1.3e-4])
-    z += 1e-9 * np.random.default_rng(2).normal(size=z.size)
-    window = 601
-    slow = np.array([np.median(z[max(k - 300, 0) : k + 301]) for k in range(300, z.size - 300, 97)])
-    np.testing.assert_allclose(_running_median(z, window)[300:-300:97], slow, rtol=0.0, atol=2e-9)
-
-
-def test_spike_narrower_than_a_cell_is_found_in_a_dense_profile():
-    X, z = waves(1_000_000, 1e-3, [1e-4])
-    spoiled = z.copy()
-    spoiled[700_000:700_200] += 3e-6  # 0.2 um wide
-    assert spikes(Samples(X, z, True, True), 1.5e-6) == (0, 0.0, 0.0)
-    X_thin, z_thin = thinned(X, spoiled, 1.5e-6)
-    given = Samples(X_thin, z_thin, True, True, source=Samples(X, spoiled, True, True))
-    count, highest, place = spikes(given, 1.5e-6)
-    assert count == 200 and highest == pytest.approx(3e-6, rel=0.01)
-    assert place == pytest.approx(0.7e-3, rel=1e-5)
 
 
 def dense(folder, n, step):

@@ -18,7 +18,7 @@ from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.command import main as life
 from ehlpetsc.life.driver import run_life
 from ehlpetsc.pictures.command import main as plot
-from ehlpetsc.results.atomic_write import replacing
+from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.restart_file import save_restart
 
 CASE = ROOT / "cases" / "dry_hertz.toml"

@@ -14,7 +14,7 @@ from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.command import main
 from ehlpetsc.gears.load_sharing import relief_ratio
-from ehlpetsc.gears.losses import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
+from ehlpetsc.gears.path import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.pictures.gears import draw_damage
 from ehlpetsc.post.stresses.body_points import body_points, passage

@@ -9,8 +9,8 @@ import pytest
 from support import ROOT
 
 from ehlpetsc.case import key_page
+from ehlpetsc.case.key_page import template
 from ehlpetsc.case.loading import load
-from ehlpetsc.case.templates import template
 from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.laws import density
 
@@ -50,7 +50,7 @@ def test_refused_density_constants_explain_the_textbook_form(tmp_path):
     np.testing.assert_allclose(density(p, fluid)[0], 1 + 0.6e-9 * p / (1 + 1.7e-9 * p), rtol=1e-14)
 
 
-@pytest.mark.parametrize("kind", ["roller", "gears", "full"])
+@pytest.mark.parametrize("kind", ["roller", "gears"])
 def test_template_is_a_case(tmp_path, kind):
     path = tmp_path / "mine.toml"
     path.write_text(template(kind))

@@ -142,7 +142,6 @@ def test_frames_are_thinned_and_steps_are_not(tmp_path):
         np.testing.assert_array_equal(result.steps("step"), range(1, 101))
         np.testing.assert_array_equal(result.contact_count, [100 // (k + 1) for k in range(NX)])
         assert result.frame("pressure", -1)[3] == 100.03
-        np.testing.assert_allclose(result.contact_rate(), result.contact_count / 100e3)  # dt is 1 s
         assert result.nearest_frame(step=44) == 3
         assert result.nearest_frame(time=0.0) == 0
         assert result.profile("2") is None

@@ -9,7 +9,7 @@ from support.made_loads import Scene, write
 from support.made_results import make_result
 
 from ehlpetsc.errors import ExitStatus, PostError
-from ehlpetsc.post import largest_near, pass_statistics
+from ehlpetsc.post import pass_statistics
 from ehlpetsc.post.command import main
 from ehlpetsc.post.passes import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
@@ -31,18 +31,6 @@ def test_miners_sum_reaches_one_after_the_expected_passes():
     known = pass_statistics(damages[:, None])
     drawn = np.cumsum(rng.choice(damages, 20000))
     assert np.searchsorted(drawn, 1.0) == pytest.approx(known.life[0], rel=0.1)
-
-
-def test_largest_damage_near_a_peak():
-    s = np.linspace(0, 1, 11)
-    damage = np.array([[0, 5, 0, 1, 0, 0, 9, 0, 0, np.nan, np.nan]], float)
-    places = [0.31, 0.95]
-    assert largest_near(s, damage, places, 0.05)[0][0] == 1
-    assert largest_near(s, damage, places, 0.25)[0][0] == 5
-    assert largest_near(s, damage, places, 0.3)[0][0] == 9
-    assert largest_near(s, damage, places, 0.0)[0][0] == 1  # the nearest point always counts
-    assert np.isnan(largest_near(s, damage, places, 0.05)[0][1])
-    assert largest_near(s, damage[0], places, 0.2).shape == (2,)
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """The command post: its result file, faults, and outputs."""
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -133,14 +132,14 @@ def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
 def test_thinned_frames_are_a_warning(scene, tmp_path, capsys):
     assert main([str(write(tmp_path / "a.h5", scene, every=4))]) == 0
     message = capsys.readouterr().err
-    assert re.search(r"output\.every = 4: .* 16 % .* z = 0 .* 14 % .* z/a", message)
+    assert "output.every = 4: peaks between frames are lost" in message
 
 
 def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
     frames = int(1.1 * 4 * 40 / 0.5)  # surface 1 has passed, the slow one not
     assert main([str(write(tmp_path / "a.h5", scene, frames=frames))]) == 0
     message = capsys.readouterr().err
-    assert "no point of surface 2 " in message and "time.travel = 6.8 " in message
+    assert "no point of surface 2 " in message and "raise time.travel" in message
     with h5py.File(tmp_path / "a.post.h5") as file:
         assert np.isnan(file["damage/2"]).all() and np.isfinite(file["damage/1"]).any()
         assert file.attrs["surface"] == "1"
@@ -201,7 +200,7 @@ def judged(scene, tmp_path_factory):
     folder = tmp_path_factory.mktemp("judged")
     residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
     path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
-    argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt", "--within", "0.05"]
+    argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt"]
     save = gallery._save
     with pytest.MonkeyPatch.context() as patch:  # of the pictures that of the criteria alone
         patch.setattr(gallery, "_save", lambda *one: save(*one) if "criteria" in one[1] else [])
@@ -238,9 +237,6 @@ def test_criteria_are_stored_beside_the_default_damage(judged, scene, tmp_path):
 
 def test_asperity_distribution_has_confidence_bounds(judged):
     with h5py.File(judged) as file:
-        assert file.attrs["within"] == 0.05
-        assert (file["asperities/2_largest"][:] >= file["asperities/2_damage"][:]).all()
-        assert (file["asperities/2_largest"][0] > file["asperities/2_damage"][0]).any()
         for name in ("alpha", "beta"):
             low, fit, high = (file[f"weibull/2_{name}{end}"][:] for end in ("_low", "", "_high"))
             assert (low < fit).all() and (fit < high).all()

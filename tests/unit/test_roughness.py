@@ -13,7 +13,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.filters import high_pass, low_pass
 from ehlpetsc.surfaces.profile import Profile
-from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings, spikes
+from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
@@ -335,17 +335,6 @@ def test_constant_offset_is_removed_with_a_note(tmp_path):
     assert len(given.notes) == 1 and "height of 1 um " in given.notes[0]
     np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
     assert samples(ALICONA.parent, values_of(PROFILE, {"file": ALICONA.name})).notes == ()
-
-
-def test_spikes_narrower_than_a_cell_are_a_warning():
-    X, z, _ = read_profile(ALICONA)
-    assert spikes(Samples(X, z, True, True), 3.4e-6)[0] == 0
-    z = z.copy()
-    z[1000:1002] += 2e-6
-    count, highest, place = spikes(Samples(X, z, True, True), 3.4e-6)
-    assert (count, place) == (2, pytest.approx(X[1000]))
-    assert highest == pytest.approx(2e-6, rel=0.1)
-    assert spikes(Samples(X, z, True, True), 0.2e-6)[0] == 0  # a mesh finer than the profile carries it
 
 
 def test_travel_to_entry_and_filling():

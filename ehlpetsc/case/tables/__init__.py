@@ -8,9 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from ehlpetsc.case.tables.contact import CONTACT
+from ehlpetsc.case.tables.contact import CONTACT, FLUID
 from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
-from ehlpetsc.case.tables.oil import FLUID
 from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.physics.von_mises import von_mises_squared
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
 from ehlpetsc.post.fatigue.strain_life import (
     DEFAULT_STRAIN,
@@ -19,6 +18,7 @@ from ehlpetsc.post.fatigue.strain_life import (
     life_table,
     look_up,
 )
+from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
 
 def evaluate(

@@ -49,28 +49,6 @@ def asperities(
     return Asperities(abscissae[peaks], heights[peaks], nearest)
 
 
-def largest_near(s: np.ndarray, damage: np.ndarray, positions: np.ndarray, distance: float) -> np.ndarray:
-    """Maximum damage (..., n) within a distance [m] of each of n positions along the surface.
-
-    Parameters
-    ----------
-    s
-        Rising body coordinates [m], shape (ns,).
-    damage
-        Shape (..., ns); nan for points that did not pass, which are ignored.
-    distance
-        [m]; the nearest point always counts.
-    """
-    finite = np.where(np.isnan(damage), -np.inf, damage)
-    out = np.empty((*damage.shape[:-1], len(positions)))
-    for k, position in enumerate(positions):
-        first = np.searchsorted(s, position - distance, "left")
-        last = np.searchsorted(s, position + distance, "right")
-        nearest = int(np.abs(s - position).argmin())
-        out[..., k] = finite[..., min(first, nearest) : max(last, nearest + 1)].max(axis=-1)
-    return np.where(np.isinf(out), np.nan, out)
-
-
 def benard_ranks(n: int) -> np.ndarray:
     """Median ranks (i - 0.3)/(n + 0.4) of n values in rising order."""
     return (np.arange(1, n + 1) - 0.3) / (n + 0.4)

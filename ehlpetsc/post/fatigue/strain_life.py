@@ -44,7 +44,7 @@ from math import exp, inf, log
 import numpy as np
 
 from ehlpetsc.compiled import compiled
-from ehlpetsc.physics.von_mises import von_mises_squared
+from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
 STRAINS = ("direct", "neuber", "glinka")
 DEFAULT_STRAIN = "neuber"

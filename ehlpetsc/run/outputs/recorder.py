@@ -17,9 +17,8 @@ from petsc4py import PETSc
 from ehlpetsc.errors import ExitStatus, OutputError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.results.atomic_write import remove_stale
 from ehlpetsc.results.means import Totals
-from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
+from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of, remove_stale
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run.outputs.checkpoint import Checkpoint, advice_on_resuming, load, save
