@@ -56,7 +56,7 @@ class Ensemble:
     """
 
     name: str
-    values: dict[str, object]
+    values: dict
     scalars: dict[str, np.ndarray]
 
 

@@ -1,6 +1,10 @@
 """Pictures of one result, and of several results over slide/roll ratios, as PNG and SVG."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
@@ -19,13 +23,18 @@ from ehlpetsc.post.temperatures import temperature_history
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.post_result import PostResult
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.contour import ContourSet
+
+
 FORMATS = ("png", "svg")
 FIELD_DEPTH = 1.5  # half widths
 SECTION_LENGTH = 2.0  # half widths of profile, as in the paper
 LAYER_DEPTH = 0.2  # half widths in a picture of several results: damage below asperities is shallower
 
 
-def _save(figure, stem):
+def _save(figure: Figure, stem: str | Path) -> list[str]:
     """Write all formats; returns their names."""
     names = [f"{stem}.{kind}" for kind in FORMATS]
     for name in names:
@@ -35,20 +44,27 @@ def _save(figure, stem):
 
 
 @matplotlib.rc_context({"font.size": 9})
-def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
+def draw(
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    folder: str,
+    point: tuple[float, float] | None = None,
+    frame: int | None = None,
+    passes: str | None = None,
+) -> list[str]:
     """Draw all pictures; returns the names of the files.
 
     Parameters
     ----------
-    inputs, outputs : sequences of str
+    inputs, outputs
         Result files and their post-processing results.
-    folder : str
+    folder
         Folder of the pictures; "": temporary each result.
-    point : (float, float), optional
+    point
         s/a and z/a of the history picture.
-    frame : int, optional
+    frame
         Stored frame of the stress picture.
-    passes : {"2", "1"}, optional
+    passes
         Surface of which the results are passes: statistics instead of a comparison.
     """
     names = []
@@ -66,7 +82,9 @@ def draw(inputs, outputs, folder, point=None, frame=None, passes=None):
     return names
 
 
-def _of_one(path, result, stem, point, frame):
+def _of_one(
+    path: str, result: PostResult, stem: str | Path, point: tuple[float, float] | None, frame: int | None
+) -> list[str]:
     names = []
     for surface in result.surfaces:
         if result.complete[surface].any():
@@ -80,7 +98,7 @@ def _of_one(path, result, stem, point, frame):
     return names + _save(history_picture(path, result, point), f"{stem}.history")
 
 
-def _compared(results, folder):
+def _compared(results: list[PostResult], folder: Path) -> list[str]:
     names = []
     for surface in ("2", "1"):
         if all(surface in result.surfaces and result.complete[surface].any() for result in results):
@@ -92,13 +110,13 @@ def _compared(results, folder):
     return names
 
 
-def _bar(figure, contours, axes):
+def _bar(figure: Figure, contours: ContourSet | None, axes: list[Axes]) -> None:
     if contours is not None:
         bar = figure.colorbar(contours, ax=axes, label="damage D of one pass", pad=0.02)
         bar.ax.yaxis.set_major_formatter(lambda power, position: f"$10^{{{power:.0f}}}$")
 
 
-def damage_picture(result, surface):
+def damage_picture(result: PostResult, surface: str) -> Figure:
     """Damage under the profile (figure 8 of Holmes et al. 2005)."""
     above = [1.0] * ((surface in result.profiles) + (surface in result.temperatures))
     figure = Figure(figsize=(8, 3.2 + len(above)), layout="constrained")
@@ -122,7 +140,7 @@ def damage_picture(result, surface):
     return figure
 
 
-def stacked_picture(results, surface):
+def stacked_picture(results: list[PostResult], surface: str) -> Figure:
     """Damage at several slide/roll ratios under one scale (figure 9)."""
     count = len(results)
     figure = Figure(figsize=(8, 1.2 + 1.7 * count), layout="constrained")
@@ -143,7 +161,7 @@ def stacked_picture(results, surface):
     return figure
 
 
-def _aligned(result, surface, results):
+def _aligned(result: PostResult, surface: str, results: list[PostResult]) -> PostResult:
     """Result reduced to the points that passed in all results, so that all have the same profile."""
     first = max(r.s[r.complete[surface]][0] for r in results)
     last = min(r.s[r.complete[surface]][-1] for r in results)
@@ -155,7 +173,7 @@ def _aligned(result, surface, results):
     return result
 
 
-def field_picture(path, result, frame):
+def field_picture(path: str, result: PostResult, frame: int | None) -> Figure:
     """Pressure, and stresses in the solid of the result's main surface, at one stored frame."""
     surface = result.main
     with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
@@ -181,7 +199,7 @@ def field_picture(path, result, frame):
     return figure
 
 
-def _check_passed(result, surface, s):
+def _check_passed(result: PostResult, surface: str, s: float) -> None:
     """Refuse a body point whose history is incomplete; the message names the range of complete ones."""
     passed, spacing = result.complete[surface], (result.s[-1] - result.s[0]) / (result.s.size - 1)
     node = (s - result.s[0]) / spacing
@@ -194,7 +212,7 @@ def _check_passed(result, surface, s):
         )
 
 
-def history_picture(path, result, point):
+def history_picture(path: str, result: PostResult, point: tuple[float, float] | None) -> Figure:
     """Stress history of one body point and its counted cycles."""
     surface = result.main
     s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
@@ -222,7 +240,7 @@ def history_picture(path, result, point):
     top.set_title(
         f"surface {surface}, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "
         f"{z:g}: {len(cycles)} cycles of {plots.COMPONENTS[channel]}, {marked} marked, damage "
-        f"{damages.sum():.3g}",
+        f"{np.sum(damages):.3g}",
         fontsize=9,
     )
     plots.cycle_histogram(bottom, cycles, damages)

@@ -1,11 +1,25 @@
 """Plots of stresses, histories and damage, drawn into axes."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.accumulate import CHANNELS
 from ehlpetsc.post.fatigue.cycles import rainflow
 from ehlpetsc.post.stresses.half_plane import von_mises
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.contour import ContourSet
+    from matplotlib.figure import Figure
+
+    from ehlpetsc.post.fatigue.strain_life import Material
+    from ehlpetsc.results.post_result import PostResult
+
 
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
 COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
@@ -18,12 +32,12 @@ HOT = "#cc3311"
 STRAIN_RULES = {"direct": "elastic range as it is", "neuber": "Neuber's rule", "glinka": "Glinka's rule"}
 
 
-def strain_rule(result):
+def strain_rule(result: PostResult) -> str:
     """Rule for the elastic stress range of a result, for titles."""
     return STRAIN_RULES[result.attrs.get("strain", "direct")]
 
 
-def decades(largest):
+def decades(largest: float) -> np.ndarray | None:
     """Integer powers of ten up to above the largest damage; None without damage."""
     if not (np.isfinite(largest) and largest > 0):
         return None
@@ -31,7 +45,7 @@ def decades(largest):
     return np.arange(top - DECADES, top + 1)
 
 
-def along_body(result, surface, s):
+def along_body(result: PostResult, surface: str, s: Any) -> Any:
     """Abscissa [mm] of the profile: distance from the point that was at the inlet at time 0."""
     passed = result.s[result.complete[surface]]
     if result.attrs.get(f"speed_{surface}", 1.0) < 0:
@@ -39,18 +53,18 @@ def along_body(result, surface, s):
     return 1e3 * (result.attrs.get("inlet", passed[-1]) - s)
 
 
-def body_label(surface):
+def body_label(surface: str) -> str:
     """Label of an axis of :func:`along_body`."""
     return f"along surface {surface} [mm]"
 
 
-def stretch(result, surface, longest=None):
+def stretch(result: PostResult, surface: str, longest: float | None = None) -> tuple[float, float]:
     """Ends [mm] of the points that passed, or of the first `longest` half widths of them."""
     low, high = np.sort(along_body(result, surface, result.s[result.complete[surface]][[0, -1]]))
     return low, min(high, low + 1e3 * result.a * (longest or np.inf))
 
 
-def profile(axes, result, surface, ends):
+def profile(axes: Axes, result: PostResult, surface: str, ends: tuple[float, float]) -> None:
     """Draw the profile between two ends in mm, heights in um."""
     axes.set_ylabel("z [µm]")
     axes.axhline(0, color="0.8", lw=0.6)
@@ -62,7 +76,7 @@ def profile(axes, result, surface, ends):
         axes.plot(x[shown], z[shown] * 1e6, color=DARK, lw=0.8)
 
 
-def temperatures(axes, result, surface):
+def temperatures(axes: Axes, result: PostResult, surface: str) -> None:
     """Draw flash and mean temperature rise of the points of a surface over mm."""
     temperature, passed = result.temperatures[surface], result.complete[surface]
     x, bulk = along_body(result, surface, result.s[passed]), temperature.highest - temperature.flash
@@ -71,10 +85,12 @@ def temperatures(axes, result, surface):
     axes.set_ylabel("temperature\nover bulk [K]")
     axes.set_ylim(bottom=0.0)
     axes.yaxis.set_major_locator(MaxNLocator(4))
-    legend_beside(axes)
+    style.legend_beside(axes)
 
 
-def _under_surface(axes, result, surface, ends, depths, gap):
+def _under_surface(
+    axes: Axes, result: PostResult, surface: str, ends: tuple[float, float], depths: np.ndarray, gap: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Set the axes of a map under a surface, in mm, z/a and um; returns abscissae and depths."""
     depth, ticks = _depth_axis(depths, gap)
     axes.set_yticks(depth[ticks], [f"{z:g}" for z in depths[ticks]])
@@ -88,7 +104,15 @@ def _under_surface(axes, result, surface, ends, depths, gap):
     return along_body(result, surface, result.s[result.complete[surface]]), depth
 
 
-def damage_contours(axes, result, surface, ends, levels, deepest=np.inf, gap=0.07):
+def damage_contours(
+    axes: Axes,
+    result: PostResult,
+    surface: str,
+    ends: tuple[float, float],
+    levels: np.ndarray,
+    deepest: float = np.inf,
+    gap: float = 0.07,
+) -> ContourSet | None:
     """Draw filled contours of log10 D over body point and square root of depth.
 
     Ticks are `gap` of the axis or more apart.
@@ -104,7 +128,14 @@ def damage_contours(axes, result, surface, ends, levels, deepest=np.inf, gap=0.0
     return axes.contourf(x, depth, shown, levels=levels, cmap="inferno_r", extend="min")
 
 
-def utilisation_contours(figure, axes, result, surface, values, ends):
+def utilisation_contours(
+    figure: Figure,
+    axes: Axes,
+    result: PostResult,
+    surface: str,
+    values: np.ndarray,
+    ends: tuple[float, float],
+) -> None:
     """Draw filled contours of the utilisation of a fatigue limit, and its contour at 1."""
     x, depth = _under_surface(axes, result, surface, ends, result.z, 0.1)
     if len(depth) < 2:
@@ -117,23 +148,18 @@ def utilisation_contours(figure, axes, result, surface, values, ends):
     figure.colorbar(mesh, ax=axes, pad=0.01, ticks=ticks_within(levels))
 
 
-def _depth_axis(z, gap):
+def _depth_axis(z: np.ndarray, gap: float) -> tuple[np.ndarray, list[int]]:
     """Square root of depth, which stretches the layer near the surface, and ticks at least `gap` apart."""
     depth = np.sqrt(z)
     gap *= depth[-1] - depth[0] or 1.0
-    ticks = []
+    ticks: list[int] = []
     for k, root in enumerate(depth):
         if not ticks or root - depth[ticks[-1]] >= gap:
             ticks.append(k)
     return depth, ticks
 
 
-def legend_beside(axes):
-    """Draw the legend right of the axes."""
-    axes.legend(fontsize=8, frameon=False, loc="center left", bbox_to_anchor=(1.01, 0.5))
-
-
-def stress_field(axes, x, z, values, label):
+def stress_field(axes: Axes, x: np.ndarray, z: np.ndarray, values: np.ndarray, label: str) -> ContourSet:
     """Draw one stress over x/a and z/a, z downwards; colours centred on zero unless it has one sign.
 
     The colours span all but the highest and lowest thousandths, because peaks below single asperities would
@@ -154,7 +180,7 @@ def stress_field(axes, x, z, values, label):
     return mesh
 
 
-def mark_largest(axes, x, z, values, a):
+def mark_largest(axes: Axes, x: np.ndarray, z: np.ndarray, values: np.ndarray, a: float) -> None:
     """Mark the largest von Mises stress, with its depth in the title; z in half widths."""
     k, j = np.unravel_index(values.argmax(), values.shape)
     axes.plot(x[j], z[k], "x", color="#cc3311", ms=6)
@@ -165,20 +191,20 @@ def mark_largest(axes, x, z, values, a):
     )
 
 
-def ticks_within(levels):
+def ticks_within(levels: np.ndarray) -> np.ndarray:
     """About five round values within the range of `levels`."""
     ticks = MaxNLocator(5).tick_values(levels[0], levels[-1])
     return ticks[(ticks >= levels[0]) & (ticks <= levels[-1])]
 
 
-def stress_fields(sx, sz, txz, nu):
+def stress_fields(sx: np.ndarray, sz: np.ndarray, txz: np.ndarray, nu: float) -> dict[str, np.ndarray]:
     """The four stresses of the picture, GPa, by label."""
     names = (*COMPONENTS, VON_MISES)
     stresses = (sx, sz, txz, von_mises(sx, sz, txz, nu))
     return {name: values / 1e9 for name, values in zip(names, stresses, strict=True)}
 
 
-def history(axes, time, values, channel):
+def history(axes: Axes, time: np.ndarray, values: np.ndarray, channel: int) -> np.ndarray:
     """Draw three components over time and the largest cycles of the counted one; returns its cycles."""
     for values_of, name, color in zip(values, COMPONENTS, ("#4477aa", DARK, "#228833"), strict=True):
         axes.plot(time, values_of / 1e9, lw=0.9, color=color, label=name)
@@ -190,17 +216,17 @@ def history(axes, time, values, channel):
         axes.vlines(time[j], *sorted((counted[i], counted[j])), color="#cc3311", lw=0.8)
         axes.hlines(counted[i], *sorted((time[i], time[j])), color="#cc3311", lw=0.5, ls=":")
     axes.set_ylabel("stress [GPa]")
-    legend_beside(axes)
+    style.legend_beside(axes)
     return cycles
 
 
-def surface_temperature(axes, time, temperature):
+def surface_temperature(axes: Axes, time: np.ndarray, temperature: np.ndarray) -> None:
     """Draw the surface temperature of a body point over time."""
     axes.plot(time, temperature, color=HOT, lw=0.9)
     axes.set_ylabel("temperature\nof the surface [K]")
 
 
-def cycle_histogram(axes, cycles, damages):
+def cycle_histogram(axes: Axes, cycles: np.ndarray, damages: np.ndarray) -> None:
     """Draw range and damage of each cycle above 1e-12 of the largest damage."""
     shown = damages > 1e-12 * damages.max(initial=0.0)
     axes.scatter(cycles[shown, 0], damages[shown], s=10, color="#cc3311")
@@ -216,11 +242,11 @@ def cycle_histogram(axes, cycles, damages):
     axes.set_axisbelow(True)
 
 
-def counted_channel(count, values, material):
+def counted_channel(count: str, values: np.ndarray, material: Material) -> int:
     """Channel of the cycles in a picture: the counted one, or that of the largest damage."""
     from ehlpetsc.post.fatigue.accumulate import damage
 
     if len(CHANNELS[count]) == 1:
         return min(CHANNELS[count][0], 2)
-    names = ("sx", "sz", "txz")
-    return int(np.argmax([damage(*values, material, count=name).damage for name in names]))
+    names, (dx, dz, dt) = ("sx", "sz", "txz"), values
+    return int(np.argmax([damage(dx, dz, dt, material, count=name).damage for name in names]))

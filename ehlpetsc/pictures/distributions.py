@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import matplotlib
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
@@ -9,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ehlpetsc.pictures import damage_panels as plots
+from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.statistics import (
     CONFIDENCE,
     exceedance,
@@ -19,12 +22,19 @@ from ehlpetsc.post.fatigue.statistics import (
 )
 from ehlpetsc.post.passes import pass_statistics, same_points
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.contour import ContourSet
+
+    from ehlpetsc.results.post_result import PostResult, WeibullFit
+
+
 COLOUR_MAP = LinearSegmentedColormap.from_list(  # neighbours of eight differ in hue, all dark enough
     "distinct", ["#332288", "#4477aa", "#33bbaa", "#117733", "#999933", "#ee9922", "#cc3311", "#882255"]
 )
 
 
-def depth_picture(result):
+def depth_picture(result: PostResult) -> Figure:
     """Distributions of damage at the asperities of one surface, by depth (figure 10).
 
     Bands: 90 % bootstrap confidence limits of the fit by median ranks.
@@ -40,7 +50,7 @@ def depth_picture(result):
     return figure
 
 
-def ratio_picture(results, z):
+def ratio_picture(results: list[PostResult], z: float) -> Figure:
     """Distributions at one depth, by slide/roll ratio (figures 11 and 12)."""
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
@@ -52,11 +62,11 @@ def ratio_picture(results, z):
     return figure
 
 
-def _colours(count):
+def _colours(count: int) -> list[tuple[float, ...]]:
     return [COLOUR_MAP(k / max(count - 1, 1)) for k in range(count)]
 
 
-def _curve(axes, under, fit, label, color):
+def _curve(axes: Axes, under: np.ndarray, fit: WeibullFit, label: str, color: object) -> None:
     """Draw the fraction of asperities above a damage, with the Weibull fit."""
     damaged = under[under > 0]
     if not damaged.size:
@@ -69,7 +79,7 @@ def _curve(axes, under, fit, label, color):
     axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), color=color, lw=1.2, label=label)
 
 
-def _draw_confidence(axes, under, fit, color):
+def _draw_confidence(axes: Axes, under: np.ndarray, fit: WeibullFit, color: object) -> None:
     """Draw the confidence band of the fit by resampling."""
     bounds = weibull_bounds(log_life(under))
     if not (bounds.draws.size and np.isfinite(fit.beta)):
@@ -81,17 +91,20 @@ def _draw_confidence(axes, under, fit, color):
     axes.fill_between(values, low, high, color=color, alpha=0.15, lw=0)
 
 
-def _add_legend_entries(axes, with_limits=True):
+def _add_legend_entries(axes: Axes, with_limits: bool = True) -> None:
     """Add legend entries for dots, lines and bands."""
-    marks = [(dict(marker=".", ls=""), "asperities"), (dict(lw=1.2), "Weibull, median ranks")]
-    for style, words in marks:
-        axes.plot([], [], color="0.3", label=words, **style)
+    marks: list[tuple[dict, str]] = [
+        (dict(marker=".", ls=""), "asperities"),
+        (dict(lw=1.2), "Weibull, median ranks"),
+    ]
+    for mark, words in marks:
+        axes.plot([], [], color="0.3", label=words, **mark)
     if not with_limits:
         return
     axes.fill_between([], [], color="0.3", alpha=0.15, lw=0, label=f"{100 * CONFIDENCE:g} % bootstrap limits")
 
 
-def _finish(axes, title):
+def _finish(axes: Axes, title: str) -> None:
     """Set scales, labels and title of the distributions."""
     axes.set_xscale("log")
     axes.margins(x=0.0)
@@ -105,10 +118,10 @@ def _finish(axes, title):
     axes.set_ylabel("share of asperities above D")
     axes.grid(color="0.92", which="both")
     axes.set_title(title, fontsize=9)
-    plots.legend_beside(axes)
+    style.legend_beside(axes)
 
 
-def passes_picture(results, surface):
+def passes_picture(results: list[PostResult], surface: str) -> Figure:
     """Damage per pass along the surface at the worst depth, and fraction of points with Miner's sum 1."""
     s, damages = same_points(results, surface)
     statistics = pass_statistics(damages)
@@ -136,7 +149,7 @@ def passes_picture(results, surface):
         f"scatter of D from pass to pass, at half of the points below {scatter:.2g} of its mean",
         fontsize=9,
     )
-    plots.legend_beside(top)
+    style.legend_beside(top)
     fraction = np.arange(1, x.size + 1) / x.size
     with np.errstate(divide="ignore"):
         for row in damages[:, worst]:
@@ -149,7 +162,7 @@ def passes_picture(results, surface):
     bottom.set_xlabel("passes: compares points, is no life")
     bottom.set_ylabel("share of points with\nMiner's sum 1 or more")
     bottom.grid(color="0.92")
-    plots.legend_beside(bottom)
+    style.legend_beside(bottom)
     return figure
 
 
@@ -163,7 +176,7 @@ SECTION_LENGTH = 2.0  # half widths
 UTILISATION_TICKS = (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)  # of the fatigue limit
 
 
-def criteria_picture(result, surface):
+def criteria_picture(result: PostResult, surface: str) -> Figure:
     """Maps below the profile on one scale of damage, each next to its values over the paper's damage."""
     names = [name for name in NAMES if name in result.criteria]
     figure = Figure(figsize=(10, 1.4 + 1.75 * (len(names) + 1)), layout="constrained")
@@ -195,14 +208,31 @@ def criteria_picture(result, surface):
     return figure
 
 
-def _map(axes, result, surface, values, ends, levels, title):
+def _map(
+    axes: Axes,
+    result: PostResult,
+    surface: str,
+    values: np.ndarray,
+    ends: tuple[float, float],
+    levels: np.ndarray,
+    title: str,
+) -> ContourSet | None:
     shown = result.with_damage(surface, values)
     contours = plots.damage_contours(axes, shown, surface, ends, levels, gap=0.1)
     axes.set_title(title, fontsize=8, loc="left", pad=2)
     return contours
 
 
-def _row(figure, row, result, surface, name, values, ends, levels):
+def _row(
+    figure: Figure,
+    row: np.ndarray,
+    result: PostResult,
+    surface: str,
+    name: str,
+    values: np.ndarray,
+    ends: tuple[float, float],
+    levels: np.ndarray,
+) -> None:
     left, right = row
     complete = result.complete[surface]
     paper = result.damage[surface]
@@ -235,12 +265,12 @@ def _row(figure, row, result, surface, name, values, ends, levels):
     right.grid(color="0.93")
 
 
-def _depth_shades(z):
-    """Colours of depths, the deepest dark."""
+def _depth_shades(z: np.ndarray) -> np.ndarray:
+    """objects of depths, the deepest dark."""
     return matplotlib.colormaps["viridis_r"](np.linspace(0.05, 1, len(z)))
 
 
-def _depth_colours(figure, axes, result):
+def _depth_colours(figure: Figure, axes: Axes, result: PostResult) -> None:
     """Draw the legend of depths in the empty axes next to the paper's map."""
     for z, colour in zip(result.z, _depth_shades(result.z), strict=True):
         axes.plot([], [], "o", ms=4, color=colour, label=f"z/a = {z:g}")

@@ -86,7 +86,7 @@ def stribeck_points(results: list[Result]) -> tuple[list[OperatingPoint], list[s
 
 def curves_by_contact(results: list[Result]) -> dict[str, list[Result]]:
     """Results by contact law, mesh and [heat], with their label; the longest curve first."""
-    groups = {}
+    groups: dict[tuple, list[Result]] = {}
     for result in results:
         case, contact = result.case, result.case.contact
         if contact.asperity_height:
@@ -204,12 +204,12 @@ def draw_traction(results: list[Result], _options: argparse.Namespace | None) ->
 
 def traction_curves(results: list[Result]) -> dict[str, np.ndarray]:
     """Ratios and friction coefficients, shape (2, n), by the other conditions in which results differ."""
-    by_ratio = {}
+    by_ratio: dict = {}
     for result in results:
         by_ratio.setdefault(result.case.motion.slide_roll_ratio if result.case.motion else 0.0, []).append(
             result
         )
-    rows = {}
+    rows: dict = {}
     for ratio, same in sorted(by_ratio.items()):
         names = (distinguishing_names(same) if len(same) > 1 else None) or [""]
         for name, result in zip(names, same, strict=False):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import json
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,18 +15,19 @@ from ehlpetsc.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.over_time import grab, recording
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+
+    from ehlpetsc.life.history import LifeBody, LifeHistory
+
+
 SHOWN_INSTANTS = 3  # instants of the life
 MIN_LOG_DAMAGE = -3.0  # log10 of the damage at the lower end of the colours
 
 
-def draw(life, path):
-    """Draw a life and save the picture.
-
-    Parameters
-    ----------
-    life : history.LifeHistory
-    path : path-like
-    """
+def draw(life: LifeHistory, path: Path) -> None:
+    """Draw a life and save the picture."""
     if not life.rows:
         raise OSError(f"{path}: not written, no pass is solved yet")
     figure = Figure(figsize=(11.0, 8.5), layout="constrained")
@@ -61,7 +64,7 @@ def draw(life, path):
     style.save(figure, path)
 
 
-def under_profile(axes, body):
+def under_profile(axes: Axes, body: LifeBody) -> ScalarMappable:
     """Damage of the cells that are left below the present profile; returns the image."""
     micro = 1e6
     damage = np.where(body.is_there, body.damage, np.nan)
@@ -90,13 +93,12 @@ def under_profile(axes, body):
 FRAMES_PER_ROUND = 3  # frames that a round is shown
 
 
-def save_movie(life, path):
+def save_movie(life: LifeHistory, path: Path) -> None:
     """Write the movie.
 
     Parameters
     ----------
-    life : history.LifeHistory
-    path : Path
+    path
         GIF, or MP4 and WebM where ffmpeg is installed.
 
     Raises
@@ -114,7 +116,7 @@ def save_movie(life, path):
                 grab(figure, writer)
 
 
-def _draw(figure, grid, life, row):
+def _draw(figure: Figure, grid: np.ndarray, life: LifeHistory, row: int) -> None:
     for axes in grid:
         axes.clear()
     for k, axes in enumerate(grid[:2]):
@@ -150,7 +152,7 @@ LEGEND = 0.08  # of the height, below the panels
 COLOUR_DECADES = 2.0  # of the colours: powers of ten of the damage ahead on either side of 1
 
 
-def read_index(path):
+def read_index(path: Path) -> dict:
     """The index of the lives of a series.
 
     Raises
@@ -171,14 +173,13 @@ def read_index(path):
     return index | {"keys": keys, "members": rows}
 
 
-def draw_regimes(index, path):
+def draw_regimes(index: dict, path: Path) -> None:
     """Draw the index of a series of lives.
 
     Parameters
     ----------
-    index : dict
+    index
         As of :func:`read_index`.
-    path : path-like
     """
     keys, rows = index["keys"], index["members"]
     values = [sorted({row["value"][k] for row in rows}) for k in range(len(keys))]
@@ -203,7 +204,7 @@ def draw_regimes(index, path):
     style.save(figure, path)
 
 
-def _panel(axes, keys, values, rows):
+def _panel(axes: Axes, keys: list[str], values: list[list[float]], rows: list[dict]) -> ScalarMappable:
     """Cells of equal size, one for each pair of values; returns the image of the colours."""
     count = len(values[1]) if len(keys) > 1 else 1
     ahead = np.full((count, len(values[0])), np.nan)
@@ -238,16 +239,16 @@ def _panel(axes, keys, values, rows):
     return image
 
 
-def _label(key):
+def _label(key: str) -> str:
     name, unit, _ = LABELS.get(key, (key, "", 1.0))
     return f"{name} [{unit}]" if unit else name
 
 
-def _numbers(key, values):
+def _numbers(key: str, values: list[float]) -> list[str]:
     return [f"{value / LABELS.get(key, (key, '', 1.0))[2]:g}" for value in values]
 
 
-def _setting(key, value):
+def _setting(key: str, value: float) -> str:
     """Title of a panel: a key and its value."""
     name, unit, _ = LABELS.get(key, (key, "", 1.0))
     return f"{name} {_numbers(key, [value])[0]} {unit}".rstrip()

@@ -49,7 +49,7 @@ def set_title(figure: Figure, *lines: str) -> None:
     figure.suptitle("\n".join(filter(None, lines)), fontsize="medium")
 
 
-def save(figure: Figure, *paths: Path, chosen: argparse.Namespace | None = None) -> None:
+def save(figure: Figure, *paths: str | Path, chosen: argparse.Namespace | None = None) -> None:
     """Write a figure, in the format of each file name; `chosen` has the options of `add_options`."""
     if chosen and chosen.size:
         figure.set_size_inches(chosen.size)

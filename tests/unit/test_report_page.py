@@ -47,6 +47,14 @@ def page(tmp_path, capsys):
     return made
 
 
+def test_words_of_the_template_in_a_title_stay_text(tmp_path, page):
+    """Inserted again wherever they stood, they made the page a hundred times as large."""
+    path = make_result(tmp_path / "r.h5", title="{{data}} {{plotly}} {{title}}")
+    found, data = page(path)
+    assert data["title"] == "{{data}} {{plotly}} {{title}}" == found.texts["title", None]
+    assert path.with_suffix(".html").stat().st_size < 2 * len(get_plotlyjs())
+
+
 def test_report_contains_fields_and_needs_no_network(tmp_path, page):
     path = with_solids(make_result(tmp_path / "r.h5", title="a <b> & </script>"))
     found, data = page(path)
