@@ -83,8 +83,12 @@ def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:
 
 
 def _as_text(cell: str) -> str:
-    """A cell that no spreadsheet takes for a formula."""
-    return f"'{cell}" if cell.startswith(("=", "+", "-", "@")) else cell
+    """A cell that no spreadsheet takes for a formula; numbers stay."""
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}" if cell.startswith(("=", "+", "-", "@")) else cell
+    return cell
 
 
 def main(words: Sequence[str]) -> int:

@@ -51,7 +51,7 @@ def test_words_of_the_template_in_a_title_stay_text(tmp_path, page):
     """Inserted again wherever they stood, they made the page a hundred times as large."""
     path = make_result(tmp_path / "r.h5", title="{{data}} {{plotly}} {{title}}")
     found, data = page(path)
-    assert data["title"] == "{{data}} {{plotly}} {{title}}" == found.texts["title", None]
+    assert data["title"] == "{{data}} {{plotly}} {{title}}" == found.texts["title", None].strip()
     assert path.with_suffix(".html").stat().st_size < 2 * len(get_plotlyjs())
 
 
