@@ -85,7 +85,8 @@ def test_no_step_after_the_end(case):
         ({"mesh__points_per_half_width": 30}, r"^after: .*nodes.* \[mesh\] "),
         ({"contact__load": 400e3}, r"^after: .*nodes.* \[mesh\] "),
         (
-            {"contact__model": "direct", "contact__asperity_height": None, "contact__yield_pressure": None},
+            {"contact__model": "direct", "contact__yield_pressure": None}
+            | {f"contact__asperity_{key}": None for key in ("height", "stiffness")},
             "^after: contact.law .*direct, .* compliant$",
         ),
     ],
