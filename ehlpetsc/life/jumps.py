@@ -11,7 +11,7 @@ break-out, and in the first jump of all, rates are constant.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -58,7 +58,8 @@ class Rates(NamedTuple):
             Since it.
         """
         slopes = []
-        for new, old in zip(self[:3], before, strict=True):
+        new: Any
+        for new, old in zip((self.wear, self.damage, self.volume), before, strict=True):
             bound = new / (MAX_EXTRAPOLATION * passes)
             slopes.append(np.clip((new - old) / passes, -bound, bound))
         return self._replace(slopes=tuple(slopes))
@@ -74,9 +75,8 @@ class Rates(NamedTuple):
 
     def after(self, passes: float) -> tuple:
         """Wear [m], damage and worn volume [m^2] of a number of passes."""
-        return tuple(
-            laws.sum_over(passes, rate, slope) for rate, slope in zip(self[:3], self.slopes, strict=True)
-        )
+        rates: Any = zip((self.wear, self.damage, self.volume), self.slopes, strict=True)
+        return tuple(laws.sum_over(passes, rate, slope) for rate, slope in rates)
 
     def passes_to_wear(self, depth: float | np.ndarray) -> np.ndarray:
         """Passes after which a depth of wear is reached [m], shape (n,)."""

@@ -149,7 +149,7 @@ def _means(file: Path) -> dict[str, float]:
     return figures
 
 
-def _damage(file: Path) -> list[tuple[np.ndarray, ...]]:
+def _damage(file: Path) -> list[tuple]:
     """Points s, depths [m] and damage of both surfaces, of the points that passed the whole contact."""
     with Loads(file) as loads:
         job = Job(str(file), "", counting=Counting(strain=loads.case.post.strain))

@@ -129,7 +129,7 @@ class GaussSeidelSolver:
             reynolds = w_of(rows, self.problem.n)
             self.rows = Rows(q_of(rows, self.problem.n).copy(), reynolds.copy(), rows[-1])
             reynolds[(h <= self.bound) & (reynolds > 0.0)] = 0.0
-            return np.linalg.norm(rows)
+            return float(np.linalg.norm(rows))
 
     def _sweep(
         self, q: np.ndarray, h: np.ndarray, p: np.ndarray, gap_is_open: np.ndarray, inputs: StepInputs

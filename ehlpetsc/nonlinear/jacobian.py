@@ -70,7 +70,8 @@ class JacobianOperator:
 
     def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
         self.problem, self.halo, self.ranks, self.factors = problem, halo, ranks, factors
-        self.active, self.inactive_nodes = slice(None), np.arange(0)
+        self.active: slice | np.ndarray = slice(None)
+        self.inactive_nodes = np.arange(0)
         self.model: Any = None
         self.state: Any = None
         self.reynolds_derivatives: np.ndarray = None

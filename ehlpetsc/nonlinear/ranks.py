@@ -131,17 +131,17 @@ ALLGATHER = ctypes.cast(ctypes.CDLL(MPI.__file__).MPI_Allgather, ctypes.c_void_p
 HANDLES = {4: ctypes.c_int, 8: ctypes.c_size_t}  # numbers of MPICH, addresses of Open MPI
 
 
-def global_max(ranks: MPI.Comm, number: float) -> float:
+def global_max(ranks: MPI.Comm, number: float) -> Any:
     """Largest of the numbers of all ranks."""
     return _reduced(ranks, number, MPI.MAX)
 
 
-def global_sum(ranks: MPI.Comm, number: float | tuple) -> float | np.ndarray:
+def global_sum(ranks: MPI.Comm, number: float | tuple) -> Any:
     """Sum of the numbers of all ranks, also of each of several numbers."""
     return _reduced(ranks, number, MPI.SUM)
 
 
-def _reduced(ranks: MPI.Comm, number: float | tuple, operation: MPI.Op) -> float | np.ndarray:
+def _reduced(ranks: MPI.Comm, number: float | tuple, operation: MPI.Op) -> Any:
     if ranks.size == 1:
         return number
     received = np.array([number], dtype=float)

@@ -213,7 +213,7 @@ class TwoFields:
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
         local = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
-        return RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, local))
+        return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, local)))
 
 
 def first_nodes(n: int, ranks: int) -> list[int]:

@@ -314,7 +314,7 @@ def film_stress(
     conductivity: np.ndarray,
     sliding: np.ndarray,
     flow: FlowLaw,
-    limit: np.ndarray = np.inf,
+    limit: np.ndarray | float = np.inf,
 ) -> FilmStress:
     r"""Shear stress, temperatures and heat fluxes of sheared films; arrays or numbers of any common shape.
 

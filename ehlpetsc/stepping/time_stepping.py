@@ -107,6 +107,7 @@ class TimeStepping:
         return state
 
     def _steady(self, inputs: StepInputs, records: dict, watch: Watch) -> State:
+        solution: Any
         *solution, newton = self._inlet_first(
             inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
         )
@@ -115,6 +116,7 @@ class TimeStepping:
 
     def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
         """Steady solution consistent with the records of the effects, by repeated solves."""
+        solution: Any
         end, newton = self._step_end(), state.newton
         for _ in range(MAX_STEADY_SOLUTIONS):
             if all(e.is_settled(before[e.name], state.records[e.name]) for e in self.effects):
@@ -245,6 +247,7 @@ class TimeStepping:
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
         dt = dt or next_step(state.dt, state.retries, nominal, left)
+        solution: Any
         retries = newton = 0
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)

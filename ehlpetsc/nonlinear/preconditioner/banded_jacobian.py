@@ -9,6 +9,8 @@ left; the coefficients of other ranks' groups are stored as those of a group bef
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ehlpetsc.compiled import compiled
@@ -66,7 +68,7 @@ class BandedJacobian:
         self.under_pressure = self._dense_rows()
         self.entries: BandEntries = None
 
-    def _group(self, node: np.ndarray) -> np.ndarray:
+    def _group(self, node: Any) -> Any:
         return (node - self.problem.first) // GROUP
 
     def _in_group(self, node: np.ndarray) -> np.ndarray:
@@ -82,7 +84,7 @@ class BandedJacobian:
         """Numbers of the sums of groups, one row each."""
         return self._dof(np.asarray(group)[:, None], FIRST_SUM + np.arange(TERMS))
 
-    def _pressure(self, node: np.ndarray) -> np.ndarray:
+    def _pressure(self, node: Any) -> Any:
         """Number of q of a node."""
         return self._dof(self._group(node), FIRST_PRESSURE + self._in_group(node))
 
@@ -153,9 +155,9 @@ class BandedJacobian:
             nodes.append(near)
             values.append(d.end_row(end)[near])
             bent.append(np.where(near == end, d.end_row_coefficient, 0.0))
-        nodes, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
-        self.by_depth, self.pressure_nodes = np.concatenate(bent), nodes - p.window.start
-        self.pressure_place = self._index_of(np.concatenate(rows), self._pressure(nodes))
+        node, self.by_pressure = np.concatenate(nodes), np.concatenate(values)
+        self.by_depth, self.pressure_nodes = np.concatenate(bent), node - p.window.start
+        self.pressure_place = self._index_of(np.concatenate(rows), self._pressure(node))
         pressures = self._pressure(self.nodes)
         self.diagonal = self._index_of(pressures, pressures)
 
@@ -187,7 +189,7 @@ class BandedJacobian:
         place = self._index_of(self._film(self.nodes)[:, None], columns)
         self.reynolds_place = np.where(on_mesh, place, self.values.size - 1)
 
-    def fill(self, entries: BandEntries, inactive_nodes: np.ndarray) -> bool:
+    def fill(self, entries: BandEntries, inactive_nodes: np.ndarray) -> np.ndarray:
         """Entries at one state.
 
         Parameters

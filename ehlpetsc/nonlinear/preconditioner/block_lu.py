@@ -160,8 +160,8 @@ def forward(factors: tuple, b: np.ndarray, first: int) -> None:
     """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
     columns, inverses, _, minus_b = factors
     line = unsigned(LINE)
-    groups, first = unsigned(len(b) // LINE), unsigned(first)
-    for i in range(first, groups):
+    groups = unsigned(len(b) // LINE)
+    for i in range(unsigned(first), groups):
         here = i * line
         if i > first:
             before = here - line + unsigned(FROM_LEFT)
