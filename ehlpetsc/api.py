@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import h5py
-import numpy as np
 
 from ehlpetsc import environment
-from ehlpetsc.errors import CaseError, ExitStatus, UsageError
+from ehlpetsc.errors import CaseError, ExitStatus
 from ehlpetsc.results import reader
 from ehlpetsc.results.reader import open_result
 
@@ -50,23 +49,11 @@ class Result(reader.Result):
         from ehlpetsc.pictures import frames, style
 
         indices = frames.choose_frames([self], step, time)
-        view = self._window(window) or frames.default_window([self])
+        view = window or frames.default_window([self])
         figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
         frames.fill_frame(axes, [self], indices, view)
         style.set_title(figure, *frames.panel_title([self], indices))
         return figure
-
-    def _window(self, window: tuple[float, float] | None) -> tuple[float, float] | None:
-        """Limits of x/a that contain nodes."""
-        if window is None:
-            return None
-        ends = self.x[[0, -1]] / self.attrs["a"]
-        low, high = window
-        inside = np.count_nonzero((self.x >= low * self.attrs["a"]) & (self.x <= high * self.attrs["a"]))
-        if inside < 2:
-            allowed = f"two limits of x/a with nodes between them, from {ends[0]:g} to {ends[1]:g}"
-            raise UsageError(f"window = {window!r}: allowed: {allowed}")
-        return low, high
 
 
 def read_result(path: str | PathLike) -> Result:

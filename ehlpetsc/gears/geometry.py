@@ -179,21 +179,9 @@ class GearPair:
                     f"(interference); allowed for the {name}: below {2.0 * math.hypot(length, r):.5g} m"
                 )
         ratio = self.contact_ratio
-        if faults:
-            return faults
-        if ratio <= 0.0:
+        if not faults and not 1.0 <= ratio < 2.0:
             faults.append(
-                f"tip_diameter = {list(self.tip_diameter)}: the tips do not reach each other at a centre "
-                f"distance of {self.centre_distance:g} m"
-            )
-        elif ratio < 1.0:
-            faults.append(
-                f"tip_diameter = {list(self.tip_diameter)}: contact ratio {ratio:.3f}, a pair leaves before "
-                "the next one meets; allowed: 1 to 2"
-            )
-        elif ratio >= 2.0:
-            faults.append(
-                f"tip_diameter = {list(self.tip_diameter)}: contact ratio {ratio:.3f}, three pairs share the "
-                "load; allowed: 1 to 2"
+                f"tip_diameter = {list(self.tip_diameter)}: contact ratio {ratio:.3f}, at a distance "
+                f"of the centres of {self.centre_distance:g} m; allowed: 1 to 2"
             )
         return faults

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.case.loading import stored_case
 from ehlpetsc.errors import PostError
 from ehlpetsc.post.contents import write_result
 from ehlpetsc.results.index import read_index
@@ -60,8 +59,7 @@ def pass_statistics(damages: np.ndarray) -> Passes:
 def same_points(results: Sequence[PostResult], surface: str) -> tuple[np.ndarray, np.ndarray]:
     """s [m] of the points that passed in every result, and their damage (results, nz, points).
 
-    In passes shifted against each other (``time.pass_shift``) a point is matched with the nearest point, at
-    most half a node spacing away. PostError if the results are not passes of one body.
+    PostError if the results are not passes of one body.
     """
     first = results[0]
     spacing = first.s[1] - first.s[0]
@@ -69,9 +67,10 @@ def same_points(results: Sequence[PostResult], surface: str) -> tuple[np.ndarray
     for other in results:
         if other.z.shape != first.z.shape or not np.allclose(other.z, first.z):
             raise PostError("the results have different depths: give --depths")
-        shift = _shift_of_profile(first, other, surface)
-        offset = (other.s[0] - first.s[0] - shift) / spacing
-        is_on_grid = shift or abs(offset - round(offset)) <= PROFILE_TOLERANCE
+        if not _is_same_profile(first, other, surface):
+            raise PostError(f"the profiles of surface {surface} differ: these are not passes of one body")
+        offset = (other.s[0] - first.s[0]) / spacing
+        is_on_grid = abs(offset - round(offset)) <= PROFILE_TOLERANCE
         if abs((other.s[1] - other.s[0]) / spacing - 1) > 1e-6 or not is_on_grid:
             raise PostError("the results have different body points: passes need one mesh")
         offsets.append(round(offset))
@@ -85,28 +84,15 @@ def same_points(results: Sequence[PostResult], surface: str) -> tuple[np.ndarray
     return first.s[0] + spacing * common, np.stack(rows)
 
 
-def _shift_of_profile(first: PostResult, other: PostResult, surface: str) -> float:
-    """Distance in s [m] by which the profile of another pass is shifted; PostError for another profile."""
+def _is_same_profile(first: PostResult, other: PostResult, surface: str) -> bool:
     if (surface in first.profiles) != (surface in other.profiles):
-        raise PostError(f"surface {surface} is smooth in one result and rough in another")
-    if surface not in first.profiles:
-        return 0.0
-    time = stored_case(first.attrs["case"]).time
-    step, passes = (time.pass_shift, time.passes) if time else (0.0, 1)
-    counts = sorted(range(1 - passes, passes), key=abs) if step else [0]
-    for shift in (count * step for count in counts):
-        if _is_same_profile(first.profiles[surface], other.profiles[surface], shift):
-            return shift
-    raise PostError(f"the profiles of surface {surface} differ: these are not passes of one body")
-
-
-def _is_same_profile(one: tuple, other: tuple, shift: float) -> bool:
-    (s, z), (other_s, other_z) = one, other
-    inside = (s + shift >= other_s[0]) & (s + shift <= other_s[-1])
-    if np.count_nonzero(inside) < 2:
         return False
-    deviation = np.abs(np.interp(s[inside] + shift, other_s, other_z) - z[inside])
-    return deviation.max() <= PROFILE_TOLERANCE * np.ptp(z)
+    if surface not in first.profiles:
+        return True
+    (s, z), (other_s, other_z) = first.profiles[surface], other.profiles[surface]
+    inside = (s >= other_s[0]) & (s <= other_s[-1])
+    deviation = np.abs(np.interp(s[inside], other_s, other_z) - z[inside])
+    return bool(inside.any() and deviation.max() <= PROFILE_TOLERANCE * np.ptp(z))
 
 
 def store_passes(path: str | Path, results: Sequence[PostResult], surface: str) -> Passes:

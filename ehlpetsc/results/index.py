@@ -114,21 +114,8 @@ def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:
     Post-processing and restart files among results are ignored. An OutputError if a file cannot be read, or
     if no member of a series has a result.
     """
-    result_paths = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)]
-    if not result_paths:
-        kinds = {".post.h5": "of post-processing", ".restart.h5": "of a restart"}
-        refused = ", ".join(
-            f"{path}: a file {kinds[OTHER_ENDINGS[str(path).endswith(OTHER_ENDINGS[1])]]}" for path in paths
-        )
-        raise OutputError(f"{refused}; give the result, {_result_of(paths[0])}")
+    result_paths = [path for path in paths if not str(path).endswith(OTHER_ENDINGS)] or paths
     return [stack.enter_context(read_result(file)) for path in result_paths for file in files_of(path)]
-
-
-def _result_of(path: Path) -> str:
-    name = str(path)
-    for ending in OTHER_ENDINGS:
-        name = name.removesuffix(ending)
-    return f"{name}.h5"
 
 
 def files_of(path: Path) -> list[Path]:

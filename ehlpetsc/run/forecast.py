@@ -144,8 +144,8 @@ def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
         *samples.notes,
     ]
     if samples.measured:
-        file = samples.source or samples
-        size = f"{1e3 * file.length:.4g} mm long, {file.X.size} points {1e6 * file.spacing:.4g} um apart"
+        points = f"{samples.X.size} points {1e6 * samples.spacing:.4g} um apart"
+        size = f"{1e3 * samples.length:.4g} mm long, {points}"
         lines.insert(1, size)
         if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")

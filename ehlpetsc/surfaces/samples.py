@@ -33,8 +33,6 @@ class Samples:
         Whether the heights are from a file.
     notes
         Notes on the processing of the numbers of a file.
-    source
-        Samples before thinning, without spikes narrower than `short_cutoff`.
     """
 
     X: np.ndarray
@@ -42,7 +40,6 @@ class Samples:
     repeats: bool
     measured: bool = False
     notes: tuple = ()
-    source: Samples | None = None
 
     @property
     def length(self) -> float:
@@ -79,7 +76,7 @@ def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
         X, z, found = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
         X, z, found = read_profile(folder / spec.file, layout_of(spec))
-    notes, before = list(found), (X, z)
+    notes, read = list(found), X.size
     if cell is not None:
         X, z = thinned(X, z, min(filter(None, (cell, spec.cutoff, spec.short_cutoff))))
     if spec.level:
@@ -90,18 +87,15 @@ def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
         ra, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
         shown = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
         notes.append(f"short_cutoff: Ra {shown[0]} before, {shown[1]} after")
-        before = X, z
         if cell is not None:
             X, z = thinned(X, z, cell)
-    source = None
-    if z.size < before[1].size:
-        notes.append(f"{before[1].size} points, thinned to {z.size} local means")
-        source = Samples(*_flipped_and_scaled(*before, spec), True, True)
+    if z.size < read:
+        notes.append(f"{read} points, thinned to {z.size} local means")
     mean = float(z.mean())
     if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
         z = z - mean
         notes.append(f"mean height of {1e6 * mean:.4g} um subtracted")
-    return Samples(*_flipped_and_scaled(X, z, spec), True, True, tuple(notes), source)
+    return Samples(*_flipped_and_scaled(X, z, spec), True, True, tuple(notes))
 
 
 def _flipped_and_scaled(X: np.ndarray, z: np.ndarray, spec: Values) -> tuple[np.ndarray, np.ndarray]:

@@ -49,7 +49,7 @@ def evaluate(
     return [column.reshape(shape)[()] for column in out.T]
 
 
-CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,), "von_mises": (3,)}
+CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,)}
 MEAN_STRESSES = ("none", "morrow")
 
 
@@ -114,12 +114,6 @@ def _sum_cycles(
 
 
 @compiled(error_model="python", nogil=True)
-def _fill_von_mises(stress: np.ndarray, nu: float, scalar: np.ndarray) -> None:
-    for k in range(stress.shape[1]):
-        scalar[k] = sqrt(_squared_range(float(stress[0, k]), float(stress[1, k]), float(stress[2, k]), nu))
-
-
-@compiled(error_model="python", nogil=True)
 def damage_of_points(
     histories: tuple, nu: float, channels: np.ndarray, law: tuple, work: tuple, out: np.ndarray
 ) -> None:
@@ -130,10 +124,7 @@ def damage_of_points(
         history = stress[point, :, : lengths[point]]
         worst = -1.0
         for channel in channels:
-            if channel == 3:
-                _fill_von_mises(history, nu, scalar)
-            else:  # copied, so that counting is compiled once for all kinds of histories
-                scalar[: lengths[point]] = history[channel]
+            scalar[: lengths[point]] = history[channel]  # copied: counting is compiled once for all kinds
             counts = find_cycles(scalar[: lengths[point]], law[0][0], stack, cycles)
             total, number, largest = _sum_cycles(history, nu, counts, cycles, law)
             if total > worst or total == worst and largest > out[point, 2] ** 2:
@@ -190,9 +181,7 @@ def damage(
     count
         Scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and txz
         separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
-        sz change together, under a passing asperity txz reverses while sz peaks), and the von Mises stress,
-        which has no sign, misses a reversal through zero. A von Mises stress with the sign of the shear is
-        not available, because its jumps pair nearly equal stress states.
+        sz change together, under a passing asperity txz reverses while sz peaks).
     residue
         See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
     mean_stress
