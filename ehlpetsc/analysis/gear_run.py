@@ -12,15 +12,15 @@ from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.reader import read_result
 
 SCALARS = (  # scalar of the steps, factor, label
-    ("p_max", 1e-9, "largest pressure\n[GPa]"),
-    ("film_central", 1e6, "mean film of the\ncontact [um]"),
-    ("h_min", 1e6, "least film [um]"),
+    ("p_max", 1e-9, "maximum pressure\n[GPa]"),
+    ("film_central", 1e6, "mean film of the\ncontact [µm]"),
+    ("h_min", 1e6, "minimum film [µm]"),
     ("lambda_ratio", 1.0, "lambda ratio"),
     ("friction_coefficient", 1.0, "friction coefficient"),
     ("contact_share", 1.0, "share of the load\non the solids"),
-    ("film_temperature_max", 1.0, "highest temperature\nof the film [K]"),
-    ("temperature_1_max", 1.0, "highest temperature\nof the pinion [K]"),
-    ("temperature_2_max", 1.0, "highest temperature\nof the wheel [K]"),
+    ("film_temperature_max", 1.0, "maximum temperature\nof the film [K]"),
+    ("temperature_1_max", 1.0, "maximum temperature\nof the pinion [K]"),
+    ("temperature_2_max", 1.0, "maximum temperature\nof the wheel [K]"),
 )
 AVERAGING_LENGTH = 0.02  # of the path
 FLANKS = ("pinion", "wheel")  # surfaces 1 and 2

@@ -86,7 +86,7 @@ def _description(profile: Profile, case: Case, scales: Scales, begin: float, end
     arrives = entry_times(profile, scales)
     if case.time is None or arrives is None:
         return f"under the domain from the start; {mesh}"
-    part = "dark: passes" if profile.X[-1] > end > begin else "none of it passes"
+    part = "in colour: passes" if profile.X[-1] > end > begin else "none of it passes"
     part = "all of it passes" if end >= profile.X[-1] > begin else part
     enters = f"its left end enters first and reaches the contact at travel {arrives[0]:.2f} a"
     return f"{enters}\n{part} the whole contact within travel {case.time.travel:g} a; {mesh}"

@@ -65,7 +65,7 @@ def stretch(result: PostResult, surface: str, longest: float | None = None) -> t
 
 
 def profile(axes: Axes, result: PostResult, surface: str, ends: tuple[float, float]) -> None:
-    """Draw the profile between two ends in mm, heights in um."""
+    """Draw the profile between two ends in mm, heights in µm."""
     axes.set_ylabel("z [µm]")
     axes.axhline(0, color="0.8", lw=0.6)
     axes.yaxis.set_major_locator(MaxNLocator(3))
@@ -91,7 +91,7 @@ def temperatures(axes: Axes, result: PostResult, surface: str) -> None:
 def _under_surface(
     axes: Axes, result: PostResult, surface: str, ends: tuple[float, float], depths: np.ndarray, gap: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Set the axes of a map under a surface, in mm, z/a and um; returns abscissae and depths."""
+    """Set the axes of a map under a surface, in mm, z/a and µm; returns abscissae and depths."""
     depth, ticks = _depth_axis(depths, gap)
     axes.set_yticks(depth[ticks], [f"{z:g}" for z in depths[ticks]])
     axes.set_xlim(*ends)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
 
 MAX_DEPTHS = 4
+OF_FLANKS = {f"temperature_{side}_max": style.SURFACES[side] for side in "12"}
 
 
 def draw(path: ContactPath, hertz: tuple[np.ndarray, np.ndarray] | None, target: Path, title: str) -> None:
@@ -61,9 +62,9 @@ def draw_run(run: GearRun, target: Path) -> None:
     figure = Figure(figsize=(7.0, 1.0 + 1.2 * len(rows)), layout="constrained")
     axes = figure.subplots(len(rows), 1, sharex=True, squeeze=False)[:, 0]
     for axis, (name, factor, label) in zip(axes, rows, strict=True):
-        values = factor * run.scalars[name]
-        axis.plot(1e3 * run.position, values, color=style.SINGLE, alpha=0.3, linewidth=0.5)
-        axis.plot(1e3 * run.position, run.averaged(values), color=style.SINGLE, linewidth=1.5)
+        values, colour = factor * run.scalars[name], OF_FLANKS.get(name, style.SINGLE)
+        axis.plot(1e3 * run.position, values, color=colour, alpha=0.3, linewidth=0.5)
+        axis.plot(1e3 * run.position, run.averaged(values), color=colour, linewidth=1.5)
         axis.set_ylabel(label, fontsize=7)
     c = run.path.pair.points["C"]
     for axis in axes:
