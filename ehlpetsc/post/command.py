@@ -115,9 +115,6 @@ def main(words: Sequence[str]) -> int:
 
 def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
     """Raise UsageError for options that do not fit each other."""
-    for path in files:
-        if not Path(path).name:
-            raise UsageError(f"{path!r}: not the name of a result file")
     if chosen.output and len(files) > 1:
         raise UsageError("-o names one file: give one RESULT.h5, or leave it out")
     if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):

@@ -39,13 +39,9 @@ class Passes(NamedTuple):
 def pass_statistics(damages: np.ndarray) -> Passes:
     """Statistics over passes, shape (...), from D of each pass, shape (passes, ...).
 
-    D is nan for points that did not pass; ValueError for a negative damage, or none.
+    D is nan for points that did not pass.
     """
     damages = np.asarray(damages, float)
-    if damages.ndim == 0 or not len(damages):
-        raise ValueError("there must be one pass or more")
-    if (damages < 0).any():
-        raise ValueError("damages must not be negative")
     passed = ~np.isnan(damages)
     count = passed.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -147,18 +147,13 @@ def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np
             f"format {path.suffix!r} needs the package SurfaceTopography (pip install SurfaceTopography); "
             "without it, allowed: .csv or two-column text, x and z in m"
         ) from None
-    except Exception as error:  # incompatible libraries
-        reason = str(error).strip().splitlines()[-1:] or [type(error).__name__]
-        raise ProfileError(f"the package SurfaceTopography does not start: {reason[0]}") from None
     try:
         topography = read_topography(str(path)).to_unit("m")
         if topography.dim == 1:
             return topography.positions_and_heights()
         x, _, z = topography.positions_and_heights()
     except Exception as error:  # various exceptions on a damaged file
-        lines = str(error).strip().splitlines()  # messages of all readers for an unknown format
-        fault = lines[0] if len(lines) == 1 else "in none of its formats"
-        raise ProfileError(f"SurfaceTopography cannot read it: {fault}") from None
+        raise ProfileError(f"SurfaceTopography cannot read it: {str(error).partition(chr(10))[0]}") from None
     middle = z.shape[1] // 2  # of an areal map the central trace
     return x[:, middle], z[:, middle]
 

@@ -27,7 +27,7 @@ stress.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf, log, sqrt
+from math import exp, log, sqrt
 
 import numpy as np
 
@@ -60,11 +60,6 @@ class Criteria:
     bending_limit: float = 375e6 * sqrt(3)  # sigma_w of Dang Van
 
     def __post_init__(self) -> None:
-        for name in ("normal_sensitivity", "yield_strength", "torsion_limit", "bending_limit"):
-            value = getattr(self, name)
-            is_allowed = 0 <= value if name == "normal_sensitivity" else value is None or value > 0
-            if not is_allowed or value is not None and not value < inf:
-                raise ValueError(f"{name} = {value}: must be a finite number above 0")
         if self.torsion_limit < self.bending_limit / 2:
             raise ValueError(
                 f"torsion_limit = {self.torsion_limit}: must be half of bending_limit or more (Dang Van's "

@@ -109,23 +109,6 @@ class Material:
     fatigue_ductility: float = 0.48
     cyclic_strength: float | None = None
 
-    def __post_init__(self) -> None:
-        for name in (
-            "youngs_modulus",
-            "cyclic_hardening",
-            "fatigue_strength",
-            "fatigue_ductility",
-            "cyclic_strength",
-        ):
-            value = getattr(self, name)
-            if value is not None and not 0 < value < inf:
-                raise ValueError(f"{name} = {value}: must be a finite number above 0")
-        for name in ("b", "c"):
-            if not -inf < getattr(self, name) < 0:
-                raise ValueError(f"{name} = {getattr(self, name)}: must be a finite number below 0")
-        if not -1 < self.poisson_ratio <= 0.5:
-            raise ValueError(f"poisson_ratio = {self.poisson_ratio}: must lie between -1 and 0.5")
-
     @property
     def hardening_coefficient(self) -> float:
         """K' in Pa."""
