@@ -59,7 +59,7 @@ def draw(life: LifeHistory, path: Path) -> None:
                 line = dict(color=style.SURFACES[side], label=f"surface {side}")
                 axes.plot(passes, unit * life(f"{name}_{side}"), marks, **line)
             axes.legend(fontsize="x-small")
-        axes.set(xscale="log", xlim=(0.8 * passes[0], 1.25 * passes[-1]), xlabel="passes", ylabel=label)
+        axes.set(xlim=(0.0, 1.05 * passes[-1]), xlabel="passes", ylabel=label)
     figure.suptitle(life.title)
     style.save(figure, path)
 
@@ -133,7 +133,7 @@ def _draw(figure: Figure, grid: np.ndarray, life: LifeHistory, row: int) -> None
     top = 1.05 * max(
         1.0, *(np.max(life(f"{name}_{k}")) for name in ("damage", "pitted_share") for k in (1, 2))
     )
-    grid[2].set(xscale="log", xlabel="passes", ylabel="D, share", ylim=(0.0, min(top, 2.0)))
+    grid[2].set(xlabel="passes", ylabel="D, share", ylim=(0.0, min(top, 2.0)))
     grid[2].legend(fontsize="x-small", loc="upper left")
     figure.suptitle(f"{life.title}: {passes[row]:,} passes", fontsize=10)
 
