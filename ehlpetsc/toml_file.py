@@ -6,10 +6,11 @@ import json
 import os
 import re
 import tomllib
-from pathlib import Path
 from typing import Any
 
 from ehlpetsc.errors import CaseError
+
+MAX_BYTES = 2**26  # of a case file
 
 
 def read_text(path: str | os.PathLike) -> str:
@@ -19,7 +20,11 @@ def read_text(path: str | os.PathLike) -> str:
     try:
         if not str(path):
             raise CaseError(["'': no name of a case file; allowed: a TOML file"])
-        return Path(path).read_bytes().decode("utf-8-sig")
+        with open(path, "rb") as file:  # a device has no size and no end
+            content = file.read(MAX_BYTES + 1)
+        if len(content) > MAX_BYTES:
+            raise CaseError([f"{path}: larger than {MAX_BYTES >> 20} MB; allowed: a TOML file of a case"])
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
