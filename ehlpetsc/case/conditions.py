@@ -256,4 +256,4 @@ def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
     if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:
         return []
     fault = f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative"
-    return [f"{fault}; allowed: {-mesh.inlet:g}, as far out as mesh.inlet"]
+    return [f"{fault}; allowed: {-mesh.inlet:g}, as far out as mesh.inlet, a whole number of cells in all"]

@@ -133,12 +133,12 @@ def test_a_number_in_place_of_a_column_is_refused(time):
 
 def test_reversing_entrainment_needs_a_symmetric_domain(with_table):
     text = "time, speed 1, speed 2\n0, 1, 1\n1e-3, -1, -1\n"
-    with pytest.raises(CaseError, match=r"mesh\.outlet = 1\.5: .* 4, .* mesh\.inlet$"):
+    with pytest.raises(CaseError, match=r"mesh\.outlet = 1\.5: .* allowed: 4, "):
         load(with_table(text))
     case = load(with_table(text), {"mesh.outlet": 4.0})
     assert operation_of(case, Scales.of(case)).is_reversing
     odd = {"mesh.points_per_half_width": 40, "mesh.inlet": -2.53}  # 202.4 cells
-    with pytest.raises(CaseError, match=r"allowed: 2\.55 with mesh\.inlet = -2\.55: ") as error:
+    with pytest.raises(CaseError, match="mesh.outlet = 2.53: .* a whole number of cells in all$") as error:
         load(with_table(text), odd | {"mesh.outlet": 2.53})
     assert len(error.value.faults) == 1
     load(with_table(text), odd | {"mesh.inlet": -2.55, "mesh.outlet": 2.55})
