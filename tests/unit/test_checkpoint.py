@@ -148,6 +148,20 @@ def test_reversed_rough_body_is_refused(tmp_path):
         Scene("motion.slide_roll_ratio=2.5", "motion.entrainment_speed=4.0").load(tmp_path / "f.restart.h5")
 
 
+@pytest.mark.parametrize(
+    "mesh, text",
+    [
+        (["mesh.points_per_half_width=21"], "nodes, the case"),
+        (["mesh.inlet=-2.4", "mesh.outlet=1.6"], "lie from"),
+    ],
+)
+def test_state_on_another_mesh_is_refused(tmp_path, mesh, text):
+    scene = Scene()
+    scene.save(tmp_path / "f.restart.h5", *state_of(scene))
+    with pytest.raises(OutputError, match=text):
+        Scene(*mesh).load(tmp_path / "f.restart.h5")
+
+
 def test_profiles_that_would_jump_are_refused(tmp_path):
     scene = Scene()
     scene.save(tmp_path / "f.restart.h5", *state_of(scene))
