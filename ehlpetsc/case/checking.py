@@ -7,7 +7,7 @@ import math
 from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple, TypeGuard
 
-from ehlpetsc.case.messages import allowed, show, unknown
+from ehlpetsc.case.messages import allowed, celsius, show, unknown
 from ehlpetsc.case.tables import CASE, key_of
 from ehlpetsc.errors import CaseError
 from ehlpetsc.keys import Key, KeyTable, Refused
@@ -161,7 +161,8 @@ def _checked(
     except _Wrong:
         if isinstance(value, dict) and key.kind is not dict:
             return None, [Fault(place, f"{place}: a table here; allowed: {allowed(key)}")]
-        return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}")]
+        hint = celsius(key, value)
+        return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}{hint}")]
     limit = data.get(key.below)
     if key.below and is_number(limit) and result >= limit:
         return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}")]

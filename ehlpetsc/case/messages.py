@@ -41,6 +41,13 @@ def allowed(key: Key) -> str:
     return f"{value_text(key)} ({key.text})"
 
 
+def celsius(key: Key, value: object) -> str:
+    """Hint to degrees Celsius where a number would be allowed as such; "" otherwise."""
+    if key.unit != "K" or not isinstance(value, int | float) or not abs(value) < 1e4:
+        return ""
+    return f'; "{value:g} degC"?' if key.ge <= value + 273.15 <= key.le else ""
+
+
 def show(value: object) -> str:
     """Value as in the case file, shortened."""
     try:
