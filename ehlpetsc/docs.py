@@ -12,6 +12,7 @@ from ehlpetsc.environment import missing
 from ehlpetsc.errors import OutputError
 
 ROOT = Path(__file__).parents[1]  # of a clone
+SITE = ROOT / ".github" / "site"
 NEEDED = ("sphinx", "myst_parser", "furo")
 
 
@@ -26,14 +27,14 @@ def main(words: list[str]) -> int:
 
 
 def _build(folder: Path | None) -> None:
-    if not (ROOT / "docs" / "conf.py").exists():
+    if not (SITE / "conf.py").exists():
         raise OutputError("an installed package has no pages: call ./run_mpi.sh docs in a clone")
     if lacks := missing(NEEDED):
         raise OutputError(f"{', '.join(lacks)}: not installed; ./run_mpi.sh docs installs them on Debian")
     cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     target = (folder or Path(cache, "ehlpetsc", "docs")).absolute()
     with tempfile.TemporaryDirectory() as scratch:
-        options = ["-q", "-W", "--keep-going", "-d", scratch, "-c", str(ROOT / "docs")]
+        options = ["-q", "-W", "--keep-going", "-d", scratch, "-c", str(SITE)]
         paths = os.pathsep.join(filter(None, [str(ROOT), *sys.path]))
         command = [sys.executable, "-m", "sphinx", *options, str(ROOT), str(target)]
         status = subprocess.call(command, env=os.environ | {"PYTHONPATH": paths})

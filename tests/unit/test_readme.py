@@ -97,7 +97,7 @@ def test_output_on_the_page_is_current():
     assert len(shown) >= 7 and lines[0] in MAIN
 
 
-CONFIGURATION = runpy.run_path(str(ROOT / "docs" / "conf.py"))
+CONFIGURATION = runpy.run_path(str(ROOT / ".github" / "site" / "conf.py"))
 SITE, LACKS = CONFIGURATION["PAGES"], missing(docs.NEEDED)
 TEXTS = {page: (ROOT / f"{page}.md").read_text(encoding="utf-8") for page in SITE}
 needs_generator = pytest.mark.skipif(
