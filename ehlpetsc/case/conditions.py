@@ -256,4 +256,7 @@ def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
     if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:
         return []
     fault = f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative"
-    return [f"{fault}; allowed: {-mesh.inlet:g}, as far out as mesh.inlet, a whole number of cells in all"]
+    cells = np.ceil(-2.0 * mesh.inlet * mesh.points_per_half_width - 1e-6)
+    half = 0.5 * cells / mesh.points_per_half_width
+    inlet = f" with mesh.inlet = {-half:.12g}" if abs(half + mesh.inlet) > 1e-9 else ""
+    return [f"{fault}; allowed: {half:.12g}{inlet}, a whole number of cells with the inlet as far out"]
