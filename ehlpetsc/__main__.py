@@ -41,7 +41,9 @@ COMMANDS = {
     "ensemble": Command("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
     "gears": Command("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": Command("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
-    "explain": Command("ehlpetsc.run.explain", (*READING, "h5py"), "a case in words, before it runs"),
+    "explain": Command(
+        "ehlpetsc.run.explain", (*READING, "h5py"), "film, run time and effects of a case, before it runs"
+    ),
     "keys": Command("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": Command(
         "ehlpetsc.case.key_page", READING, "a commented case to begin with", "template_command"

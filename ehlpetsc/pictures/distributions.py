@@ -146,7 +146,7 @@ def passes_picture(results: list[PostResult], surface: str) -> Figure:
     top.set_title(
         f"surface {surface}, z/a = {results[0].z[worst]:g}, {len(results)} passes, "
         f"{plots.strain_rule(results[0])}: Miner's sum 1 from {first:.3g} passes on\n"
-        f"scatter of D from pass to pass, at half of the points below {scatter:.2g} of its mean",
+        f"median scatter of D from pass to pass {scatter:.2g} of its mean",
         fontsize=9,
     )
     style.legend_beside(top)

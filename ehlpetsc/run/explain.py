@@ -1,4 +1,4 @@
-"""The command ``ehlpetsc explain``: a case in words."""
+"""The command ``ehlpetsc explain``: summary of a case before its run."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ if TYPE_CHECKING:
 
 def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc explain``; returns its exit status."""
-    parser = CommandParser("explain", "A case in words: film, lambda ratio, run time, effects switched off.")
+    parser = CommandParser(
+        "explain", "Summary of a case before its run: film, lambda ratio, run time, effects switched off."
+    )
     parser.add_argument("case", metavar="CASE.toml")
     chosen = parser.parse_args(words)
     return exit_status("explain", lambda: put(explain(load(chosen.case, chosen.set)), chosen))

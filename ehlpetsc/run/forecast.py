@@ -1,4 +1,4 @@
-"""Before a run: heading, both surfaces in words, forecast of run time and file size."""
+"""Before a run: heading, both surfaces, forecast of run time and file size."""
 
 from __future__ import annotations
 
