@@ -87,11 +87,7 @@ def _has_text(value: object, depth: int = 2) -> bool:
 
 
 def check(
-    table: KeyTable,
-    data: Tables,
-    where: str = "",
-    root: Tables | None = None,
-    known: Collection[str] = (),
+    table: KeyTable, data: Tables, where: str = "", root: Tables | None = None, known: Collection[str] = ()
 ) -> tuple[Any, list[Fault]]:
     """Checked values of a table, None with faults, and its faults.
 

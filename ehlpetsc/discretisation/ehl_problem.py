@@ -230,15 +230,7 @@ def jacobian_rows(
         directional_derivative(by[k + 1], nodes, 0, change[k])
     local = 2 * len(derivatives)
     deflection_rows(
-        change[2],
-        v_h00,
-        curvature,
-        load,
-        start,
-        coefficient,
-        end_coefficient,
-        has_last,
-        rows[0:local:2],
+        change[2], v_h00, curvature, load, start, coefficient, end_coefficient, has_last, rows[0:local:2]
     )
     reynolds_product(derivatives, change[0], change[1], start, rows[1:local:2])
     if len(rows) > local:

@@ -81,11 +81,7 @@ class Reynolds:
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
     def properties(
-        self,
-        q: np.ndarray,
-        h: np.ndarray,
-        inputs: StepInputs,
-        temperatures: np.ndarray | None = None,
+        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
     ) -> np.ndarray:
         """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
 
@@ -108,11 +104,7 @@ class Reynolds:
         return s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
 
     def evaluate(
-        self,
-        q: np.ndarray,
-        h: np.ndarray,
-        inputs: StepInputs,
-        temperatures: np.ndarray | None = None,
+        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows and its derivatives.
 
@@ -212,11 +204,7 @@ class NoOil:
         return None
 
     def evaluate(
-        self,
-        q: np.ndarray,
-        h: np.ndarray,
-        inputs: StepInputs,
-        temperatures: np.ndarray | None = None,
+        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """See :meth:`.reynolds.Reynolds.evaluate`."""
         return q[self.owned], self._derivatives

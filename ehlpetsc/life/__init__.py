@@ -8,12 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 
-_HOMES = {
-    "LifeHistory": "history",
-    "read_life": "history",
-    "run_life": "driver",
-    "run_regimes": "regimes",
-}
+_HOMES = {"LifeHistory": "history", "read_life": "history", "run_life": "driver", "run_regimes": "regimes"}
 __all__ = list(_HOMES)
 
 

@@ -16,15 +16,7 @@ import numpy as np
 
 from ehlpetsc.errors import OutputError
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import (
-    change,
-    check_space,
-    create,
-    extend,
-    open_for_reading,
-    plain,
-    put_fixed,
-)
+from ehlpetsc.results.hdf5_file import change, check_space, create, extend, open_for_reading, plain, put_fixed
 from ehlpetsc.results.output_guard import os_reason, replacing
 
 if TYPE_CHECKING:

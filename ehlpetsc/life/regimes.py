@@ -189,12 +189,7 @@ class _Lives:
         path = self.file(member)
         try:
             life = run_life(
-                member.case,
-                path,
-                overwrite=self.overwrite,
-                unresolved=self.unresolved,
-                comm=group,
-                stop=stop,
+                member.case, path, overwrite=self.overwrite, unresolved=self.unresolved, comm=group, stop=stop
             )
             return {"state": "done"} | outcome(life)
         except Stopped:

@@ -81,11 +81,7 @@ def xu_kahraman(
 
 
 def benedict_kelley(
-    load: np.ndarray,
-    sliding: np.ndarray,
-    sum_speed: np.ndarray,
-    viscosity: np.ndarray,
-    ra: np.ndarray,
+    load: np.ndarray, sliding: np.ndarray, sum_speed: np.ndarray, viscosity: np.ndarray, ra: np.ndarray
 ) -> np.ndarray:
     r"""Local coefficient of friction of a gear contact.
 

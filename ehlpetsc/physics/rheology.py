@@ -104,12 +104,7 @@ def _mobility(
 
 
 def wall_shear(
-    h: Any,
-    gradient: Any,
-    ln_eta: np.ndarray,
-    fluid: Any,
-    sliding: float,
-    p: np.ndarray | None = None,
+    h: Any, gradient: Any, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
 

@@ -52,10 +52,7 @@ def draw(life: LifeHistory, path: Path) -> None:
         if name == "friction":
             axes.plot(passes - life("jump") + 1, life(name), ".-", color=style.SINGLE)
         else:
-            for side, marks in (
-                ("2", ".-"),
-                ("1", ".--"),
-            ):  # 1 dashed above 2
+            for side, marks in (("2", ".-"), ("1", ".--")):  # 1 dashed above 2
                 line = dict(color=style.SURFACES[side], label=f"surface {side}")
                 axes.plot(passes, unit * life(f"{name}_{side}"), marks, **line)
             axes.legend(fontsize="x-small")

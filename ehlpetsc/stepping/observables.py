@@ -76,14 +76,7 @@ def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
     shear_1, shear_2 = shear_stresses(
-        fluid,
-        solution.inputs.boundary_friction * solids,
-        s.dx,
-        conditions.sliding,
-        oil,
-        film,
-        sheared,
-        shear,
+        fluid, solution.inputs.boundary_friction * solids, s.dx, conditions.sliding, oil, film, sheared, shear
     )
     return {
         "pressure": loads.pressure * s.p0,

@@ -66,10 +66,7 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
             f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {limit:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
-    size, beyond = (
-        x.size,
-        int(2.0 * cutoff / step) + MIN_PADDING,
-    )  # the weights of the filter vanish beyond
+    size, beyond = (x.size, int(2.0 * cutoff / step) + MIN_PADDING)  # the weights of the filter vanish beyond
     if (
         size > MAX_EXACT_LENGTH and beyond < size
     ):  # lengths with a large prime factor cost six times the memory

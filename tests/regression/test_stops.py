@@ -171,12 +171,7 @@ def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path):
     """Roughness at the same travel is the same; the run ends at the travel of the case."""
     stopped = run(*CASE, cwd=tmp_path, tampered=("SIGTERM", 0, 20))
     assert stopped.returncode == 4, stopped.stderr
-    faster = [
-        *CASE,
-        *settings("motion.entrainment_speed=7.5"),
-        "-ehl_restart",
-        "table1_rough.restart.h5",
-    ]
+    faster = [*CASE, *settings("motion.entrainment_speed=7.5"), "-ehl_restart", "table1_rough.restart.h5"]
     refused = run(*faster, cwd=tmp_path)
     assert refused.returncode == 2
     assert is_line_with(refused.stderr, "table1_rough.h5: ", "(u1 = 5.625)")
@@ -214,10 +209,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
     assert full.returncode == 2
     step, time = re.search(r" step (\d+) \((\S+) us\)", full.stderr).groups()
     assert is_line_with(
-        full.stderr,
-        "table1_rough.h5: ",
-        "File too large",
-        f"--restart table1_rough.restart.h5 (step {step})",
+        full.stderr, "table1_rough.h5: ", "File too large", f"--restart table1_rough.restart.h5 (step {step})"
     )
     with read_result(tmp_path / "table1_rough.h5") as result:
         np.testing.assert_array_equal(result.steps("step"), range(int(step) + 1))

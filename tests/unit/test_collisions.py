@@ -23,16 +23,7 @@ FIELDS = ("pressure", "film_thickness", "in_contact")
 
 
 def make(
-    path,
-    viscosity,
-    dips,
-    *,
-    step=0.5e-6,
-    steps=80,
-    bumps=(),
-    bound=0.0,
-    fields=FIELDS,
-    precision="float64",
+    path, viscosity, dips, *, step=0.5e-6, steps=80, bumps=(), bound=0.0, fields=FIELDS, precision="float64"
 ):
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
     attributes = {

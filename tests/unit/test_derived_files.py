@@ -64,12 +64,7 @@ def test_ensemble_overwrites_its_own_tables_only(tmp_path, capsys, name):
 
 @pytest.mark.parametrize(
     "words, name",
-    [
-        ([], "other.h5"),
-        ([], "case.toml"),
-        (["--report"], "case.toml"),
-        (["--movie"], "other.restart.h5"),
-    ],
+    [([], "other.h5"), ([], "case.toml"), (["--report"], "case.toml"), (["--movie"], "other.restart.h5")],
 )
 def test_picture_of_another_ending_is_refused(tmp_path, capsys, words, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)

@@ -150,10 +150,7 @@ def test_spike_warning_gives_its_height_on_the_mesh(tmp_path):
 @pytest.mark.parametrize(
     ("overrides", "words"),
     [
-        (
-            ["contact.radius=12"],
-            r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12",
-        ),
+        (["contact.radius=12"], r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12"),
         (["fluid.viscosity=15"], r"film, 49\.5 um, .* 336 um: viscosity = 15 Pa s"),
         (["fluid.law='barus'"], r'^fluid\.reference_viscosity, fluid\.roelands_pressure: .* law = "barus"'),
     ],

@@ -15,12 +15,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
-from ehlpetsc.nonlinear.jacobian import (
-    PIVOT_REGULARISATION,
-    JacobianOperator,
-    NearFieldMatrix,
-    python_matrix,
-)
+from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION, JacobianOperator, NearFieldMatrix, python_matrix
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.ranks import LINEAR_TOLERANCE
 from ehlpetsc.nonlinear.two_fields import TwoFields

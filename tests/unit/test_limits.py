@@ -9,12 +9,7 @@ from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.warnings import heat_warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
-WITHIN = {
-    "p_max": 1.2e9,
-    "oil_pressure": 1.2e9,
-    "mass_error": 1e-7,
-    "nodes_below_1nm": 0,
-}
+WITHIN = {"p_max": 1.2e9, "oil_pressure": 1.2e9, "mass_error": 1e-7, "nodes_below_1nm": 0}
 
 
 def limit_lines(name="table1_smooth", overrides=(), **changed):

@@ -136,10 +136,7 @@ def test_mixed_contact_adds_oil_and_solid_shear():
     solids, sheared = np.where(touching, 0.2e9, 0.0), np.ones(scales.nx)
     oil_alone = stresses(mixed, scales, p, np.zeros_like(p), h, sheared)
     for sign, both, oil in zip(
-        (-1.0, 1.0),
-        stresses(mixed, scales, p, solids, h, sheared),
-        oil_alone,
-        strict=True,
+        (-1.0, 1.0), stresses(mixed, scales, p, solids, h, sheared), oil_alone, strict=True
     ):
         np.testing.assert_allclose(both - oil, sign * FRICTION * solids, atol=1e-6)
 

@@ -31,7 +31,7 @@ HEAT = {"heat": {"bulk_temperature": 363.0}}
 LAYER = {"contact.asperity_height": 100e-9}
 YIELDING = {"contact.yield_pressure": 2e9}
 SWINGING = {
-    "operation": {"time": [0.0, 2e-4, 4e-4], "load": [500e3, 400e3, 527e3], "speed_1": [5.0, 6.0, 5.5]},
+    "operation": {"time": [0.0, 2e-4, 4e-4], "load": [500e3, 400e3, 527e3], "speed_1": [5.0, 6.0, 5.5]}
 }
 # teeth of a softer material: a wide contact passes a flank in few steps
 GEARS = {

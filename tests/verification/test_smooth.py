@@ -43,13 +43,7 @@ def test_table_1_film_within_0_3_percent(eta0, u, xi, h_min, h_c):
 
 
 @pytest.mark.parametrize(
-    "eta0, u, xi",
-    [
-        (0.01, 5.0, 0.25),
-        (0.005, 5.0, 0.25),
-        (0.002, 5.0, 0.25),
-        (0.005, 25.0, 0.1),
-    ],
+    "eta0, u, xi", [(0.01, 5.0, 0.25), (0.005, 5.0, 0.25), (0.002, 5.0, 0.25), (0.005, 25.0, 0.1)]
 )
 def test_default_start_converges_in_10_iterations(eta0, u, xi):
     *_, state = steady(

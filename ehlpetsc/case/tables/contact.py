@@ -119,10 +119,7 @@ GRADE = KeyTable(
         ),
         "v100": Required("kinematic viscosity at 100 C", "m^2/s", None, 0.1, 2e-6, below="v40"),
         "density": Required(
-            "at the temperature of the oil; data sheets quote 15 C, less 0.07 % per K",
-            "kg/m^3",
-            500,
-            3000,
+            "at the temperature of the oil; data sheets quote 15 C, less 0.07 % per K", "kg/m^3", 500, 3000
         ),
     },
 )

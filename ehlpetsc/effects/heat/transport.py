@@ -187,14 +187,7 @@ def transport(
                 a = stored[i] + from_left + from_right + beyond + to_right + to_left
                 b = first_order + beyond * old[i] + to_right * before + to_left * after
                 value, _, _, q1[i], q2[i], shear_heat[i], _, base[i], profile[i] = film_temperature(
-                    base[i],
-                    profile[i],
-                    pressure[i],
-                    thickness[i],
-                    left[i],
-                    a,
-                    b,
-                    *fixed,
+                    base[i], profile[i], pressure[i], thickness[i], left[i], a, b, *fixed
                 )
                 upstream = before if flow[i + 1] >= 0.0 else after
                 drop = max(in_space[i] * (upstream - value), in_time[i] * (old[i] - value))
