@@ -27,7 +27,7 @@ site="sphinx myst_parser furo" # the pages as one site
 testing="$drawing plotly pytest xdist hypothesis pip hatchling"
 
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
-check="$here/ehlpetsc/environment.py"
+check="$here/ehlpetsc/base/environment.py"
 export HOME=${HOME:-/} # Open MPI 5 does not start without one
 apt="apt-get -o DPkg::Lock::Timeout=600"
 

@@ -15,10 +15,10 @@ _HOMES = {
     "Simulation": "ehlpetsc.run.simulation",
     "read_result": "ehlpetsc.api",
     "Result": "ehlpetsc.api",
-    "CaseError": "ehlpetsc.errors",
-    "NotConverged": "ehlpetsc.errors",
-    "OutputError": "ehlpetsc.errors",
-    "UsageError": "ehlpetsc.errors",
+    "CaseError": "ehlpetsc.base.errors",
+    "NotConverged": "ehlpetsc.base.errors",
+    "OutputError": "ehlpetsc.base.errors",
+    "UsageError": "ehlpetsc.base.errors",
 }
 
 

@@ -15,10 +15,10 @@ import warnings
 from pathlib import Path
 from typing import NamedTuple, NoReturn
 
-import ehlpetsc.environment as packages
+import ehlpetsc.base.environment as packages
 from ehlpetsc import __version__
-from ehlpetsc.environment import NUMERICS, READING
-from ehlpetsc.errors import ExitStatus, UsageError
+from ehlpetsc.base.environment import NUMERICS, READING
+from ehlpetsc.base.errors import ExitStatus, UsageError
 from ehlpetsc.run.stop import EarlyStop
 
 DRAWING = (*NUMERICS, "matplotlib")
@@ -48,7 +48,7 @@ COMMANDS = {
     "template": Command(
         "ehlpetsc.case.key_page", READING, "a commented case to begin with", "template_command"
     ),
-    "docs": Command("ehlpetsc.docs", (), "these pages as one site, opened in a browser"),
+    "docs": Command("ehlpetsc.base.docs", (), "these pages as one site, opened in a browser"),
 }
 
 

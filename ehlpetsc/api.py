@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import h5py
 
-from ehlpetsc import environment
-from ehlpetsc.errors import CaseError, ExitStatus
+from ehlpetsc.base import environment
+from ehlpetsc.base.errors import CaseError, ExitStatus
 from ehlpetsc.results import reader
 from ehlpetsc.results.reader import open_result
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from ehlpetsc import environment
+from ehlpetsc.base import environment
 
 environment.prepare()
 MPI_TESTS = Path(__file__).parent / "mpi"

@@ -17,9 +17,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import OutputError
-from ehlpetsc.quantities import FIELDS, STEP_SCALARS
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import OutputError
+from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import Result, read_result
 
 RTOL = 1e-6  # default of --rtol

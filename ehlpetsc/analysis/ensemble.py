@@ -22,9 +22,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import OutputError, not_written
-from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import OutputError, not_written
+from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.results.index import differences, open_all
 from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.results.output_guard import atomic_write, check_derived

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.errors import CaseError
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.path import gear_loss_factor, loss, mean_friction, path_of_contact
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.reader import read_result

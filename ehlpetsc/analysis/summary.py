@@ -18,9 +18,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import UsageError
-from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import UsageError
+from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all, series_values
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import atomic_write, check_derived

@@ -7,12 +7,12 @@ import math
 from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple, TypeGuard
 
+from ehlpetsc.base.declarations import Key, KeyTable, Refused
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.toml_file import is_plain
+from ehlpetsc.base.units import UnitFault, converted
 from ehlpetsc.case.messages import allowed, celsius, show, unknown
 from ehlpetsc.case.tables import CASE, key_of
-from ehlpetsc.errors import CaseError
-from ehlpetsc.keys import Key, KeyTable, Refused
-from ehlpetsc.toml_file import is_plain
-from ehlpetsc.units import UnitFault, converted
 
 NUMBERS_ONLY = {"half widths", "boundary films"}  # units that are no units of measurement
 MAX_FLOAT = 1e308
@@ -213,7 +213,7 @@ def _item(key: Key, value: Any) -> Any:
 
 
 def _holds(need: str, root: Tables) -> bool:
-    """Whether a need of a key is met by the tables of a case, see :class:`ehlpetsc.keys.Key`."""
+    """Whether a need of a key is met by the tables of a case, see :class:`ehlpetsc.base.declarations.Key`."""
     place, equals, wanted = (part.strip() for part in need.partition("="))
     left_out = place.endswith(" left out")
     place = place.removesuffix(" left out").strip("[]")

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from os import PathLike
 from typing import Any
 
+from ehlpetsc.base.toml_file import plain
 from ehlpetsc.case.messages import show
-from ehlpetsc.toml_file import plain
 
 
 def parsed(override: object) -> tuple[list[str], Any]:

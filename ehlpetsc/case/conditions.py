@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.physics.conditions_table import ConditionsTable
 
-from ehlpetsc.units import UnitFault, factor
+from ehlpetsc.base.units import UnitFault, factor
 
 SI = {key: OPERATION.keys[key].unit for key in COLUMNS}
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+from ehlpetsc.base.declarations import Values
+from ehlpetsc.base.errors import CaseError, ProfileError
+from ehlpetsc.base.materials import GRADES, Steel, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.case.checking import Fault, Tables, check, is_number, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.errors import CaseError, ProfileError
-from ehlpetsc.keys import Values
-from ehlpetsc.materials import GRADES, Steel, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.physics.laws import gold_pressure_viscosity, walther, walther_constants
 
 BY_MATERIAL = "material"

@@ -6,11 +6,11 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
+from ehlpetsc.base.command_parser import CommandParser, exit_status, put
+from ehlpetsc.base.declarations import Key, KeyTable
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.messages import nearest, value_text
 from ehlpetsc.case.tables import CASE
-from ehlpetsc.command_parser import CommandParser, exit_status, put
-from ehlpetsc.errors import UsageError
-from ehlpetsc.keys import Key, KeyTable
 
 EXAMPLES = ("roller", "gears")  # files beside this one
 PAGE = """# Every key of a case file

@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
+from ehlpetsc.base.errors import CaseError, ProfileError
+from ehlpetsc.base.toml_file import parse_toml, plain, read_text
 from ehlpetsc.case.checking import Fault, Tables, check, in_si
 from ehlpetsc.case.combinations import member_tables, parsed, put, series_faults, settings_of
 from ehlpetsc.case.conditions import (
@@ -22,11 +24,9 @@ from ehlpetsc.case.derived import resolve_measured_layer, with_derived, with_lay
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, GEARS, Case
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
-from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.toml_file import parse_toml, plain, read_text
 
 DICT_NAME = "case"  # name of a case without a file in messages
 SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"

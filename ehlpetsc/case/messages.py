@@ -6,7 +6,7 @@ import difflib
 import json
 from collections.abc import Iterable
 
-from ehlpetsc.keys import Key
+from ehlpetsc.base.declarations import Key
 
 NAMES = {bool: "true or false", int: "a whole number", float: "a number", str: "text", dict: "a table"}
 PLURALS = {int: "whole numbers", float: "numbers", str: "texts"}

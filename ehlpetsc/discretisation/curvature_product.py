@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 
 BLOCK = 16  # nodes
 TOLERANCE = 1e-11  # of the kernel

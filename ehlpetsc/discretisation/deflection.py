@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.fft import irfft, rfft
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.curvature_product import Blocks, product
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)

@@ -16,7 +16,7 @@ temperature a hot node can be the more fluid one although its pressure is higher
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled, unsigned
+from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.physics.laws import relative_density
 from ehlpetsc.physics.rheology import mobilities

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     HEATED_PROPERTIES,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 import numpy as np
 
-from ehlpetsc.keys import KeyTable
+from ehlpetsc.base.declarations import KeyTable
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -104,12 +104,12 @@ class Effect:
     record
         Type of the record, a NamedTuple.
     table
-        Table of the case file, :class:`ehlpetsc.keys.KeyTable`.
+        Table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
     moves_with_surfaces
         Whether its contribution to the gap moves with the surfaces from the first step on.
     fields, scalars, surface
-        Quantities of the effect, see :mod:`ehlpetsc.quantities`: fields over the nodes, scalars of every time
-        step, depths along each surface at the end of the run.
+        Quantities of the effect, see :mod:`ehlpetsc.effects.quantities`: fields over the nodes, scalars of
+        every time step, depths along each surface at the end of the run.
     """
 
     name = ""

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.declarations import Field, StepScalar
 from ehlpetsc.effects.body_depth import BodyDepth
-from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
 
 if TYPE_CHECKING:

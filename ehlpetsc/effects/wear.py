@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
 from ehlpetsc.effects.body_depth import BodyDepth
-from ehlpetsc.keys import KeyTable, Required
-from ehlpetsc.quantity import Field, StepScalar
 from ehlpetsc.surfaces.body_field import BodyFields
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.errors import CaseError
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import kinks, relief_ratio, share
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehlpetsc.base.materials import elastic_constants
 from ehlpetsc.gears.path import describe, gear_loss_factor, ohlendorf_loss_factor
-from ehlpetsc.materials import elastic_constants
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import h5py
 
-from ehlpetsc.errors import CaseError, OutputError, UsageError
+from ehlpetsc.base.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.results.reader import read_result

@@ -13,8 +13,8 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import UsageError
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import UsageError
 
 if TYPE_CHECKING:
     pass

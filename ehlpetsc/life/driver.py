@@ -8,8 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.errors import NotConverged
 from ehlpetsc.life.checks import check_case, check_files, check_resolution, pass_file, stored_or_new
 from ehlpetsc.life.history import LifeFile
 from ehlpetsc.life.jumps import Jumps

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.results.hdf5_file import change, check_space, create, extend, open_for_reading, plain, put_fixed
 from ehlpetsc.results.output_guard import os_reason, replacing

@@ -18,7 +18,7 @@ import numpy as np
 from ehlpetsc.life import laws
 
 if TYPE_CHECKING:
-    from ehlpetsc.keys import Values
+    from ehlpetsc.base.declarations import Values
     from ehlpetsc.life.body import LifeBody
     from ehlpetsc.life.rounds import Round
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.errors import ExitStatus, OutputError, PostError, Stopped
+from ehlpetsc.base.errors import ExitStatus, OutputError, PostError, Stopped
 from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare

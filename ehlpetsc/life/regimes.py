@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
+from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.errors import NotConverged, OutputError, PostError, Stopped, UsageError
+from ehlpetsc.base.errors import NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.life.jumps import Rates
 from ehlpetsc.run.ranks import PollingStop, WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields

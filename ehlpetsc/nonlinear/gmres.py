@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.nonlinear.jacobian import jacobian_product
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import solve
 from ehlpetsc.nonlinear.ranks import exchange

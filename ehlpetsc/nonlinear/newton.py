@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
-from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear.options import RunOptions, refusal
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.two_fields import TwoFields, owned

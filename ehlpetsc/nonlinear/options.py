@@ -9,7 +9,7 @@ from typing import Any
 
 from petsc4py import PETSc
 
-from ehlpetsc.errors import UsageError
+from ehlpetsc.base.errors import UsageError
 
 DEFAULTS = {
     "snes_linesearch_type": "basic",

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from ehlpetsc.compiled import call_allgather, compiled
+from ehlpetsc.base.compiled import call_allgather, compiled
 from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import HALO
 from ehlpetsc.discretisation.ehl_problem import EHLProblem

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from petsc4py import PETSc
 
-from ehlpetsc.errors import UsageError
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.curvature_product import BLOCK
 from ehlpetsc.discretisation.deflection import PressureSums
@@ -22,7 +23,6 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of, w_of
-from ehlpetsc.errors import UsageError
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.jacobian import JacobianOperator, NearFieldMatrix, python_matrix
 from ehlpetsc.nonlinear.preconditioner import Factors

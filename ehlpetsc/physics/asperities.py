@@ -48,7 +48,7 @@ import math
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 
 EXPONENTIAL = 12.5  # separation over the decay length beyond which the law is an exponential in all digits
 MAX_RATIO = 1e6  # of prefactor to pressure up to which the law differs from it

@@ -41,7 +41,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled, inlined
+from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.physics import rheology
 
 NEWTON, EYRING, CARREAU = 0, 1, 2

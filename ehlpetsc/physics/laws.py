@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled, inlined
-from ehlpetsc.keys import Key, Refused
+from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.base.declarations import Key, Refused
 
 SLOTS = 10  # constants that compiled loops get of any law
 KELVIN = 273.15  # K at 0 degrees Celsius

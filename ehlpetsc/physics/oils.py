@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled, inlined
+from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.physics.film_shear import CARREAU, NEWTON, FlowLaw
 
 KELVIN = 273.15  # K at 0 degrees Celsius

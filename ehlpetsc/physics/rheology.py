@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.surfaces.parameters import abbott_curve, core, roughness_parameters

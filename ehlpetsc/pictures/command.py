@@ -19,8 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.case_profiles import draw_case
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction

@@ -10,7 +10,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from ehlpetsc.errors import PostError
+from ehlpetsc.base.errors import PostError
 from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.distributions import criteria_picture, depth_picture, passes_picture, ratio_picture

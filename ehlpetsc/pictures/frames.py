@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.style import ACROSS

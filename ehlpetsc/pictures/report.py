@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ehlpetsc.base.environment import has
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import Case
-from ehlpetsc.environment import has
-from ehlpetsc.errors import OutputError
+from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.pictures.style import hertz_at
-from ehlpetsc.quantities import STEP_SCALARS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ehlpetsc.analysis.ensemble import CONFIDENCE, Ensemble, bootstrap, ensembles
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import damage_beside

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.command_parser import CommandParser
-from ehlpetsc.compiled import COMPILED
-from ehlpetsc.errors import CaseError, ExitStatus, OutputError, PostError, UsageError, not_written
+from ehlpetsc.base.command_parser import CommandParser
+from ehlpetsc.base.compiled import COMPILED
+from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, PostError, UsageError, not_written
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, Counting
 from ehlpetsc.post.fatigue.cycles import RESIDUES

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.loading import stored_case
-from ehlpetsc.errors import PostError
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.stresses.half_plane import spacing

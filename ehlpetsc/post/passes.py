@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.errors import PostError
+from ehlpetsc.base.errors import PostError
 from ehlpetsc.post.contents import write_result
 from ehlpetsc.results.index import read_index
 from ehlpetsc.results.output_guard import Lock, atomic_write

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.errors import PostError
+from ehlpetsc.base.materials import fatigue_constants, named_steels
 from ehlpetsc.case.loading import Case
-from ehlpetsc.errors import PostError
-from ehlpetsc.materials import fatigue_constants, named_steels
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.loads import Loads

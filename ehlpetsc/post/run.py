@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehlpetsc import __version__
+from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.case.loading import Case
-from ehlpetsc.errors import OutputError
-from ehlpetsc.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.fatigue.accumulate import Counter, Counting
 from ehlpetsc.post.loads import Loads

@@ -14,7 +14,7 @@ from typing import Any, BinaryIO
 import h5py
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
 BEING_WRITTEN = "already open"  # in the message of HDF5 on a file of a live or killed writer

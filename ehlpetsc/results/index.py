@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.results.hdf5_file import open_for_reading
 from ehlpetsc.results.output_guard import (
     OVERWRITE_ADVICE,

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case

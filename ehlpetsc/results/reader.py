@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from ehlpetsc.errors import CaseError, OutputError
+from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.results.hdf5_file import Attributes, LazyDataset, open_for_reading, reading
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.results.hdf5_file import open_for_reading, plain
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write, os_reason
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.quantities import OTHERS, STEP_SCALARS
+from ehlpetsc.effects.quantities import OTHERS, STEP_SCALARS
 from ehlpetsc.results.means import filled_weights, mean
 
 if TYPE_CHECKING:

@@ -19,9 +19,9 @@ from typing import Any, BinaryIO
 import h5py
 import numpy as np
 
-from ehlpetsc.errors import OutputError
-from ehlpetsc.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS, of_every_case
-from ehlpetsc.quantity import Field
+from ehlpetsc.base.declarations import Field
+from ehlpetsc.base.errors import OutputError
+from ehlpetsc.effects.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS, of_every_case
 from ehlpetsc.results.hdf5_file import change, check_space, create, extend, put_fixed
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import os_reason, replacing
@@ -42,10 +42,10 @@ SCALE_TOLERANCE = 1e-9  # relative: speeds and scales nearer than this are equal
 class Layout:
     """Datasets of a result file: nodes x [m], fields of a frame, scalars of the steps, surfaces.
 
-    `fields` are keys of `ehlpetsc.quantities.FIELDS`, `scalars` of `STEP_SCALARS`, by default those of every
-    case; `precision` is the type of stored fields. `profiles` is ``{"1": (s, z, speed) or None, "2": ...}``;
+    `fields` are keys of `quantities.FIELDS`, `scalars` of `STEP_SCALARS`, by default those of every case;
+    `precision` is the type of stored fields. `profiles` is ``{"1": (s, z, speed) or None, "2": ...}``;
     an optional fourth item contains attributes (ra, rq, rsk), a fifth one names of depths to create, keys of
-    `ehlpetsc.quantities.OTHERS` ("set").
+    `quantities.OTHERS` ("set").
     """
 
     x: np.ndarray

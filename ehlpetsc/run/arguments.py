@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.errors import UsageError
+from ehlpetsc.base.errors import UsageError
 
 if TYPE_CHECKING:
     from ehlpetsc.run.simulation import Simulation

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc import __version__
+from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.physics import film_formulas
-from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.base.errors import ExitStatus, OutputError
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import is_restart_of

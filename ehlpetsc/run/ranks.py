@@ -10,7 +10,7 @@ import time as clock
 from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.run.stop import StopRequest
 
 if TYPE_CHECKING:

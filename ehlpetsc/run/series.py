@@ -15,9 +15,9 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
-from ehlpetsc.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.index import Index, flat_keys

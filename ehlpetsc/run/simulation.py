@@ -13,10 +13,10 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from ehlpetsc.base.errors import CaseError, NotConverged, Stopped
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.errors import CaseError, NotConverged, Stopped
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 
-from ehlpetsc.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 

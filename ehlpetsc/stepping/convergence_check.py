@@ -20,10 +20,10 @@ from typing import Protocol
 
 import numpy as np
 
+from ehlpetsc.base.errors import NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
-from ehlpetsc.errors import NotConverged, SolveFailed
 
 SUM_ROUNDING = 1.0 + 1e-6  # factor on tolerances: sums in another order differ by rounding
 VOID_TOLERANCE = 1e-9  # excess of a void fraction over 1 that is rounding

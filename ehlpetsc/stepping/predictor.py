@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.stepping.state import TimeLevel

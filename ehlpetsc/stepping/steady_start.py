@@ -24,9 +24,9 @@ If the Hertz pressure exceeds the yield pressure, the guess is the dry contact o
 from collections.abc import Callable
 from dataclasses import replace
 
+from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
 

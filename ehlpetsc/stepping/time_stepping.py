@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, mirrored
 from ehlpetsc.effects.effect import Effect, Scene, Step
-from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.nonlinear import events
 from ehlpetsc.physics.operation import LEVEL_TOLERANCE
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ehlpetsc.errors import ProfileError
+from ehlpetsc.base.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # relative rounding of the abscissas of equally spaced points in a file
 MAX_EXACT_LENGTH = 100_000  # points: longer transforms are padded to a fast length

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.errors import ProfileError
+from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}

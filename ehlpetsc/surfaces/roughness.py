@@ -11,8 +11,8 @@ import numpy as np
 from ehlpetsc.surfaces.profile import Profile
 
 if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.keys import Values
     from ehlpetsc.physics.scales import Scales
 
 END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are equal

@@ -14,7 +14,7 @@ from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass, thinned
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 if TYPE_CHECKING:
-    from ehlpetsc.keys import Values
+    from ehlpetsc.base.declarations import Values
 
 MEAN_TOLERANCE = 1e-3  # of Rq: smaller means are rounding
 

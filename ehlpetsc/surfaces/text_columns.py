@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.errors import ProfileError
+from ehlpetsc.base.errors import ProfileError
 
 MISSING = {"", "nan", "-nan", "nan(ind)", "-nan(ind)", "na", "n/a", "bad", "*", "***", "-", "--", "---"}
 NUMBERS_ONLY = re.compile(r"[\d\s.,;eE+-]+")

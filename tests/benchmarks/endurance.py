@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 import numpy as np
 
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.reader import read_result
 

@@ -9,7 +9,7 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
-from ehlpetsc import environment
+from ehlpetsc.base import environment
 
 environment.prepare()
 import petsc4py

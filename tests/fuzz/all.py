@@ -24,7 +24,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parent / "unit"), str(HERE
 import numpy as np
 from sandbox import BAD, WORDS
 
-from ehlpetsc import environment
+from ehlpetsc.base import environment
 
 environment.prepare()
 # calls from Python import PETSc, after which nothing may be forked

@@ -40,7 +40,7 @@ def test_life_is_independent_of_the_number_of_ranks(keys, tmp_path):
 def test_stop_in_one_position_ends_the_life_on_every_rank(tmp_path):
     from mpi4py import MPI
 
-    from ehlpetsc.errors import Stopped
+    from ehlpetsc.base.errors import Stopped
 
     world = MPI.COMM_WORLD
     case = load(CASE, SHORT | {"time.pass_shift": 50e-6, "life.partners": 3})

@@ -7,7 +7,7 @@ import pytest
 from support import ROOT, is_line_with
 from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings, summary
 
-from ehlpetsc.errors import UsageError
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.cli import OPTIONS, OWN, parse
 

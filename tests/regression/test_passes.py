@@ -9,8 +9,8 @@ import pytest
 from support import CASES, is_line_with
 from support.running import BARE, SCRIPT, command, run, settings
 
+from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError, ExitStatus, OutputError
 from ehlpetsc.post.passes import note_damage
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result

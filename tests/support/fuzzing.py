@@ -6,7 +6,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from ehlpetsc.errors import CaseError
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.surfaces.roughness import Roughness

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.quantities import FIELDS, of_every_case
+from ehlpetsc.effects.quantities import FIELDS, of_every_case
 from ehlpetsc.results.writer import Layout, ResultWriter
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191

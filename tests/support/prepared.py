@@ -63,8 +63,8 @@ def load_kernels():
     """Import the solver's modules with stand-ins for MPI and PETSc, for their compiled functions.
 
     Loading compiled code takes a third of a short run. The modules are dropped again: a run imports them with
-    MPI and PETSc, and `ehlpetsc.compiled.compiled` then adds the code that is loaded already. Code for named
-    tuples of a dropped module is not among it, as that module then has another class of the same name.
+    MPI and PETSc, and `compiled.compiled` then adds the code that is loaded already. Code for named tuples
+    of a dropped module is not among it, as that module then has another class of the same name.
     """
     from numba.core.dispatcher import Dispatcher
 
@@ -143,7 +143,7 @@ if __name__ == "__main__":
     for name in HEAVY:
         __import__(name)
     load_libraries()
-    from ehlpetsc import compiled
+    from ehlpetsc.base import compiled
 
     kernels, modules = load_kernels()
     load_cached(kernels, modules)

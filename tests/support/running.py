@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from ehlpetsc import environment
+from ehlpetsc.base import environment
 from support import ROOT
 from support.prepared import Prepared
 

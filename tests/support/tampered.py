@@ -13,7 +13,7 @@ import sys
 from types import SimpleNamespace
 
 from ehlpetsc.__main__ import main
-from ehlpetsc.environment import prepare
+from ehlpetsc.base.environment import prepare
 from ehlpetsc.run.cli import parse
 
 

@@ -9,7 +9,7 @@ import pytest
 from support import CASES
 from support.running import BARE, SCRIPT
 
-from ehlpetsc.compiled import drop_stale_code
+from ehlpetsc.base.compiled import drop_stale_code
 
 PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 FOREIGN = {"sys"}  # a module with settings of its own

@@ -6,11 +6,11 @@ import tomllib
 import pytest
 from support import CASES, is_line_with
 
+from ehlpetsc.base.declarations import Key, KeyTable, Required
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
-from ehlpetsc.errors import CaseError
-from ehlpetsc.keys import Key, KeyTable, Required
-from ehlpetsc.quantities import STORED
+from ehlpetsc.effects.quantities import STORED
 
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
 

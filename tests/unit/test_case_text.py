@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from support import CASES
 
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.toml_file import toml_text
 from ehlpetsc.case.loading import load, stored_case
-from ehlpetsc.errors import CaseError
-from ehlpetsc.toml_file import toml_text
 
 CASE = (Path(__file__).parents[2] / "cases" / "table1_smooth.toml").read_text()
 MARK = "\ufeff"

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact import contact_model
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import flat
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
 from ehlpetsc.effects.wear import WearRecord
-from ehlpetsc.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_gap
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales

@@ -5,8 +5,8 @@ import pytest
 from support import CASES
 
 import ehlpetsc
+from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.errors import NotConverged
 from ehlpetsc.stepping.convergence_check import find_fault
 
 MESH = {"mesh.points_per_half_width": 30, "mesh.inlet": -1.5, "mesh.outlet": 1.3}

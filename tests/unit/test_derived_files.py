@@ -12,8 +12,8 @@ from support.made_results import make_result
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import OutputError
 from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.command import main as life
 from ehlpetsc.life.driver import run_life

@@ -18,8 +18,8 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.keys import KeyTable, Required
-from ehlpetsc.quantity import StepScalar
+from ehlpetsc.base.declarations import KeyTable, Required
+from ehlpetsc.base.declarations import StepScalar
 
 
 class Supply(NamedTuple):

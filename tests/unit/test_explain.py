@@ -7,9 +7,9 @@ import pytest
 from support import CASES
 
 from ehlpetsc.case import loading as case
+from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run import forecast
 from ehlpetsc.run.explain import explain

@@ -9,8 +9,8 @@ import pytest
 from support import is_line_with
 
 from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
+from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.command import main
 from ehlpetsc.gears.load_sharing import relief_ratio

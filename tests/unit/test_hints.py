@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support import CASES
 
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.laws import viscosity
 
 SMOOTH = CASES / "table1_smooth.toml"

@@ -9,41 +9,37 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
-# every room may import these; they import no room, at most errors
-GROUND = set("errors quantity toml_file compiled environment command_parser materials keys units".split())
+GROUND = {"base"}  # every room may import it; it imports no room
 MAY_IMPORT = {
+    "base": "",
     "physics": "",
     "surfaces": "",
     "effects": "surfaces physics discretisation",
-    "quantities": "effects",
     "gears": "physics",
-    "case": "gears surfaces physics quantities effects",
-    "results": "quantities case surfaces physics",
+    "case": "gears surfaces physics effects",
+    "results": "case surfaces physics effects",
     "discretisation": "physics",
     "nonlinear": "discretisation physics",
     "stepping": "nonlinear discretisation physics effects",
-    "run": "stepping nonlinear discretisation physics effects case surfaces results quantities",
-    "analysis": "gears results quantities physics",
-    "post": "case results physics quantities",
-    "pictures": "analysis post gears results physics quantities case surfaces",
+    "run": "stepping nonlinear discretisation physics effects case surfaces results",
+    "analysis": "gears results physics effects",
+    "post": "case results physics",
+    "pictures": "analysis post gears results physics case surfaces effects",
     # X/command.py: arguments and output of a command, which no other module imports
-    "command": "life post gears pictures analysis api docs run case results quantities",
-    "docs": "",
+    "command": "life post gears pictures analysis api run case results",
     "life": "run post api effects case surfaces results physics",
     # what the package offers: imports when asked
     "api": "case results run pictures",
     # starts each command by its name
     "__main__": "run",
-    "command_parser": "errors environment",
-    "toml_file": "errors",
 }
-MAY_IMPORT = {name: set(MAY_IMPORT.get(name, "").split()) for name in (*MAY_IMPORT, *GROUND)}
+MAY_IMPORT = {name: set(rooms.split()) for name, rooms in MAY_IMPORT.items()}
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},
     "mpi4py": {"run", "nonlinear", "life", "command"},
     "matplotlib": {"pictures", "api"},
-    "numba": {"compiled"},
+    "numba": {"base"},
 }
 
 

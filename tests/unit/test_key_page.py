@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from support import ROOT
 
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case import key_page
 from ehlpetsc.case.key_page import template
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.laws import density
 
 

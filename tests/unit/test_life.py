@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support import CASES, COARSE_LIFE, ROOT
 
+from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError, OutputError
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, stored_or_new

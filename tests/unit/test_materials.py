@@ -5,11 +5,11 @@ import math
 import pytest
 from support.made_loads import Scene, write
 
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.materials import STEELS, flow_pressure, steel_of_hardness
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.case.tables.outputs import POST
-from ehlpetsc.errors import CaseError
-from ehlpetsc.materials import STEELS, flow_pressure, steel_of_hardness
 from ehlpetsc.post import Material
 from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.run import Job, run

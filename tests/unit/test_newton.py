@@ -9,7 +9,7 @@ import pytest
 from support import CASES
 
 import ehlpetsc
-from ehlpetsc.errors import UsageError
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.nonlinear.jacobian import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps

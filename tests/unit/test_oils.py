@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ehlpetsc.base.compiled import inlined
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.compiled import inlined
 from ehlpetsc.physics import oils
 from ehlpetsc.physics.film_shear import CARREAU, FlowLaw, flow_stress
 from ehlpetsc.physics.laws import WALTHER, temperature_constants

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
-from ehlpetsc.errors import CaseError
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import Scales

@@ -13,9 +13,9 @@ import h5py
 import numpy as np
 import pytest
 
-from ehlpetsc import quantities
-from ehlpetsc.errors import OutputError
-from ehlpetsc.quantities import FIELDS, of_every_case
+from ehlpetsc.base.errors import OutputError
+from ehlpetsc.effects import quantities
+from ehlpetsc.effects.quantities import FIELDS, of_every_case
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import Layout, ResultWriter

@@ -13,7 +13,7 @@ from PIL import Image as image
 from support import is_line_with
 from support.made_results import A, change_case, make_result, with_solids
 
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing

@@ -141,7 +141,7 @@ import sys
 {block}
 import numpy as np
 from ehlpetsc.post import Material, damage, rainflow
-from ehlpetsc.compiled import COMPILED
+from ehlpetsc.base.compiled import COMPILED
 assert COMPILED is {compiled}
 parts = np.cumsum(np.random.default_rng(5).normal(scale=2e8, size=(3, 20, 300)), axis=-1)
 neuber = dict(mean_stress="morrow", strain="neuber")

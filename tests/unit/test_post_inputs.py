@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from support.made_loads import LOAD, A, Scene, write
 
+from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import PostError
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales, hertz_line
 from ehlpetsc.post.loads import Loads

@@ -8,7 +8,7 @@ import pytest
 from support.made_loads import Scene, write
 from support.made_results import make_result
 
-from ehlpetsc.errors import ExitStatus, PostError
+from ehlpetsc.base.errors import ExitStatus, PostError
 from ehlpetsc.post import pass_statistics
 from ehlpetsc.post.command import main
 from ehlpetsc.post.passes import same_points

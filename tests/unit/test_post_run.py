@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
-from ehlpetsc.errors import ExitStatus
+from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.pictures import damage as gallery
 from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.post import dang_van

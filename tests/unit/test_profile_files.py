@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support import CASES
 
+from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case import loading as case
-from ehlpetsc.errors import CaseError, ProfileError
 from ehlpetsc.surfaces import text_columns
 from ehlpetsc.surfaces.profile_files import Layout, read_profile
 

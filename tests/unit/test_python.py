@@ -141,7 +141,7 @@ def test_interleaved_runs_are_independent(case, result):
 
 
 def test_divergence_raises_with_the_last_good_state(case, result, tmp_path, monkeypatch):
-    from ehlpetsc.errors import SolveFailed
+    from ehlpetsc.base.errors import SolveFailed
 
     def fail(*_, **__):
         raise SolveFailed("SNES", "MADE_UP", 1)

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from support import ROOT
 
-from ehlpetsc import docs
+from ehlpetsc.base import docs
+from ehlpetsc.base.environment import missing
 from ehlpetsc.case.loading import load
-from ehlpetsc.environment import missing
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import banner
 from ehlpetsc.surfaces.roughness import Roughness

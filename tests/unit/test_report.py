@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from ehlpetsc.errors import ExitStatus
+from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.results.means import Totals
 from ehlpetsc.run.outputs import progress as report
 

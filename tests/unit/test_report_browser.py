@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from support.made_results import make_result, with_solids
 
-from ehlpetsc.environment import has
+from ehlpetsc.base.environment import has
 from ehlpetsc.pictures import command as plot
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)

@@ -5,10 +5,10 @@ import pytest
 from support import CASES
 
 import ehlpetsc
+from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.errors import ProfileError
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.filters import high_pass, low_pass

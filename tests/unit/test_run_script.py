@@ -32,11 +32,11 @@ AT_ONCE = {"OMPI_MCA_odls_base_sigkill_timeout": "0"}  # where no rank is left f
 @pytest.fixture
 def script(tmp_path):
     """A copy of the script beside a stand-in for the package."""
-    (tmp_path / "ehlpetsc").mkdir()
+    (tmp_path / "ehlpetsc" / "base").mkdir(parents=True)
     (tmp_path / "ehlpetsc" / "__init__.py").touch()
     (tmp_path / "ehlpetsc" / "__main__.py").write_text(ECHO)
     shutil.copy(ROOT / "run_mpi.sh", tmp_path)
-    shutil.copy(ROOT / "ehlpetsc" / "environment.py", tmp_path / "ehlpetsc")
+    shutil.copy(ROOT / "ehlpetsc" / "base" / "environment.py", tmp_path / "ehlpetsc" / "base")
     (tmp_path / "elsewhere").mkdir()
 
     def run(*arguments, **environment):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.made_results import make_result, with_solids
 
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.results.means import Totals, filled_from
 from ehlpetsc.results.reader import read_result

@@ -13,8 +13,8 @@ from support.made_results import make_result, with_solids
 from ehlpetsc import __version__
 from ehlpetsc.__main__ import COMMANDS, main
 from ehlpetsc.analysis import summary
+from ehlpetsc.base.errors import CaseError, ExitStatus
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError, ExitStatus
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import read_result
 

@@ -6,10 +6,10 @@ import tomllib
 import pytest
 from support import CASES
 
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.units import converted
 from ehlpetsc.case import key_page
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.errors import CaseError
-from ehlpetsc.units import converted
 
 SMOOTH = CASES / "table1_smooth.toml"
 PLAUSIBLE = {

@@ -10,8 +10,8 @@ petsc4py.init([])
 from support.convergence import order_and_limit as order
 
 import ehlpetsc
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
-from ehlpetsc.errors import CaseError
 from ehlpetsc.physics.asperities import GAMMA
 from ehlpetsc.surfaces.samples import samples
 

@@ -5,8 +5,8 @@ import pytest
 from support import CASES, COARSE_LIFE
 
 from ehlpetsc import Simulation
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import CaseError
 from ehlpetsc.life import run_life
 from ehlpetsc.life.checks import check_case
 

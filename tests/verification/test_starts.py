@@ -12,8 +12,8 @@ from support import CASES
 
 petsc4py.init([])
 
+from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.case.loading import load
-from ehlpetsc.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import steady_start, time_stepping
 from ehlpetsc.stepping.first_guess import MAX_DIRECT_REACH, smoothed

@@ -15,10 +15,10 @@ from support import CASES
 
 petsc4py.init([])
 
+from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.errors import SolveFailed, UsageError
 from ehlpetsc.nonlinear import gauss_seidel as sweep
 from ehlpetsc.run.simulation import Simulation
 

@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from ehlpetsc import environment
+from ehlpetsc.base import environment
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics import laws
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ehlpetsc.keys import Key, KeyTable, Required, Values
-from ehlpetsc.materials import GRADES, STEELS
+from ehlpetsc.base.declarations import Key, KeyTable, Required, Values
+from ehlpetsc.base.materials import GRADES, STEELS
 from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, completed
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm

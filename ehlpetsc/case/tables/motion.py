@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.gears.geometry import MESH_STIFFNESS, GearPair
 from ehlpetsc.gears.load_sharing import RULES
-from ehlpetsc.keys import Key, KeyTable, Refused, Required, Values
 
 CONDITIONS = ("[gears]", "[operation]")
 MAX_NODES = 200_000  # with more a time step would take hours; more likely a typing error

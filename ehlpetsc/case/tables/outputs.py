@@ -6,8 +6,8 @@ import math
 import re
 from typing import Any
 
-from ehlpetsc.keys import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.quantities import FIELDS, STORED
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.effects.quantities import FIELDS, STORED
 
 DOTTED_KEY = re.compile(r"[A-Za-z_]+(\.[A-Za-z_0-9]+)+")
 MAX_MEMBERS = 10_000  # of a series

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ehlpetsc.keys import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 
 UNITS = ("m", "mm", "um", "nm")  # of profile files
 SIDES = ("1", "2")

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
 from ehlpetsc.discretisation.contact.node_state import (
     BandEntries,

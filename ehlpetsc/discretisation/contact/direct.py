@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     PRESSURE_AFTER_REFILL,

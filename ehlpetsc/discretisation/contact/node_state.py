@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 
 AMBIENT_TOLERANCE = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
 PRESSURE_AFTER_REFILL = 1e-9  # p0: pressure of a cavity, or of a gap, in the iteration that closes it

@@ -19,7 +19,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch, swap_pairs
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.declarations import Field, StepScalar
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.heat.keys import HEAT
 from ehlpetsc.effects.heat.record import HeatRecord
-from ehlpetsc.quantity import Field, StepScalar
 
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     LN_ETA_P,

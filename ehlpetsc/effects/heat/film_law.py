@@ -34,7 +34,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import inlined
+from ehlpetsc.base.compiled import inlined
 from ehlpetsc.physics.film_shear import (
     EYRING,
     NEWTON,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ehlpetsc.keys import Key, KeyTable, Required, Values
+from ehlpetsc.base.declarations import Key, KeyTable, Required, Values
 
 TEMPERATURE = ("K", 150, 2000)
 

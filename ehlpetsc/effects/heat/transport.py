@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.effects.heat.film_law import FilmLaw, film_temperature, fixed_at
 
 SWEEPS = 50

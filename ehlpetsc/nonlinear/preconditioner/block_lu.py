@@ -16,7 +16,7 @@ its code until this file changes and does not notice changes of imported constan
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled, unsigned
+from ehlpetsc.base.compiled import compiled, unsigned
 
 SIZE = 11  # unknowns of a group
 LINE = 12  # room for them

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from ehlpetsc.compiled import compiled, unsigned
+from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
 from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian

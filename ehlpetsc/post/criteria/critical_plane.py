@@ -20,7 +20,7 @@ from math import exp, log, pi, sqrt
 
 import numpy as np
 
-from ehlpetsc.compiled import ZERO, compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.post.criteria.planes import (
     GRID_STEP,
     normal_weights,

@@ -20,7 +20,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.compiled import ZERO, compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 
 MAX_ROUNDS = 200  # of the search for the smallest ball
 BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside

@@ -17,7 +17,7 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 
 GRID_STEP = 15.0  # degrees between the planes and directions of the coarse grid
 

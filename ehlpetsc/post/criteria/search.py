@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.criteria.critical_plane import FATEMI_SOCIE, SHEAR, SWT, worst_plane
 from ehlpetsc.post.criteria.dang_van import utilisation

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
 from ehlpetsc.post.fatigue.strain_life import (
     DEFAULT_STRAIN,

@@ -24,7 +24,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.compiled import ZERO, compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 
 RESIDUES = ("closed", "half")
 

@@ -43,7 +43,7 @@ from math import exp, inf, log
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
 STRAINS = ("direct", "neuber", "glinka")

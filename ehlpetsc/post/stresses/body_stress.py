@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import fft
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.compiled import compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.body_points import Passage
 from ehlpetsc.post.stresses.body_stress import FRAMES_PER_BATCH, BodyStress, offset_weights
 

@@ -9,10 +9,10 @@ import time as clock
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ehlpetsc.quantities import STEP_SCALARS
+from ehlpetsc.effects.quantities import STEP_SCALARS
 
 if TYPE_CHECKING:
-    from ehlpetsc.errors import ExitStatus
+    from ehlpetsc.base.errors import ExitStatus
     from ehlpetsc.results.means import Totals
     from ehlpetsc.run.accepted_state import AcceptedState
     from ehlpetsc.run.simulation import Simulation

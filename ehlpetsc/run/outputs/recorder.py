@@ -14,9 +14,9 @@ import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.errors import ExitStatus, OutputError
+from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
-from ehlpetsc.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of, remove_stale
 from ehlpetsc.results.restart_file import restart_of_same

@@ -7,11 +7,11 @@ import tempfile
 import webbrowser
 from pathlib import Path
 
-from ehlpetsc.command_parser import CommandParser, exit_status
-from ehlpetsc.environment import missing
-from ehlpetsc.errors import OutputError
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.environment import missing
+from ehlpetsc.base.errors import OutputError
 
-ROOT = Path(__file__).parents[1]  # of a clone
+ROOT = Path(__file__).parents[2]  # of a clone
 SITE = ROOT / ".github" / "site"
 NEEDED = ("sphinx", "myst_parser", "furo")
 

@@ -8,7 +8,7 @@ import re
 import tomllib
 from typing import Any
 
-from ehlpetsc.errors import CaseError
+from ehlpetsc.base.errors import CaseError
 
 MAX_BYTES = 2**26  # of a case file
 

@@ -83,7 +83,7 @@ def _imported_files(text: str, package: str, files: Container[str]) -> set[str]:
 
 if COMPILED:
     with contextlib.suppress(OSError):  # a module is removed at the same time
-        drop_stale_code(Path(__file__).parent)
+        drop_stale_code(Path(__file__).parents[1])
 
 
 def compiled(function: Callable | None = None, **options: Any) -> Any:

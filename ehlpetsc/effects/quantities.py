@@ -12,8 +12,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.declarations import Column, Field, StepScalar
 from ehlpetsc.effects import EFFECTS
-from ehlpetsc.quantity import Column, Field, StepScalar
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case

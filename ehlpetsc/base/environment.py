@@ -82,7 +82,7 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
     """
     command = " ".join(arguments) or "CASE.toml"
     reason = f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
-    if Path(__file__).parents[1].joinpath("run_mpi.sh").exists():
+    if Path(__file__).parents[2].joinpath("run_mpi.sh").exists():
         return (
             f"{reason}type: ./run_mpi.sh {command}   (installs what is missing on Debian 12 and newer and "
             f"runs Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {command}"

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NoReturn
 
 from ehlpetsc import __version__
-from ehlpetsc.environment import first_rank
-from ehlpetsc.errors import (
+from ehlpetsc.base.environment import first_rank
+from ehlpetsc.base.errors import (
     CaseError,
     ExitStatus,
     NotConverged,

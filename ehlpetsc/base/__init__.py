@@ -1,0 +1,1 @@
+"""Ground of the package, which every room may import."""
