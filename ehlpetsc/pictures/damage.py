@@ -1,37 +1,76 @@
-"""Pictures of one result, and of several results over slide/roll ratios, as PNG and SVG."""
+"""Pictures of post-processing as PNG and SVG: maps of damage, its distribution over asperities, passes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-import matplotlib
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from ehlpetsc.base.errors import PostError
-from ehlpetsc.pictures import damage_panels as plots
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.distributions import criteria_picture, depth_picture, passes_picture, ratio_picture
-from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import read_settings
-from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
-from ehlpetsc.post.stresses.half_plane import stress
-from ehlpetsc.post.temperatures import temperature_history
+from ehlpetsc.pictures.stresses import along_body, field_picture, history_picture
+from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
+from ehlpetsc.post.passes import pass_statistics, same_points
 from ehlpetsc.results.output_guard import PICTURES, check_derived
-from ehlpetsc.results.post_result import PostResult
+from ehlpetsc.results.post_result import PostResult, WeibullFit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import ContourSet
-
+    from matplotlib.figure import Figure
 
 FORMATS = ("png", "svg")
-FIELD_DEPTH = 1.5  # half widths
-SECTION_LENGTH = 2.0  # half widths of profile, as in the paper
-LAYER_DEPTH = 0.2  # half widths in a picture of several results: damage below asperities is shallower
+DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
+SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, as in the paper
+LAYER_DEPTH = 0.2  # half-widths in a comparison of results: damage below asperities is shallower
+MIN_TICK_DISTANCE = 0.09  # of the depth axis
+CRITERIA = {
+    "fatemi-socie": "Fatemi-Socie",
+    "shear": "shear strain",
+    "swt": "Smith-Watson-Topper",
+    "dang-van": "Dang Van: share of the fatigue limit; line: 1",
+}
+STRAIN_RULES = {"direct": "elastic range as it is", "neuber": "Neuber's rule", "glinka": "Glinka's rule"}
+
+
+class Map(NamedTuple):
+    """A quantity (nz, ns) below one surface of a result: damage, or the utilisation of a fatigue limit."""
+
+    label: str
+    result: PostResult
+    values: np.ndarray
+    is_damage: bool = True
+
+
+def draw(
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    folder: str,
+    point: tuple[float, float] | None = None,
+    frame: int | None = None,
+    passes: str | None = None,
+) -> list[str]:
+    """Draw all pictures of result files and their post-processing results; returns the names of the files.
+
+    `folder` is "" for that of each result, `point` the s/a and z/a of the stress history, `frame` the stored
+    frame of the stresses, `passes` the surface of which the results are passes.
+    """
+    names = []
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    results = [PostResult(output) for output in outputs]
+    for path, output, result in zip(inputs, outputs, results, strict=True):
+        stem = Path(folder or Path(output).parent) / Path(path).stem
+        names += _of_one(path, result, stem, point, frame)
+    common = Path(folder or Path(outputs[0]).parent)
+    if passes:
+        names += _save(passes_picture(results, passes), common / f"passes.damage_{passes}")
+    elif len(results) > 1:
+        names += _compared(sorted(results, key=lambda r: r.ratio), common)
+    return names
 
 
 def _save(figure: Figure, stem: str | Path) -> list[str]:
@@ -43,55 +82,15 @@ def _save(figure: Figure, stem: str | Path) -> list[str]:
     return names
 
 
-@matplotlib.rc_context({"font.size": 9})
-def draw(
-    inputs: Sequence[str],
-    outputs: Sequence[str],
-    folder: str,
-    point: tuple[float, float] | None = None,
-    frame: int | None = None,
-    passes: str | None = None,
-) -> list[str]:
-    """Draw all pictures; returns the names of the files.
-
-    Parameters
-    ----------
-    inputs, outputs
-        Result files and their post-processing results.
-    folder
-        Folder of the pictures; "": temporary each result.
-    point
-        s/a and z/a of the history picture.
-    frame
-        Stored frame of the stress picture.
-    passes
-        Surface of which the results are passes: statistics instead of a comparison.
-    """
-    names = []
-    if folder:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-    results = [PostResult(output) for output in outputs]
-    for path, output, result in zip(inputs, outputs, results, strict=True):
-        stem = Path(folder or Path(output).parent) / Path(path).stem
-        names += _of_one(path, result, stem, point, frame)
-    if passes:
-        temporary = Path(folder or Path(outputs[0]).parent)
-        names += _save(passes_picture(results, passes), temporary / f"passes.damage_{passes}")
-    elif len(results) > 1:
-        names += _compared(sorted(results, key=lambda r: r.ratio), Path(folder or Path(outputs[0]).parent))
-    return names
-
-
 def _of_one(
-    path: str, result: PostResult, stem: str | Path, point: tuple[float, float] | None, frame: int | None
+    path: str, result: PostResult, stem: Path, point: tuple[float, float] | None, frame: int | None
 ) -> list[str]:
     names = []
     for surface in result.surfaces:
         if result.complete[surface].any():
             names += _save(damage_picture(result, surface), f"{stem}.damage_{surface}")
-    for surface in result.surfaces:
-        if result.criteria and result.complete[surface].any():
-            names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
+            if result.criteria:
+                names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
     if result.height.size:
         names += _save(depth_picture(result), f"{stem}.exceedance")
     names += _save(field_picture(path, result, frame), f"{stem}.stress")
@@ -102,146 +101,214 @@ def _compared(results: list[PostResult], folder: Path) -> list[str]:
     names = []
     for surface in ("2", "1"):
         if all(surface in result.surfaces and result.complete[surface].any() for result in results):
-            names += _save(stacked_picture(results, surface), folder / f"compared.damage_{surface}")
+            names += _save(ratios_picture(results, surface), folder / f"compared.damage_{surface}")
     if all(result.height.size for result in results) and len({result.main for result in results}) == 1:
-        shared = [z for z in results[0].z if all(np.isclose(r.z, z).any() for r in results)]
-        for z in shared:
-            names += _save(ratio_picture(results, z), folder / f"compared.exceedance_z{z:g}")
+        for z in (z for z in results[0].z if all(np.isclose(result.z, z).any() for result in results)):
+            names += _save(ratio_distributions(results, z), folder / f"compared.exceedance_z{z:g}")
     return names
 
 
-def _bar(figure: Figure, contours: ContourSet | None, axes: list[Axes]) -> None:
-    if contours is not None:
-        bar = figure.colorbar(contours, ax=axes, label="damage D of one pass", pad=0.02)
-        bar.ax.yaxis.set_major_formatter(lambda power, position: f"$10^{{{power:.0f}}}$")
-
-
 def damage_picture(result: PostResult, surface: str) -> Figure:
-    """Damage under the profile (figure 8 of Holmes et al. 2005)."""
-    above = [1.0] * ((surface in result.profiles) + (surface in result.temperatures))
-    figure = Figure(figsize=(8, 3.2 + len(above)), layout="constrained")
-    axes = figure.subplots(len(above) + 1, 1, sharex=True, height_ratios=(*above, 2.4), squeeze=False)[:, 0]
-    ends = plots.stretch(result, surface)
-    largest = max(result.largest(surface, k) for k in range(len(result.z)))
-    if surface in result.profiles:
-        plots.profile(axes[0], result, surface, ends)
-    if surface in result.temperatures:
-        plots.temperatures(axes[-2], result, surface)
+    """Damage under the whole profile (figure 8 of Holmes et al. 2005), with [heat] the temperatures."""
     s, z = result.worst_point(surface)
-    place = f"{plots.along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})"
-    axes[0].set_title(
-        f"surface {surface}, slide/roll ratio {result.ratio:.3g}, {plots.strain_rule(result)}\n"
-        f"largest damage {largest:.2g} at {place}",
-        fontsize=9,
-    )
-    _bar(figure, plots.damage_contours(axes[-1], result, surface, ends, plots.decades(largest)), list(axes))
-    axes[-1].set_xlabel(plots.body_label(surface))
-    figure.align_ylabels(axes)
+    place = f"{along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})"
+    maximum = np.nanmax(result.damage[surface])
+    title = [
+        f"surface {surface}, {_ratio(result)}, {_strain_rule(result)}",
+        f"maximum damage {maximum:.2g} at {place}",
+    ]
+    return draw_maps([Map("", result, result.damage[surface])], surface, title)
+
+
+def ratios_picture(results: list[PostResult], surface: str) -> Figure:
+    """Damage of several results near the surface on one scale (figure 9)."""
+    maps = [Map(_ratio(result), result, result.damage[surface]) for result in results]
+    title = [f"surface {surface}, {_strain_rule(results[0])}"]
+    return draw_maps(maps, surface, title, SECTION_LENGTH, LAYER_DEPTH)
+
+
+def criteria_picture(result: PostResult, surface: str) -> Figure:
+    """Damage by all criteria on one scale, and the utilisation of the fatigue limit."""
+    maps = [Map("von Mises ranges", result, result.damage[surface])]
+    for name, label in CRITERIA.items():
+        if name in result.criteria:
+            maps.append(Map(label, result, result.criteria[name][surface], name != "dang-van"))
+    return draw_maps(maps, surface, [f"surface {surface}, {_ratio(result)}"], SECTION_LENGTH)
+
+
+def draw_maps(
+    maps: list[Map], surface: str, title: list[str], longest: float = np.inf, deepest: float = np.inf
+) -> Figure:
+    """The profile above maps of log10 D; of at most `longest` half-widths, down to z/a = `deepest`."""
+    first = maps[0].result
+    heated = len(maps) == 1 and surface in first.temperatures
+    heights = [0.8] * (1 + heated) + [2.4 if len(maps) == 1 else 1.5] * len(maps)
+    size = (8.0, 1.0 + 1.1 * sum(heights))
+    figure, axes = style.new_figure(len(heights), 1, size, sharex=True, height_ratios=heights, squeeze=False)
+    panels, rows = axes[: 1 + heated, 0], axes[1 + heated :, 0]
+    profile(panels[0], first, surface)
+    if heated:
+        temperatures(panels[1], first, surface)
+    used = [one.values[:, one.result.complete[surface]] for one in maps if one.is_damage]
+    levels, contours = decades(max(np.nanmax(values) for values in used)), []
+    for row, one in zip(rows, maps, strict=True):
+        row.set_title(one.label, fontsize="small", loc="left")
+        if one.is_damage:
+            drawn = damage_map(row, one, surface, levels, deepest)
+            contours += [drawn] if drawn else []
+        elif drawn := utilisation_map(row, one, surface):
+            figure.colorbar(drawn, ax=row, pad=0.02)
+    if contours:
+        shown = [row for row, one in zip(rows, maps, strict=True) if one.is_damage]
+        powers = FuncFormatter(lambda power, _: f"$10^{{{power:.0f}}}$")
+        figure.colorbar(contours[0], ax=shown, label="damage D of one pass", pad=0.02, format=powers)
+    rows[-1].set_xlim(*stretch([one.result for one in maps], surface, longest))
+    rows[-1].set_xlabel(f"along surface {surface} [mm]")
+    figure.align_ylabels(list(axes[:, 0]))
+    style.set_title(figure, *title)
     return figure
 
 
-def stacked_picture(results: list[PostResult], surface: str) -> Figure:
-    """Damage at several slide/roll ratios under one scale (figure 9)."""
-    count = len(results)
-    figure = Figure(figsize=(8, 1.2 + 1.7 * count), layout="constrained")
-    axes = figure.subplots(count + 1, 1, sharex=True, height_ratios=(0.7, *[1] * count))
-    levels = plots.decades(max(r.largest(surface, k) for r in results for k in range(len(r.z))))
-    start = [_aligned(result, surface, results) for result in results]
-    ends = plots.stretch(start[0], surface, SECTION_LENGTH)
-    plots.profile(axes[0], start[0], surface, ends)
-    contours = None
-    for row, result in zip(axes[1:], start, strict=True):
-        drawn = plots.damage_contours(row, result, surface, ends, levels, LAYER_DEPTH, gap=0.1)
-        contours = contours or drawn
-        row.set_title(f"slide/roll ratio {result.ratio:.3g}", fontsize=8, loc="left", pad=2)
-    axes[0].set_title(f"surface {surface}, {plots.strain_rule(results[0])}", fontsize=9)
-    axes[-1].set_xlabel(plots.body_label(surface))
-    _bar(figure, contours, list(axes))
-    figure.align_ylabels(axes)
-    return figure
-
-
-def _aligned(result: PostResult, surface: str, results: list[PostResult]) -> PostResult:
-    """Result reduced to the points that passed in all results, so that all have the same profile."""
-    first = max(r.s[r.complete[surface]][0] for r in results)
-    last = min(r.s[r.complete[surface]][-1] for r in results)
-    if last <= first:
+def stretch(results: list[PostResult], surface: str, longest: float = np.inf) -> tuple[float, float]:
+    """Ends [mm] of the points that passed in all results, or of the first `longest` half-widths of them."""
+    ends = [np.sort(along_body(one, surface, one.s[one.complete[surface]][[0, -1]])) for one in results]
+    low, high = max(low for low, _ in ends), min(high for _, high in ends)
+    if high <= low:
         raise PostError(f"no point of surface {surface} passed the whole contact in all of the results")
-    last_shown = last + 0.5 * (result.s[1] - result.s[0])
-    first_shown = max(first, last - SECTION_LENGTH * result.a) - 0.5 * (result.s[1] - result.s[0])
-    result.complete[surface] &= (result.s >= first_shown) & (result.s <= last_shown)
-    return result
+    return low, min(high, low + 1e3 * results[0].a * longest)
 
 
-def field_picture(path: str, result: PostResult, frame: int | None) -> Figure:
-    """Pressure, and stresses in the solid of the result's main surface, at one stored frame."""
-    surface = result.main
-    with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
-        frame = loads.time.size // 2 if frame is None else frame
-        if not 0 <= frame < loads.time.size:
-            raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
-        p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = read_settings(loads.case).material(surface).poisson_ratio
-        z = FIELD_DEPTH * np.linspace(0, 1, 121) ** 2
-        fields = plots.stress_fields(*stress(loads.x, z * loads.a, p, q, nu), nu)
-        x, time, width = loads.x / loads.a, loads.time[frame], loads.a
-    figure = Figure(figsize=(8, 9), layout="constrained")
-    top, *axes = figure.subplots(5, 1, sharex=True, height_ratios=(0.7, 1, 1, 1, 1))
-    top.plot(x, p / 1e9, color=plots.DARK, lw=0.9)
-    top.set_ylabel("p [GPa]")
-    top.set_title(f"solid of surface {surface}, t = {time * 1e6:.4g} µs", fontsize=9)
-    for row, (name, values) in zip(axes, fields.items(), strict=True):
-        mesh = plots.stress_field(row, x, z, values, name)
-        if name == plots.VON_MISES:
-            plots.mark_largest(row, x, z, values, width)
-        figure.colorbar(mesh, ax=row, label="GPa", pad=0.01, ticks=plots.ticks_within(mesh.levels))
-    axes[-1].set_xlabel("x/a")
-    return figure
+def profile(axes: Axes, result: PostResult, surface: str) -> None:
+    """Draw the profile in view, heights in µm over mm."""
+    axes.set_ylabel("z [µm]")
+    axes.axhline(0.0, color="0.8", lw=0.6)
+    if surface in result.profiles:
+        s, z = result.profiles[surface]
+        shown = (s >= result.s[result.complete[surface]][0]) & (s <= result.s[result.complete[surface]][-1])
+        axes.plot(along_body(result, surface, s[shown]), 1e6 * z[shown], color=style.DARK, lw=0.8)
 
 
-def _check_passed(result: PostResult, surface: str, s: float) -> None:
-    """Refuse a body point whose history is incomplete; the message names the range of complete ones."""
-    passed, spacing = result.complete[surface], (result.s[-1] - result.s[0]) / (result.s.size - 1)
-    node = (s - result.s[0]) / spacing
-    around = np.clip(np.array([np.floor(node + 1e-6), np.ceil(node - 1e-6)]), -1, passed.size).astype(int)
-    if not all(0 <= j < passed.size and passed[j] for j in around):
-        first, last = result.s[passed][[0, -1]] / result.a
-        raise PostError(
-            f"--point s/a = {s / result.a:.6g}: not a point of surface {surface} that passed the whole "
-            f"contact with all its frames stored; s/a = {first:.6g} to {last:.6g} is allowed"
-        )
-
-
-def history_picture(path: str, result: PostResult, point: tuple[float, float] | None) -> Figure:
-    """Stress history of one body point and its counted cycles."""
-    surface = result.main
-    s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
-    _check_passed(result, surface, s)
-    with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
-        material = read_settings(loads.case).material(surface)
-        time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
-        heat = temperature_history(loads, surface, s) if loads.heated([surface]) else None
-    step = time[1] - time[0]
-    time = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])
-    channel = plots.counted_channel(result.attrs["count"], values, material)
-    heights = (1.6, 1) if heat is None else (1.6, 0.7, 1)
-    figure = Figure(figsize=(8, 2 * sum(heights)), layout="constrained")
-    top, *between, bottom = figure.subplots(len(heights), 1, height_ratios=heights)
-    cycles = plots.history(top, time, values, channel)
-    i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)
-    dx, dz, dt = (component[j] - component[i] for component in values)
-    ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
-    damages = 1 / cycles_to_failure(ranges, material, strain=result.attrs.get("strain", "direct"))
-    for axes in between:
-        plots.surface_temperature(axes, time[1:-1], heat)
-        axes.set_xlim(top.get_xlim())
-    (between or [top])[0].set_xlabel("time [µs]")
-    marked = f"the {plots.MARKED_CYCLES} largest" if len(cycles) > plots.MARKED_CYCLES else "all"
-    top.set_title(
-        f"surface {surface}, {plots.along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = "
-        f"{z:g}: {len(cycles)} cycles of {plots.COMPONENTS[channel]}, {marked} marked, damage "
-        f"{np.sum(damages):.3g}",
-        fontsize=9,
+def temperatures(axes: Axes, result: PostResult, surface: str) -> None:
+    """Draw flash and mean temperature rise of the points that passed over mm."""
+    temperature, passed = result.temperatures[surface], result.complete[surface]
+    x = along_body(result, surface, result.s[passed])
+    bulk = temperature.highest - temperature.flash
+    axes.plot(x, temperature.flash[passed], color=style.SECOND, lw=0.8, label="flash")
+    axes.plot(
+        x, (temperature.mean - bulk)[passed], "--", color=style.DARK, lw=0.8, label="mean in\nthe contact"
     )
-    plots.cycle_histogram(bottom, cycles, damages)
+    axes.set_ylabel("temperature\nover bulk [K]")
+    axes.set_ylim(bottom=0.0)
+    style.legend_beside(axes)
+
+
+def decades(maximum: float) -> np.ndarray | None:
+    """Integer powers of ten up to above the maximum damage; None without damage."""
+    if not (np.isfinite(maximum) and maximum > 0.0):
+        return None
+    top = int(np.ceil(np.log10(maximum)))
+    return np.arange(top - DECADES, top + 1)
+
+
+def damage_map(
+    axes: Axes, one: Map, surface: str, levels: np.ndarray | None, deepest: float = np.inf
+) -> ContourSet | None:
+    """Draw contours of log10 D; returns them."""
+    x, z, values = _under_surface(axes, one, surface, deepest)
+    if levels is None or len(z) < 2:
+        text = "no damage" if levels is None else "one depth"
+        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center")
+        return None
+    shown = np.log10(np.maximum(values, 10.0 ** (levels[0] - 1.0)))
+    return axes.contourf(x, z, shown, levels=levels, cmap="inferno_r", extend="min")
+
+
+def utilisation_map(axes: Axes, one: Map, surface: str) -> ContourSet | None:
+    """Draw contours of the utilisation of a fatigue limit and a line at 1; returns them."""
+    x, z, values = _under_surface(axes, one, surface)
+    if len(z) < 2:
+        return None
+    levels = MaxNLocator(10).tick_values(0.0, np.quantile(values, 0.999))
+    if values.min() < 1.0 < values.max():
+        axes.contour(x, z, values, levels=[1.0], colors="white", linewidths=0.8)
+    return axes.contourf(x, z, values, levels=levels, cmap="viridis", extend="max", zorder=0)
+
+
+def _under_surface(
+    axes: Axes, one: Map, surface: str, deepest: float = np.inf
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Set a depth axis in z/a and µm that stretches the layer near the surface; returns abscissae, ordinates,
+    values of the points that passed."""
+    result, passed = one.result, one.result.complete[surface]
+    count = np.count_nonzero(result.z <= max(deepest, result.z[:2].max()))
+    z, ticks = np.sqrt(result.z[:count]), [0]
+    for k, root in enumerate(z):
+        if root - z[ticks[-1]] >= MIN_TICK_DISTANCE * np.ptp(z) > 0.0:
+            ticks.append(k)
+    axes.set_yticks(z[ticks], [f"{depth:g}" for depth in result.z[ticks]])
+    axes.set_ylabel("z/a")
+    if count > 1:
+        axes.set_ylim(z[-1], z[0])
+        beside = axes.secondary_yaxis("right")
+        beside.set_yticks(z[ticks], [f"{1e6 * depth * result.a:.3g}" for depth in result.z[ticks]])
+        beside.set_ylabel("z [µm]")
+    return along_body(result, surface, result.s[passed]), z, one.values[:count, passed]
+
+
+def depth_picture(result: PostResult) -> Figure:
+    """Distributions of damage at the asperities of one surface, by depth (figure 10)."""
+    curves = [(f"z/a = {z:g}", result.under[k], result.fits[k]) for k, z in enumerate(result.z)]
+    counted = f"{result.height.size} asperities, surface {result.main}, {_ratio(result)}"
+    return draw_distributions(curves, f"{counted}, {_strain_rule(result)}")
+
+
+def ratio_distributions(results: list[PostResult], z: float) -> Figure:
+    """Distributions of damage at one depth, by slide/roll ratio (figures 11 and 12)."""
+    at = [int(np.argmin(np.abs(result.z - z))) for result in results]
+    curves = [
+        (_ratio(result), result.under[k], result.fits[k]) for k, result in zip(at, results, strict=True)
+    ]
+    return draw_distributions(curves, f"z/a = {z:g}, surface {results[0].main}, {_strain_rule(results[0])}")
+
+
+def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: str) -> Figure:
+    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit."""
+    figure, axes = style.new_figure(1, 1, (7.0, 4.0))
+    for (label, under, fit), colour in zip(curves, style.shades(len(curves)), strict=True):
+        falling, fraction = exceedance(under)
+        damaged = falling[falling > 0.0]
+        axes.plot(damaged, fraction[falling > 0.0], ".", ms=3, color=colour)
+        values = np.geomspace(damaged[-1] / 3.0, 3.0 * damaged[0], 300) if damaged.size else damaged
+        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), color=colour, lw=1.2, label=label)
+    axes.set(xscale="log", ylim=(0.0, 1.0))
+    axes.set(xlabel="damage D of one pass", ylabel="share of asperities above D")
+    axes.grid(color="0.92")
+    style.legend_beside(axes, title="dots: asperities\nlines: Weibull fit")
+    style.set_title(figure, title)
     return figure
+
+
+def passes_picture(results: list[PostResult], surface: str) -> Figure:
+    """Damage of each pass along the surface, at the depth of the maximum mean."""
+    s, damages = same_points(results, surface)
+    statistics = pass_statistics(damages)
+    worst = int(statistics.mean.max(axis=1).argmax())
+    x = along_body(results[0], surface, s)
+    figure, axes = style.new_figure(1, 1, (8.0, 3.6))
+    ends = damages[:, worst].min(axis=0), statistics.largest[worst]
+    axes.fill_between(x, *ends, color=style.FAINT, lw=0, label="minimum to maximum\nof the passes")
+    axes.plot(x, statistics.mean[worst], color=style.DARK, lw=0.8, label="mean of the passes")
+    axes.set(yscale="log", xlabel=f"along surface {surface} [mm]", ylabel="damage D of a pass")
+    style.legend_beside(axes)
+    of_what = f"surface {surface}, z/a = {results[0].z[worst]:g}, {len(results)} passes"
+    first = f"Miner's sum 1 from {statistics.life[worst].min():.3g} passes on"
+    style.set_title(figure, f"{of_what}, {_strain_rule(results[0])}: {first}")
+    return figure
+
+
+def _ratio(result: PostResult) -> str:
+    return f"slide/roll ratio {result.ratio:.3g}"
+
+
+def _strain_rule(result: PostResult) -> str:
+    return STRAIN_RULES[result.attrs.get("strain", "direct")]

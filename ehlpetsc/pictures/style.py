@@ -24,6 +24,7 @@ FILM = "#228833"  # of film and surfaces, the film
 CONTACT = "#d62728"  # nodes in contact
 SOLIDS = "#e08214"  # pressure of the solids
 SECOND = "#cc3311"  # a second curve beside `SINGLE`
+DARK = "#222222"
 FAINT = "0.65"
 DPI = 160
 ACROSS = "x/a"

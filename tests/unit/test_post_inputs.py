@@ -49,7 +49,7 @@ def test_history_contains_every_sample_of_every_point(scene, tmp_path):
 
 
 def test_picture_point_must_have_passed(scene, tmp_path):
-    from ehlpetsc.pictures.damage import history_picture
+    from ehlpetsc.pictures.stresses import history_picture
 
     path = write(tmp_path / "a.h5", scene)
     run(Job(str(path), str(tmp_path / "o.h5"), depths=(0.0,)))

@@ -8,13 +8,12 @@ import sys
 import h5py
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.pictures import damage as gallery
-from ehlpetsc.pictures import damage_panels as plots
+from ehlpetsc.pictures import stresses
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
@@ -262,18 +261,19 @@ def test_pictures_use_the_body_abscissa(result, capsys):
     passed = found.s[found.complete["2"]]
     with h5py.File(result) as file:
         inlet, a = file["x"][0], file.attrs["a"]
-    top, bottom, *_ = gallery.damage_picture(found, "2").axes
+    figure = gallery.damage_picture(found, "2")
+    top, bottom, *_ = figure.axes
     assert bottom.get_xlim() == pytest.approx([1e3 * (inlet - passed[-1]), 1e3 * (inlet - passed[0])])
     (beside,) = bottom.child_axes
     assert [text.get_text() for text in beside.get_yticklabels()] == ["0", f"{5e4 * a:.3g}", f"{5e5 * a:.3g}"]
     s, z = found.worst_point("2")
-    assert f"at {1e3 * (inlet - s):.4g} mm, z/a = {z:g}" in top.get_title()
+    assert f"at {1e3 * (inlet - s):.4g} mm, z/a = {z:g}" in figure._suptitle.get_text()
     line = top.lines[-1].get_xydata()
     profile_s, profile_z = found.profiles["2"]
     np.testing.assert_allclose(line[:, 1], 1e6 * np.interp(inlet - 1e-3 * line[:, 0], profile_s, profile_z))
     found.attrs["speed_2"] = -1.0
     outlet = found.attrs["outlet"]
-    assert plots.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
+    assert stresses.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
 
 
 def test_depth_of_the_largest_von_mises_stress_is_marked(result):
@@ -281,23 +281,11 @@ def test_depth_of_the_largest_von_mises_stress_is_marked(result):
     assert main([str(result)]) == 0
     found = PostResult(result.with_name("run.post.h5"))
     axes = next(
-        a for a in gallery.field_picture(str(result), found, None).axes if "largest" in a.get_title("left")
+        a for a in stresses.field_picture(str(result), found, None).axes if "maximum" in a.get_title("left")
     )
     (mark,) = axes.lines
     (x,), (z,) = mark.get_data()
     assert 0 < z < 1.0 and abs(x) < 1.0 and f"{1e6 * z * found.a:.3g} µm deep" in axes.get_title("left")
-
-
-def test_cycles_without_damage_are_not_drawn():
-    axes = Figure().subplots()
-    cycles = np.array([[2.0, 0, 1, 0, 1], [1.0, 0, 1, 0, 1], [1e-3, 0, 1, 0, 1]])
-    plots.cycle_histogram(axes, cycles, np.array([1e-3, 1e-9, 1e-30]))
-    assert axes.collections[0].get_offsets()[:, 0].tolist() == [2.0, 1.0]
-    assert (
-        axes.get_title("left").startswith("1 cycles ")
-        and " 1e-12 " in axes.get_title("left")
-        and axes.get_ylim()[0] > 1e-12
-    )
 
 
 def test_output_replaces_nothing_without_overwrite(result, scene, tmp_path, capsys):
