@@ -20,7 +20,6 @@ the same rank: the sums over the neighbour's outer block, and moments.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -64,13 +63,15 @@ def exponentials(
     sampled = np.unique(np.geomspace(1, len(far), SAMPLES).astype(int)) - 1
     a, fastest = LINEAR_RATES / len(kernel), (CUT_OFF - np.log(tolerance)) / (nearest - 2)
     length = np.log1p(fastest / a)
-    for terms in itertools.count(MIN_TERMS):
+    terms, error = MIN_TERMS, np.inf
+    while error >= tolerance:
         abscissae, weights = np.polynomial.legendre.leggauss(terms)
         t = a * np.expm1(0.5 * length * (1.0 + abscissae))
         weights = weights * 0.5 * length * (a + t) * t * (np.sinh(0.5 * t) / (0.5 * t)) ** 4
         weights *= np.exp(-nearest * t)
-        if np.abs(np.exp(-np.outer(sampled, t)) @ weights / far[sampled] - 1.0).max() < tolerance:
-            return t, weights
+        error = np.abs(np.exp(-np.outer(sampled, t)) @ weights / far[sampled] - 1.0).max()
+        terms += 1
+    return t, weights
 
 
 class Blocks(NamedTuple):
@@ -221,7 +222,7 @@ def receive_moments(messages: np.ndarray, rank: int, translation: np.ndarray, in
 
 
 @compiled
-def scan_moments(sent: np.ndarray, decay: float, incoming: np.ndarray, arriving: np.ndarray) -> None:
+def scan_moments(sent: np.ndarray, decay: np.ndarray, incoming: np.ndarray, arriving: np.ndarray) -> None:
     """Fill in the moments that arrive at each block from blocks two and more away.
 
     Parameters

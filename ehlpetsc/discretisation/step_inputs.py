@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import extrapolated
-from ehlpetsc.discretisation.unknowns import mirrored
 from ehlpetsc.physics.operation import Conditions
 
 
@@ -35,11 +35,6 @@ class FilmHistory:
         self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
         self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
         self.extrapolated = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
-
-    def mirrored(self) -> FilmHistory:
-        """The same history with the nodes in reverse order."""
-        older = None if self.m_older is None else mirrored(self.m_older)
-        return FilmHistory(mirrored(self.m), older, self.dt, self.dt_older)
 
 
 @dataclass(frozen=True)
@@ -81,15 +76,21 @@ class StepInputs:
     heat: Any = None
     boundary_friction: float | np.ndarray = 0.0
 
-    def mirrored(self) -> StepInputs:
-        """Mirrored step: x, the speeds and all arrays over nodes in reverse order."""
-        now = self.conditions
-        turned = {"conditions": now._replace(u1=-now.u1, u2=-now.u2)}
-        for name, value in vars(self).items():
-            if isinstance(value, np.ndarray) and value.shape == self.phi.shape:
-                turned[name] = mirrored(value)
-        if self.history is not None:
-            turned["history"] = self.history.mirrored()
-        if self.heat is not None:
-            turned["heat"] = self.heat.mirrored()
-        return replace(self, **turned)
+
+def mirrored(value: Any) -> Any:
+    """Arrays, last axis, and records of arrays with the nodes in reverse order; speeds change their sign.
+
+    The discrete equations have their inlet at the first node: a step with a negative entrainment speed is
+    solved mirrored. Tuples that are no records are not over nodes.
+    """
+    if isinstance(value, np.ndarray):
+        return np.ascontiguousarray(value[..., ::-1])
+    if isinstance(value, Conditions):
+        return value._replace(u1=-value.u1, u2=-value.u2)
+    if hasattr(value, "_make"):
+        return value._make(map(mirrored, value))
+    if isinstance(value, StepInputs | FilmHistory):
+        turned = copy(value)
+        vars(turned).update({name: mirrored(entry) for name, entry in vars(value).items()})
+        return turned
+    return value

@@ -10,21 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 
-def mirrored(values: np.ndarray) -> np.ndarray:
-    """Values at the nodes in reverse order."""
-    return np.ascontiguousarray(values[::-1])
-
-
 class Unknowns(NamedTuple):
     """Both unknowns of the nodes, shape (nx,), see :mod:`.contact`, and the approach h00 in a^2/R."""
 
     q: np.ndarray
     w: np.ndarray
     h00: float
-
-    def mirrored(self) -> Unknowns:
-        """Unknowns with the nodes in reverse order."""
-        return Unknowns(mirrored(self.q), mirrored(self.w), self.h00)
 
 
 class Rows(NamedTuple):

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
-from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
-from ehlpetsc.discretisation.unknowns import Unknowns, mirrored
+from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrored
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.nonlinear import events
 from ehlpetsc.physics.operation import LEVEL_TOLERANCE
@@ -149,8 +149,8 @@ class TimeStepping:
         if inputs.conditions.entrainment >= 0.0:
             solution, iterations = solve(inputs, guess)
             return solution, self.solver.residual().reynolds, iterations
-        solution, iterations = solve(inputs.mirrored(), guess and guess.mirrored())
-        return solution.mirrored(), mirrored(self.solver.residual().reynolds), iterations
+        solution, iterations = solve(mirrored(inputs), mirrored(guess))
+        return mirrored(solution), mirrored(self.solver.residual().reynolds), iterations
 
     def _start_by_time_stepping(self, records: dict, watch: Watch) -> State:
         """State at time 0 after time steps during which roughness at rest is ramped up.

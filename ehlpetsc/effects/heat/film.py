@@ -65,11 +65,6 @@ class FilmHeat(NamedTuple):
             of_nodes[row] = row_values
         return self._replace(of_nodes=of_nodes)
 
-    def mirrored(self) -> FilmHeat:
-        """Coefficients with the nodes in reverse order, for a solve."""
-        of_nodes, guess = (np.ascontiguousarray(array[..., ::-1]) for array in (self.of_nodes, self.guess))
-        return self._replace(of_nodes=of_nodes, guess=guess)
-
     def fill_properties(
         self,
         q: np.ndarray,

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, FilmLaw, G, film_law
@@ -158,26 +158,19 @@ class HeatStep:
         self, solution: Solution, heat: FilmHeat
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures of the film in the solve; results of `film.faces`."""
-        n, inputs = self.scales.nx, solution.inputs
-        q, h, oil = solution.nodes.reynolds_unknown, solution.nodes.film, solution.loads.oil_mask
-        backward = inputs.conditions.entrainment < 0.0
-        if backward:  # the first node is the inlet
-            inputs, q, h, oil = inputs.mirrored(), q[::-1], h[::-1], np.ascontiguousarray(oil[::-1])
-        solved, couette = heat.guess[:, ::-1].copy() if backward else heat.guess.copy(), np.zeros(n + 1)
-        pressure_heat, spread, gradient = np.empty(n), np.empty(n), np.empty(n)
-        at = self.reynolds.properties(np.ascontiguousarray(q), np.ascontiguousarray(h), inputs, solved)
-        faces(
-            at,
-            self.reynolds.face_law(inputs),
-            oil,
-            self._max_flow(h, oil, inputs),
-            couette,
-            pressure_heat,
-            spread,
-            gradient,
-        )
+        n, nodes, backward = self.scales.nx, solution.nodes, solution.inputs.conditions.entrainment < 0.0
+        given = solution.inputs, nodes.reynolds_unknown, nodes.film, solution.loads.oil_mask, heat.guess
+        inputs, q, h, oil, guess = map(mirrored, given) if backward else given
+        solved = guess.copy()
+        couette, *of_nodes = np.zeros(n + 1), np.empty(n), np.empty(n), np.empty(n)
+        at = self.reynolds.properties(q, h, inputs, solved)
+        limits = self._max_flow(h, oil, inputs)
+        faces(at, self.reynolds.face_law(inputs), oil, limits, couette, *of_nodes)
+        pressure_heat, spread, gradient = of_nodes
         if backward:
-            return solved[:, ::-1].copy(), -couette[::-1], pressure_heat[::-1], spread[::-1], -gradient[::-1]
+            solved, couette, pressure_heat, spread, gradient = map(
+                mirrored, (solved, -couette, pressure_heat, spread, -gradient)
+            )
         return solved, couette, pressure_heat, spread, gradient
 
     def _max_flow(self, h: np.ndarray, oil: np.ndarray, inputs: StepInputs) -> tuple[float, float]:
