@@ -16,6 +16,7 @@ import argparse
 import contextlib
 import re
 from pathlib import Path
+from subprocess import CalledProcessError
 
 import numpy as np
 
@@ -24,13 +25,15 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.case_profiles import draw_case
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
-from ehlpetsc.pictures.over_time import draw_map, draw_temperatures
+from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures, save_movie
+from ehlpetsc.pictures.report import save_report
 from ehlpetsc.pictures.series import draw_ensemble, draw_running_in
 from ehlpetsc.results.index import in_order, open_all
 from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
 from ehlpetsc.results.reader import Result
 
 FIGURES = {
+    "over_time": (draw_courses, "film, pressure, friction of every step over time, as of a cycle"),
     "map": (draw_map, "pressure over x and time, contacts marked"),
     "stribeck": (draw_stribeck, "friction over speed, of a series over it"),
     "traction": (draw_traction, "friction over slide/roll ratio, of a series"),
@@ -69,7 +72,7 @@ def main(words: list[str]) -> int:
     kind = next((name for name in (*FIGURES, *OTHERS) if getattr(options, name)), None)
     ending = OTHERS[kind][0] if kind in OTHERS else f".{kind}.png" if kind else ".png"
     output = options.output or Path(_stem(options.results) + ending)
-    return exit_status("plot", lambda: _run(options, kind, output), (ValueError,), output)
+    return exit_status("plot", lambda: _run(options, kind, output), (ValueError, CalledProcessError), output)
 
 
 def _run(options: argparse.Namespace, kind: str | None, output: Path) -> None:
@@ -89,12 +92,8 @@ def draw(results: list[Result], kind: str | None, options: argparse.Namespace, o
     """Draw one picture or movie into a file."""
     _check(results, kind, options)
     if kind == "movie":
-        from ehlpetsc.pictures.over_time import save_movie
-
         save_movie(results, options, output)
     elif kind == "report":
-        from ehlpetsc.pictures.report import save_report
-
         if len(results) > 1:
             raise OutputError(f"{len(results)} results; allowed: --report of one")
         save_report(results[0], output)

@@ -8,8 +8,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.exact_solutions import hertz_pressure
@@ -19,7 +17,6 @@ from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import Result
 
-SIDES = {"1": "surface 1", "2": "surface 2"}
 PRESSURE = "pressure [GPa]"
 FILM = "film thickness [µm]"
 GAP = "gap [µm]"  # without oil
@@ -27,7 +24,6 @@ WINDOW = (-1.6, 1.4)  # limits of x/a by default
 SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
 AROUND_WIDTH = 0.5  # half-widths, of a view around a point
-HERTZ = dict(color="0.6", lw=0.9, ls=":", zorder=1)
 MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
 
 
@@ -140,61 +136,67 @@ def panel_title(results: list[Result], indices: Sequence[int]) -> list[str]:
     return [": ".join(filter(None, texts)), style.conditions(results, indices)]
 
 
-def pressure_and_film(
-    axes: Sequence[Axes],
-    results: list[Result],
-    indices: Sequence[int],
-    colours: Sequence,
-    window: tuple[float, float],
+def fill_frame(
+    axes: Sequence[Axes], results: list[Result], indices: Sequence[int], window: tuple[float, float]
 ) -> None:
-    """Draw pressure and film into two axes; for a single result also contacts and the pressure of the solids.
+    """Draw pressure and film at an instant into two axes; of a single result also what the solids carry.
 
     The film axis ends above the maximum film inside the contact, or in view if there is none inside.
     """
     upper, lower = axes
-    highest, thickest = _hertz(upper, results, indices, colours, window), 0.0
+    colours, names, key = style.series_colours(results)
+    single, thickest = len(results) == 1, 0.0
     for number, (result, index, colour) in enumerate(zip(results, indices, colours, strict=True)):
         line = dict(color=colour, lw=1.1, ls="--" if number == 1 and len(results) == 2 else "-")
         x = result.x / result.attrs["a"]
-        pressure, film = 1e-9 * result.frame("pressure", index), 1e6 * result.frame("film_thickness", index)
-        upper.plot(x, pressure, **line)
-        lower.plot(x, film, **line)
         shown = (x >= window[0]) & (x <= window[1])
-        inside = shown & (np.abs(x) <= 1.0)
-        highest = max(highest, pressure[shown].max())
-        thickest = max(thickest, film[inside].max(initial=0.0) or film[shown].max())
-        if len(results) == 1:
-            if "contact_pressure" in result:
-                solids = 1e-9 * result.frame("contact_pressure", index)
-                upper.fill_between(x, 0.0, solids, color=style.SOLIDS, lw=0, zorder=1.5)
-            touching = shown & in_contact(result, index)
-            if touching.any():  # an empty line would affect the layout
+        film = 1e6 * result.frame("film_thickness", index)
+        if single:
+            names = ["total pressure" if draw_solids(upper, result, index, shown) else "pressure"]
+            if (touching := shown & in_contact(result, index)).any():
                 marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3)
-                lower.plot(x[touching], film[touching], "v", **marks)
-    upper.set_ylabel(PRESSURE)
-    upper.set_ylim(0.0, 1.05 * highest or 1.0)
+                lower.plot(x[touching], film[touching], "v", label="in contact", **marks)
+        upper.plot(x, 1e-9 * result.frame("pressure", index), label=names[number], **line)
+        label = ("film" if style.is_lubricated(result) else "gap") if single else None
+        lower.plot(x, film, label=label, **line)
+        thickest = max(thickest, film[shown & (np.abs(x) <= 1.0)].max(initial=0.0) or film[shown].max())
+    draw_hertz(upper, results, indices, window)
+    style.legend_beside(upper, title=style.UNITS.get(key, key))
+    style.legend_beside(lower)
+    lower.set(xlabel=ACROSS, xlim=window, ylim=(0.0, 1.15 * thickest or 1.0))
+    upper.set(ylabel=PRESSURE, ylim=(0.0, 1.05 * max(highest(upper, window), 1e-3)))
     lower.set_ylabel(FILM if any(map(style.is_lubricated, results)) else GAP)
-    lower.set_ylim(0.0, 1.15 * thickest or 1.0)
-    lower.set_xlabel(ACROSS)
-    lower.set_xlim(*window)
+    x_in_mm(upper, results)
+    mark_flow(upper, results, indices)
 
 
-def _hertz(
-    axes: Axes, results: list[Result], indices: Sequence[int], colours: Sequence, window: tuple[float, float]
-) -> float:
-    """Draw the Hertz pressure at the instants, once if equal for all; returns its maximum [GPa]."""
-    x = np.linspace(*window, 801)
+def draw_solids(axes: Axes, result: Result, index: int, shown: np.ndarray) -> bool:
+    """Fill the pressure of the solids; returns whether there is any at the nodes `shown`."""
+    if (
+        "contact_pressure" not in result
+        or not (solids := result.frame("contact_pressure", index))[shown].any()
+    ):
+        return False
+    x = result.x / result.attrs["a"]
+    axes.fill_between(x, 0.0, 1e-9 * solids, color=style.SOLIDS, lw=0, zorder=1.5, label="of the solids")
+    return True
+
+
+def draw_hertz(
+    axes: Axes, results: list[Result], indices: Sequence[int], window: tuple[float, float]
+) -> None:
+    """Draw the Hertz pressures at the instants."""
+    x, label = np.linspace(*window, 801), "Hertz"
     contacts = [style.hertz_at(result, index) for result, index in zip(results, indices, strict=True)]
-    curves = [
-        1e-9 * hertz_pressure(x * result.attrs["a"] / a, 1.0, p0)
-        for result, (a, p0) in zip(results, contacts, strict=True)
-    ]
-    if np.allclose(curves, curves[0], rtol=1e-9):
-        axes.plot(x, curves[0], **HERTZ)
-    else:
-        for curve, colour in zip(curves, colours, strict=True):
-            axes.plot(x, curve, **HERTZ | {"color": colour})
-    return float(np.max(curves))
+    for a, p0 in dict.fromkeys((a / r.attrs["a"], p0) for r, (a, p0) in zip(results, contacts, strict=True)):
+        axes.plot(x, 1e-9 * hertz_pressure(x / a, 1.0, p0), ":", color="0.6", lw=0.9, zorder=1, label=label)
+        label = None
+
+
+def highest(axes: Axes, window: tuple[float, float]) -> float:
+    """Maximum of all lines in view."""
+    data = np.concatenate([line.get_xydata() for line in axes.lines])
+    return float(data[(data[:, 0] >= window[0]) & (data[:, 0] <= window[1]), 1].max())
 
 
 def mark_flow(axes: Axes, results: list[Result], indices: Sequence[int]) -> None:
@@ -250,55 +252,20 @@ def deformed_surfaces(axes: Axes, result: Result, index: int, window: tuple[floa
     room = 0.15 * (top - bottom)
     for height, end, side in ((upper, top + room, "1"), (lower, bottom - room, "2")):
         axes.fill_between(x, height, end, color="0.85", lw=0)
-        axes.plot(x, height, color=style.SURFACES[side], lw=0.9, label=SIDES[side])
-    axes.set_ylim(bottom - room, top + room)
-    axes.set_ylabel("surfaces [µm]")
+        axes.plot(x, height, color=style.SURFACES[side], lw=0.9, label=f"surface {side}")
+    axes.set(xlabel=ACROSS, ylabel="surfaces [µm]", ylim=(bottom - room, top + room))
     style.legend_beside(axes)
-
-
-def frame_legend(axes: Sequence[Axes], result: Result, index: int, colour: object) -> None:
-    """Draw the legends of `pressure_and_film`, of the curves in view."""
-    x, (low, high) = result.x / result.attrs["a"], axes[1].get_xlim()
-    in_view = (x >= low) & (x <= high)
-    solids = "contact_pressure" in result and result.frame("contact_pressure", index)[in_view].any()
-    handles = [Line2D([], [], color=colour, lw=1.1, label="total pressure" if solids else "pressure")]
-    if solids:
-        handles.append(Patch(color=style.SOLIDS, label="of the solids"))
-    handles.append(Line2D([], [], label="Hertz", **HERTZ))
-    style.legend_beside(axes[0], handles)
-    films = [Line2D([], [], color=colour, lw=1.1, label="film" if style.is_lubricated(result) else "gap")]
-    if in_contact(result, index)[in_view].any():
-        films.append(Line2D([], [], color=style.CONTACT, marker="v", ls="", ms=4, label="in contact"))
-    style.legend_beside(axes[1], films)
-
-
-def fill_frame(
-    axes: Sequence[Axes], results: list[Result], indices: Sequence[int], window: tuple[float, float]
-) -> None:
-    """Draw pressure, film and their legends at an instant into two axes."""
-    colours, names, key = style.series_colours(results)
-    pressure_and_film(axes, results, indices, colours, window)
-    if len(results) > 1:
-        same = style.share_hertz_contact(results)
-        handles = [Line2D([], [], label="Hertz", **HERTZ)] if same else []
-        names = style.labels_with_hertz(names, results)
-        style.series_legend(axes[0], colours, names, style.UNITS.get(key, key), handles)
-    else:
-        frame_legend(axes, results[0], indices[0], colours[0])
-    x_in_mm(axes[0], results)
-    mark_flow(axes[0], results, indices)
 
 
 def draw_frame(results: list[Result], options: argparse.Namespace) -> Figure:
     """Pressure and film at an instant; for one rough result also both deformed surfaces."""
     indices, view = choose_frames(results, options.step, options.time), window(results, options)
-    rough = len(results) == 1 and any(results[0].profile(side) for side in SIDES)
+    rough = len(results) == 1 and any(results[0].profile(side) for side in "12")
     size = (SIZE[0], HEIGHT_WITH_SURFACES) if rough else SIZE
     figure, axes = style.new_figure(3 if rough else 2, 1, size, sharex=True)
     fill_frame(axes[:2], results, indices, view)
     if rough:
         deformed_surfaces(axes[2], results[0], indices[0], view)
         axes[1].set_xlabel("")
-        axes[2].set_xlabel(ACROSS)
     style.set_title(figure, *panel_title(results, indices))
     return figure

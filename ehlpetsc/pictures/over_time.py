@@ -1,10 +1,9 @@
-"""Pressure and temperatures over x and time; movies: GIF, or MP4 and WebM by ffmpeg."""
+"""Results over time: maps over x and time, temperatures, the course of all steps; movies."""
 
 from __future__ import annotations
 
 import argparse
 import contextlib
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +11,6 @@ import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -20,14 +18,12 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.contacts import in_contact
+from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
 MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
-MAX_MARKED_CONTACTS = 3000  # nodes in contact marked by dots, because single pixels would not be visible
-MAX_FILLED_CONTACT = 0.1  # of a map: larger areas in contact are outlined, as they would hide the pressure
 COLOUR_PERCENTILE = 99.9  # upper end of the colours, without a few sharp peaks
-MESH = dict(shading="nearest", rasterized=True)
 TEMPERATURES = {
     "film_temperature": ("film", style.FILM),
     "temperature_1": ("surface 1", style.SURFACES["1"]),
@@ -36,6 +32,16 @@ TEMPERATURES = {
 HEIGHTS = (1, 1, 1, 1.5)  # of the panels of temperatures, the last one over time
 TEMPERATURE_SIZE, STEADY_SIZE = (8.4, 10.0), (8.4, 6.6)  # inches
 KELVIN = 273.15
+COURSES = {  # panels over time: factor from SI units, scalars with their labels and colours
+    "load [N/mm]": (1e-3, {"load_given": ("load", style.SINGLE)}),
+    "speed [m/s]": (1.0, {f"speed_{k}": (f"surface {k}", colour) for k, colour in style.SURFACES.items()}),
+    "film [µm]": (1e6, {"film_central": ("central", style.SINGLE), "h_min": ("minimum", style.SECOND)}),
+    "maximum\npressure [GPa]": (1e-9, {"p_max": ("maximum", style.SINGLE)}),
+    "friction\ncoefficient": (1.0, {"friction_coefficient": ("friction", style.SINGLE)}),
+    "share of the load\non the solids": (1.0, {"contact_share": ("solids", style.SINGLE)}),
+    "maximum\ntemperature [K]": (1.0, {f"{name}_max": shown for name, shown in TEMPERATURES.items()}),
+}
+COURSE_HEIGHT = 1.5  # inches of a panel
 
 
 def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
@@ -48,12 +54,12 @@ def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
     _, names, key = style.series_colours(results)
     for panel, result, (columns, stride, values), name in zip(axes[0], results, maps, names, strict=True):
         image = space_time_map(panel, result, columns, stride, 1e-9 * values, (0.0, highest), "viridis")
-        mark_contacts(panel, result, columns, stride)
+        outline_contacts(panel, result, columns, stride)
         if len(results) > 1:
             panel.set_title(f"{key} = {name}" if key else name, fontsize="medium")
     figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
     if any(result.contact_count.any() for result in results):
-        mark = Line2D([], [], color=style.CONTACT, marker="s", ls="", ms=4, label="in contact")
+        mark = Line2D([], [], color=style.CONTACT, lw=1.0, label="in contact")
         axes[0][0].legend(handles=[mark], loc="upper left", fontsize="small")
     title = str(results[0].attrs["title"]) if len(results) == 1 else ""
     style.set_title(figure, title, style.conditions(results))
@@ -80,28 +86,18 @@ def space_time_map(
 ) -> ScalarMappable:
     """Draw a field of every `stride`-th frame over x and time; returns the image for a colour bar."""
     x, time = result.x[columns] / result.attrs["a"], 1e6 * result.time
-    low, high = limits
-    image = axes.pcolormesh(x, time[::stride], values, vmin=low, vmax=high, cmap=colours, **MESH)
+    mesh = dict(vmin=limits[0], vmax=limits[1], cmap=colours, shading="nearest", rasterized=True)
+    image = axes.pcolormesh(x, time[::stride], values, **mesh)
     axes.set(xlabel=ACROSS, ylabel="time [µs]", xlim=(x[0], x[-1]), ylim=(time[0], time[-1]))
-    scale = frames.travel_of(result)[-1] / max(time[-1], 1e-30)
-    if "displacement_1" not in result.scalars and scale > 0.0:
-        travel = axes.secondary_yaxis("right", functions=(lambda t: t * scale, lambda x: x / scale))
-        travel.set_ylabel("travel [a]")
     return image
 
 
-def mark_contacts(axes: Axes, result: Result, columns: slice, stride: int) -> None:
-    """Mark nodes in contact, also of the frames between the drawn ones; large areas by their outline."""
-    x, rows = result.x[columns] / result.attrs["a"], 1e6 * result.time[::stride]
+def outline_contacts(axes: Axes, result: Result, columns: slice, stride: int) -> None:
+    """Outline nodes in contact, also of the frames between the drawn ones."""
     touching = contacts_of_blocks(result, columns, stride)
-    if touching.mean() > MAX_FILLED_CONTACT:
-        axes.contour(x, rows, touching, [0.5], colors=style.CONTACT, linewidths=0.5)
-        return
-    red = ListedColormap([style.CONTACT])
-    axes.pcolormesh(x, rows, np.ma.masked_equal(touching, 0), cmap=red, **MESH)
-    row, node = np.nonzero(touching)
-    if len(row) < MAX_MARKED_CONTACTS:
-        axes.plot(x[node], rows[row], ".", color=style.CONTACT, ms=3, mew=0, rasterized=True)
+    if touching.any():
+        x, rows = result.x[columns] / result.attrs["a"], 1e6 * result.time[::stride]
+        axes.contour(x, rows, touching, [0.5], colors=style.CONTACT, linewidths=0.7)
 
 
 def contacts_of_blocks(result: Result, columns: slice, stride: int) -> np.ndarray:
@@ -112,10 +108,8 @@ def contacts_of_blocks(result: Result, columns: slice, stride: int) -> np.ndarra
 
 
 def draw_temperatures(results: list[Result], options: argparse.Namespace) -> Figure:
-    """Temperatures, pressure and film of one result at an instant, the hotter surface over x and time."""
-    if len(results) > 1:
-        raise OutputError(f"{len(results)} results; allowed: --temperatures of one")
-    result = results[0]
+    """Pressure, film and temperatures of one result at an instant, the hotter surface over x and time."""
+    result = _only(results, "--temperatures")
     if missing := [name for name in TEMPERATURES if name not in result.fields]:
         raise OutputError(
             f"{result.path}: does not store {', '.join(missing)}: the case needs a table [heat], and "
@@ -125,22 +119,21 @@ def draw_temperatures(results: list[Result], options: argparse.Namespace) -> Fig
     size, heights = (STEADY_SIZE, HEIGHTS[:3]) if steady else (TEMPERATURE_SIZE, HEIGHTS)
     figure, axes = style.new_figure(len(heights), 1, size, sharex=True, height_ratios=heights)
     [index] = frames.choose_frames(results, options.step, options.time)
-    _temperatures_at(axes[0], result, index, view)
-    frames.pressure_and_film(axes[1:3], results, [index], [style.SINGLE], view)
-    frames.frame_legend(axes[1:3], result, index, style.SINGLE)
-    frames.mark_flow(axes[1], results, [index])
+    frames.fill_frame(axes[:2], results, [index], view)
+    temperatures_at(axes[2], result, index, view)
+    axes[1].set_xlabel("")
+    axes[-1].set_xlabel(ACROSS)
     if not steady:
         side = max("12", key=lambda name: np.nanmean(result.steps(f"temperature_{name}_mean")))
         columns, stride, values = field_over_time(result, f"temperature_{side}", view)
         limits = (None, float(np.percentile(values, COLOUR_PERCENTILE)))
         image = space_time_map(axes[3], result, columns, stride, values, limits, "inferno")
-        figure.colorbar(image, ax=axes[3], label=f"temperature of\nsurface {side} [K]", pad=0.08)
-        axes[2].set_xlabel("")
+        figure.colorbar(image, ax=axes[3], label=f"temperature of\nsurface {side} [K]")
     style.set_title(figure, *frames.panel_title(results, [index]))
     return figure
 
 
-def _temperatures_at(axes: Axes, result: Result, index: int, window: tuple[float, float]) -> None:
+def temperatures_at(axes: Axes, result: Result, index: int, window: tuple[float, float]) -> None:
     """Draw temperatures along the contact, in K and in degrees Celsius."""
     x = result.x / result.attrs["a"]
     columns = style.in_view(x, window)
@@ -150,8 +143,41 @@ def _temperatures_at(axes: Axes, result: Result, index: int, window: tuple[float
     celsius = axes.secondary_yaxis("right", functions=(lambda t: t - KELVIN, lambda t: t + KELVIN))
     celsius.set_ylabel("[°C]")
     axes.grid(lw=0.3)
-    handles, names = axes.get_legend_handles_labels()
-    axes.legend(handles, names, fontsize="small", loc="upper left")
+    axes.legend(loc="upper left", **style.SMALL)
+
+
+def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> Figure:
+    """Conditions, film, pressure, friction and temperatures of every step of one result over time."""
+    result = _only(results, "--over-time")
+    if len(result.steps("time")) < 2:
+        raise OutputError(f"{result.path}: is steady; allowed: --over-time of a run over time")
+    time, filled = 1e3 * result.steps("time"), 1e3 * filled_from(result)
+    panels = {
+        label: (factor, shown)
+        for label, (factor, names) in COURSES.items()
+        if (shown := {name: names[name] for name in names if name in result.scalars})
+    }
+    size = (8.4, 1.0 + COURSE_HEIGHT * len(panels))
+    figure, axes = style.new_figure(len(panels), 1, size, sharex=True, squeeze=False)
+    for panel, (label, (factor, shown)) in zip(axes[:, 0], panels.items(), strict=True):
+        for name, (words, colour) in shown.items():
+            panel.plot(time, factor * result.steps(name), color=colour, lw=1.0, label=words)
+        panel.set_ylabel(label, fontsize="small")
+        panel.grid(lw=0.3)
+        if time[0] < filled < time[-1]:
+            panel.axvspan(time[0], filled, color="0.93", zorder=0)
+        if len(shown) > 1:
+            style.legend_beside(panel)
+    axes[-1, 0].set(xlabel="time [ms]", xlim=(time[0], time[-1]))
+    note = "grey: the profiles do not yet fill the contact" if time[0] < filled < time[-1] else ""
+    style.set_title(figure, str(result.attrs["title"]), style.conditions(results), note)
+    return figure
+
+
+def _only(results: list[Result], option: str) -> Result:
+    if len(results) > 1:
+        raise OutputError(f"{len(results)} results; allowed: {option} of one")
+    return results[0]
 
 
 MAX_FRAMES = 150
@@ -181,11 +207,16 @@ def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -
 
 @contextlib.contextmanager
 def recording(figure: Figure, path: Path) -> Iterator[AbstractMovieWriter]:
-    """Context manager of the writer of a movie; see `grab`."""
-    writer = _writer(path)
-    with replacing(path, keep_ending=True) as temporary, _encoding(path):
-        with writer.saving(figure, temporary, DPI):
-            yield writer
+    """Context manager of the writer of a movie, by the ending of its name; see `grab`."""
+    ending = path.suffix.lower()
+    if ending in CODECS and not FFMpegWriter.isAvailable():
+        raise OutputError(f"{path}: {ending} needs ffmpeg, which is not installed; without it, allowed: .gif")
+    if ending in CODECS:
+        writer = FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN_SIZE)
+    else:
+        writer = PillowWriter(fps=RATE)
+    with replacing(path, keep_ending=True) as temporary, writer.saving(figure, temporary, DPI):
+        yield writer
 
 
 def grab(figure: Figure, writer: AbstractMovieWriter) -> None:
@@ -194,27 +225,6 @@ def grab(figure: Figure, writer: AbstractMovieWriter) -> None:
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
     writer.grab_frame()
-
-
-@contextlib.contextmanager
-def _encoding(path: Path) -> Iterator[None]:
-    """Convert a failure of the encoder, as on a full disk, to an OutputError."""
-    try:
-        yield
-    except subprocess.CalledProcessError as error:
-        lines = str(error.stderr or error.output or "").strip().splitlines() or [f"status {error.returncode}"]
-        raise OutputError(f"{path}: not written, its encoder ended: {lines[-1]}") from None
-
-
-def _writer(path: Path) -> AbstractMovieWriter:
-    ending = path.suffix.lower()
-    if ending == ".gif":
-        return PillowWriter(fps=RATE)
-    if ending not in CODECS:
-        raise OutputError(f"{path}: allowed for a movie: .gif, {', '.join(CODECS)}")
-    if not FFMpegWriter.isAvailable():
-        raise OutputError(f"{path}: {ending} needs ffmpeg, which is not installed; without it, allowed: .gif")
-    return FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN_SIZE)
 
 
 def _limits(results: list[Result], chosen: np.ndarray) -> tuple[float, float]:

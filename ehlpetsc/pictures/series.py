@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -34,9 +33,6 @@ PANELS = {  # of ensembles, by scalar: label, factor from SI units
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
-MAX_SINGLE_PASSES = 30  # more passes are drawn as dots and means over several
-PASSES_PER_MEAN = 10
-MIN_ADDED = 1e-3  # of the area added by the first pass: smaller values are drawn at the edge
 
 
 def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) -> Figure:
@@ -48,18 +44,18 @@ def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) ->
     rows = -(-len(names) // COLUMNS)
     size = (PANEL_SIZE[0] * COLUMNS + 1.2, PANEL_SIZE[1] * rows)
     figure, axes = style.new_figure(rows, COLUMNS, size, squeeze=False)
-    at, label, ticks = _abscissae(all_ensembles)
+    at, label = _abscissae(all_ensembles)
     span = np.ptp(at) or 1.0
     for panel, name in zip(axes.flat, names, strict=False):
         for x, ensemble in zip(at, all_ensembles, strict=True):
             _draw_ensemble(panel, x, 0.03 * span, PANELS[name][1] * ensemble.scalars[name])
         panel.set_ylabel(PANELS[name][0], fontsize="small")
-        panel.set_xlabel(label, fontsize="small")
         panel.set_xlim(min(at) - 0.3 * span, max(at) + 0.3 * span)
         panel.grid(axis="y", lw=0.3)
-        if ticks:
-            rotation = 20 if max(map(len, ticks)) > 6 else 0
-            panel.set_xticks(at, ticks, rotation=rotation, fontsize="small")
+        if label:
+            panel.set_xlabel(label, fontsize="small")
+        else:
+            panel.set_xticks(at, [one.name for one in all_ensembles], rotation=20, fontsize="small")
     for panel in axes.flat[len(names) :]:
         panel.set_axis_off()
     interval = f"mean and its\n{100 * CONFIDENCE:g} % interval\n(bootstrap)"
@@ -72,16 +68,13 @@ def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) ->
     return figure
 
 
-def _abscissae(all_ensembles: list[Ensemble]) -> tuple[list[float], str, list[str] | None]:
-    """Abscissas of the ensembles, their label, and tick labels if they are not numbers."""
+def _abscissae(all_ensembles: list[Ensemble]) -> tuple[list[float], str]:
+    """Values of the one number by which ensembles differ, and its label; otherwise numbers and ""."""
     keys = list(all_ensembles[0].values)
-    if len(keys) == 1:
-        values = [ensemble.values[keys[0]] for ensemble in all_ensembles]
-        if all(isinstance(value, int | float) for value in values):
-            return [float(v) for v in values], style.UNITS.get(keys[0], keys[0]), None
-    if len(all_ensembles) == 1:
-        return [0.0], f"{len(next(iter(all_ensembles[0].scalars.values())))} runs", [" "]
-    return list(map(float, range(len(all_ensembles)))), "", [ensemble.name for ensemble in all_ensembles]
+    values = [ensemble.values[keys[0]] for ensemble in all_ensembles] if len(keys) == 1 else []
+    if values and all(isinstance(value, int | float) for value in values):
+        return [float(value) for value in values], style.UNITS.get(keys[0], keys[0])
+    return [float(number) for number in range(len(all_ensembles))], ""
 
 
 def _draw_ensemble(axes: Axes, x: float, shift: float, values: np.ndarray) -> None:
@@ -106,8 +99,7 @@ def draw_running_in(results: list[Result], _options: argparse.Namespace | None) 
     figure, axes = style.new_figure(2, 3 if damages else 2, size)
     draw_surface(axes[0, 0], results)
     draw_pressure(axes[1, 0], results)
-    time = results[0].case.time
-    draw_plastic_area(axes[0, 1], rows, bool(time and time.pass_shift))
+    draw_plastic_area(axes[0, 1], rows)
     draw_contact(axes[1, 1], rows)
     for row, side in zip(axes if damages else (), ("1", "2"), strict=False):
         draw_fatigue(row[2], damages, side)
@@ -117,7 +109,7 @@ def draw_running_in(results: list[Result], _options: argparse.Namespace | None) 
 
 def draw_surface(axes: Axes, results: list[Result]) -> None:
     """Draw the surface with the deepest indentation: original, after the first and after the last pass."""
-    sides = [side for side in ("1", "2") if heights(results[-1], side) is not None]
+    sides = [side for side in "12" if heights(results[-1], side) is not None]
     side = max(sides, key=lambda name: np.subtract(*heights(results[-1], name)[1:]).max())
     s, original, last = heights(results[-1], side)
     first, a = heights(results[0], side)[2], results[0].attrs["a"]
@@ -145,55 +137,35 @@ def draw_pressure(axes: Axes, results: list[Result]) -> None:
     style.legend_above(axes, title=f"at {style.digits(1e6 * first.time[frame])} µs")
 
 
-def draw_plastic_area(axes: Axes, rows: list[dict], is_shifted: bool) -> None:
-    """Draw the plastic area added by each pass, relative to the first, and Ra of both surfaces."""
-    numbers = np.arange(1, len(rows) + 1)
-    volumes = np.array([row["set_volume"] for row in rows])
-    axes.set_yscale("log")
-    draw_course(axes, numbers, np.maximum(np.diff(volumes, prepend=0.0) / volumes[0], MIN_ADDED), LAST, "o-")
-    axes.axhline(0.01, color="0.5", lw=0.8, ls=":")
-    axes.set(xlabel="pass", ylabel="plastic area added / that of pass 1", xticks=_ticks(numbers))
-    axes.set_ylim(bottom=0.8 * MIN_ADDED)
+def draw_plastic_area(axes: Axes, rows: list[dict]) -> None:
+    """Draw the area of the section set plastically by the end of each pass, and Ra of both surfaces."""
+    area = 1e12 * np.array([row["set_volume"] for row in rows])
+    axes.plot(*_over_passes(axes, area), ".-", color=LAST, label="plastic area")
+    axes.set(ylabel="plastic area of both surfaces [µm²]", ylim=(0.0, None))
     ra_axes = axes.twinx()
-    names = {"1": "Ra 1", "2": "Ra 2, its stretch moves on" if is_shifted else "Ra 2"}
-    for side, marks in (("1", "^--"), ("2", "v:")):
+    for side, dashes in (("1", "--"), ("2", ":")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
-            ra = [1e6 * row[side]["ra"] for row in rows]
-            thin = dict(color=style.SURFACES[side], ms=4 if len(rows) <= MAX_SINGLE_PASSES else 0, alpha=0.6)
-            ra_axes.plot(numbers, ra, marks, label=names[side], **thin)
+            ra = 1e6 * np.array([row[side]["ra"] for row in rows])
+            line = dict(color=style.SURFACES[side], label=f"Ra of surface {side}")
+            ra_axes.plot(*_over_passes(axes, ra), dashes, **line)
     ra_axes.set_ylabel("Ra [µm]")
-    style.legend_above(ra_axes, axes)
-
-
-def draw_course(axes: Axes, numbers: np.ndarray, values: np.ndarray, colour: str, marks: str) -> None:
-    """Draw a quantity over the passes; as dots and means above `MAX_SINGLE_PASSES`."""
-    if len(numbers) <= MAX_SINGLE_PASSES:
-        axes.plot(numbers, values, marks, color=colour, ms=4)
-        return
-    axes.plot(numbers, values, marks[0], color=colour, ms=3, alpha=0.4, mew=0)
-    begins = range(0, len(numbers), PASSES_PER_MEAN)
-    means = [np.mean(values[begin : begin + PASSES_PER_MEAN]) for begin in begins]
-    edges = [0.5, *(min(begin + PASSES_PER_MEAN, len(numbers)) + 0.5 for begin in begins)]
-    label = f"means of {PASSES_PER_MEAN} passes"
-    axes.stairs(means, edges, baseline=None, color=colour, lw=2.0, label=label)
+    style.legend_above(axes, ra_axes)
 
 
 def draw_contact(axes: Axes, rows: list[dict]) -> None:
     """Draw the means of the load fraction of the solids and of the contact length."""
-    numbers = np.arange(1, len(rows) + 1)
     share, length = (
         np.array([np.nan if row.get(name) is None else row[name] for row in rows])
         for name in ("contact_share", "contact_length")
     )
-    draw_course(axes, numbers, share, LAST, "o-")
-    axes.set(xlabel="pass", ylabel="share of the load on solids", xticks=_ticks(numbers))
-    axes.set_ylim(0.0, 1.15 * np.nanmax(share, initial=0.0) or 1.0)
+    axes.plot(*_over_passes(axes, share), ".-", color=LAST)
+    axes.set_ylabel("share of the load on solids", color=LAST)
     length_axes = axes.twinx()
-    draw_course(length_axes, numbers, 1e6 * length, style.SINGLE, "s--")
-    style.legend_above(axes)
+    length_axes.plot(*_over_passes(axes, 1e6 * length), ".--", color=style.SINGLE)
     length_axes.set_ylabel("length in contact [µm]", color=style.SINGLE)
     # twice the room above, so that both curves stay apart
-    length_axes.set_ylim(0.0, 2.3e6 * np.nanmax(length, initial=0.0) or 1.0)
+    for panel, values, room in ((axes, share, 1.15), (length_axes, 1e6 * length, 2.3)):
+        panel.set_ylim(0.0, room * np.nanmax(values, initial=0.0) or 1.0)
     if not np.isfinite(share).any():
         note = "the run ends before both surfaces\nfill the contact: no means over time"
         axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
@@ -201,17 +173,19 @@ def draw_contact(axes: Axes, rows: list[dict]) -> None:
 
 def draw_fatigue(axes: Axes, damages: list[dict], side: str) -> None:
     """Draw the maximum damage of a surface at each depth over the passes."""
-    numbers, depths = np.arange(1, len(damages) + 1), damages[0]["z_over_a"]
+    depths = damages[0]["z_over_a"]
     if any(side not in damage or damage["z_over_a"] != depths for damage in damages):
         axes.set_axis_off()
         return
     for k, (depth, colour) in enumerate(zip(depths, style.shades(len(depths)), strict=True)):
-        maximum = [damage[side]["largest"][k] for damage in damages]
-        axes.semilogy(numbers, maximum, "o-", ms=4, color=colour, label=f"{depth:g} a")
-    axes.set(xlabel="pass", ylabel=f"maximum damage D of surface {side}", xticks=_ticks(numbers))
+        maximum = np.array([damage[side]["largest"][k] for damage in damages])
+        axes.semilogy(*_over_passes(axes, maximum), ".-", color=colour, label=f"{depth:g} a")
+    axes.set_ylabel(f"maximum damage D of surface {side}")
     style.legend_beside(axes, title="depth")
 
 
-def _ticks(numbers: np.ndarray) -> Iterable[int]:
-    """At most ten of the numbers of passes."""
-    return numbers[:: -(-len(numbers) // 10)]
+def _over_passes(axes: Axes, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of the passes beside their values; labels the axis."""
+    axes.set_xlabel("pass")
+    axes.xaxis.get_major_locator().set_params(integer=True)
+    return np.arange(1, len(values) + 1), values

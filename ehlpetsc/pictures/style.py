@@ -11,7 +11,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
@@ -28,7 +27,8 @@ DARK = "#222222"
 FAINT = "0.65"
 DPI = 160
 ACROSS = "x/a"
-MOVIE_ENDINGS = (".gif", ".mp4", ".webm")
+SMALL = dict(fontsize="small", title_fontsize="small")  # of legends
+LEGEND_ENTRIES = 12
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -69,25 +69,29 @@ def save(figure: Figure, *paths: str | Path, chosen: argparse.Namespace | None =
             figure.savefig(temporary, dpi=dpi, metadata=metadata)
 
 
-def shades(count: int) -> list[tuple[float, ...]]:
+def shades(count: int) -> list:
     """Colours of the members of a series, or of depths; the light end of the map is not visible on white."""
-    return [matplotlib.colormaps["viridis"](0.9 * k / max(count - 1, 1)) for k in range(count)]
+    return (
+        [SINGLE, SECOND]
+        if count == 2
+        else [matplotlib.colormaps["viridis"](0.9 * k / max(count - 1, 1)) for k in range(count)]
+    )
 
 
 def legend_beside(axes: Axes, handles: Sequence[Artist] | None = None, title: str | None = None) -> None:
-    """Legend right of the axes; by default of all labelled artists."""
+    """Legend right of the axes; by default of all labelled artists, of many every second or third."""
     handles = axes.get_legend_handles_labels()[0] if handles is None else handles
-    position = dict(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    small = dict(fontsize="small", title_fontsize="small", frameon=False)
-    axes.legend(handles=list(handles), title=title, **small, **position)
+    if handles:
+        every = -(-len(handles) // LEGEND_ENTRIES)
+        position = dict(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        axes.legend(handles=list(handles)[::every], title=title, **SMALL, **position)
 
 
 def legend_above(axes: Axes, *others: Axes, title: str | None = None) -> None:
     """Legend of the axes and of others in a row above the axes."""
     handles = [handle for panel in (axes, *others) for handle in panel.get_legend_handles_labels()[0]]
     position = dict(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
-    if handles:
-        axes.legend(handles=handles, title=title, fontsize="small", title_fontsize="small", **position)
+    axes.legend(handles=handles, title=title, **SMALL, **position)
 
 
 def digits(value: float) -> str:
@@ -101,7 +105,6 @@ def in_view(x: np.ndarray, window: tuple[float, float]) -> slice:
     return slice(nodes[0], nodes[-1] + 1)
 
 
-LEGEND_ENTRIES = 10
 UNITS = {
     "fluid.viscosity": "viscosity [Pa s]",
     "motion.entrainment_speed": "entrainment speed [m/s]",
@@ -111,24 +114,12 @@ UNITS = {
 
 
 def series_colours(results: list[Result]) -> tuple[list, list[str], str | None]:
-    """Colours and labels of several results, and the key of their series; None if they are none."""
+    """Colours of results, labels by the keys that differ or the file names, and the key if it is one."""
     if len(results) == 1:
         return [SINGLE], [results[0].path.stem], None
     key, values = series_values(results)
-    return shades(len(results)), [f"{value:g}" for value in values] if key else names(results), key
-
-
-def names(results: list[Result]) -> list[str]:
-    """Labels of results: titles if they differ, otherwise keys that differ, otherwise file names."""
-    titles = [result.attrs["title"] for result in results]
-    distinct = distinguishing_names(results)
-    if len(set(titles)) == 1 and distinct:
-        return distinct
-    if len(set(titles)) == len(titles):
-        return titles
-    if len(set(titles)) == 1:
-        return [result.path.stem for result in results]
-    return [f"{title} ({result.path.stem})" for title, result in zip(titles, results, strict=True)]
+    names = [f"{value:g}" for value in values] if key else distinguishing_names(results)
+    return shades(len(results)), names or [result.path.stem for result in results], key
 
 
 def is_lubricated(result: Result) -> bool:
@@ -176,30 +167,3 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
     a, p0 = (result.attrs["a"], result.attrs["p0"]) if frame is None else hertz_at(result, frame)
     texts += [f"a = {1e3 * a:.3g} mm", f"p0 = {1e-9 * p0:.3g} GPa"]
     return [*texts, f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry"]
-
-
-def share_hertz_contact(results: list[Result]) -> bool:
-    """Whether all results have the same Hertz contact."""
-    contacts = np.array([(result.attrs["a"], result.attrs["p0"]) for result in results])
-    return np.allclose(contacts, contacts[0], rtol=1e-9, atol=0.0)
-
-
-def labels_with_hertz(labels: list[str], results: list[Result]) -> list[str]:
-    """Labels with the Hertz contact of each result, if these differ."""
-    if share_hertz_contact(results):
-        return labels
-    return [
-        f"{label}\na = {1e3 * r.attrs['a']:.3g} mm, p0 = {1e-9 * r.attrs['p0']:.3g} GPa"
-        for label, r in zip(labels, results, strict=True)
-    ]
-
-
-def series_legend(
-    axes: Axes, colours: list, labels: list[str], title: str | None, handles: Sequence[Artist] = ()
-) -> None:
-    """Legend of at most `LEGEND_ENTRIES` members, the second of two dashed, and `handles`."""
-    step = -(-len(labels) // LEGEND_ENTRIES)
-    lines = [Line2D([], [], color=c, label=n) for c, n in list(zip(colours, labels, strict=True))[::step]]
-    if len(lines) == 2:
-        lines[1].set_linestyle("--")
-    legend_beside(axes, [*lines, *handles], title)

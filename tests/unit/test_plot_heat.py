@@ -70,7 +70,7 @@ def heated(path, steps):
 def test_temperatures(steps, panels, tmp_path):
     figure = drawn("temperatures", [heated(tmp_path / "a.h5", steps)])
     assert len(figure.axes) == panels  # the map and its colours only over time
-    highest = [line.get_ydata().max() for line in figure.axes[0].get_lines()]
+    highest = [line.get_ydata().max() for line in figure.axes[2].get_lines()]
     np.testing.assert_allclose(highest, 350.0 + np.array(list(RISES.values())), rtol=1e-3)
     if steps > 1:
         assert figure.axes[-1].get_ylabel() == "temperature of\nsurface 2 [K]"
