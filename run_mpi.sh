@@ -1,15 +1,15 @@
 #!/bin/bash
-# Runs a case, or the tests, under MPI, with what the machine has; installs what is missing on Debian 12 and newer.
+# Runs a case, a command or the tests with what the machine has; installs what is missing on Debian 12 and newer.
 # shellcheck disable=SC1091,SC2046,SC2086  # lists of names without blanks are meant to be split
 set -eu
 
 usage() {
     cat <<'END'
-./run_mpi.sh [-n RANKS] CASE.toml [PETSc options]   run a case; without -n one contact on 1 rank, a series on 2
+./run_mpi.sh [-n RANKS] CASE.toml [options]         run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh COMMAND ...                            as ehlpetsc COMMAND, see below
 ./run_mpi.sh test [TESTS]                           run the test suite, serial and under mpirun
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
-./run_mpi.sh --commands FOLDER                      link the command ehlpetsc into a folder of your PATH
+./run_mpi.sh --commands FOLDER                      link the command ehlpetsc into a folder, one of your PATH
 
 A python3 on the PATH that has everything is used. Otherwise it is Debian's, and what is missing is installed from
 Debian's packages: by this script as root, else the command is shown.
@@ -46,7 +46,7 @@ prepare() {
         use_debian
         missing=$(missing_in_debian $modules)
         if [ -n "$missing" ]; then
-            is_debian || { other_machine $modules >&2; exit 2; }
+            is_debian || { other_machine $modules; exit 2; }
             install_packages $missing $(missing_in_debian $also)
             use_debian
             missing=$(missing_in_debian $modules)
@@ -91,20 +91,8 @@ install_packages() {
     fi
     say "installing${install#*recommends}"
     export DEBIAN_FRONTEND=noninteractive LC_ALL=C
-    quietly update_lists && quietly $apt $install || { say "installation failed"; exit 2; }
+    quietly $apt update && quietly $apt $install || { say "installation failed"; exit 2; }
     say "installed"
-}
-
-# The lock of the lists, unlike that of the packages, has no timeout in apt
-update_lists() {
-    local log
-    for _ in {1..120}; do
-        log=$($apt update 2>&1) && return
-        [[ $log = *"Could not get lock"* ]] || break
-        sleep 5
-    done
-    echo "$log"
-    return 1
 }
 
 # Output only of what goes wrong
@@ -113,22 +101,14 @@ quietly() {
     log=$("$@" 2>&1 </dev/null) || { echo "$log" >&2; return 1; }
 }
 
-# What a machine has that is neither Debian nor prepared
+# For a machine that is neither Debian nor prepared
 other_machine() {
-    local PRETTY_NAME="an unknown system" found
-    [ ! -r /etc/os-release ] || . /etc/os-release
-    found=$(python3 "$check" found "$@" 2>/dev/null || command -v python3 || echo "no python3")
-    cat <<END
-run_mpi.sh: packages are missing, and this is not Debian 12 or newer, where they could be installed.
-found:   $PRETTY_NAME; $found; $(mpirun --version 2>/dev/null | head -n 1 || true)
-needed:  Python 3.11 or newer with ${run_modules// /, }, on PETSc 3.18 or newer of real numbers in
-         double precision, and the mpirun of the MPI that mpi4py and petsc4py were built with
-Make them the first on the PATH and run the same command again:
-  a cluster: module load ... (module avail petsc), until python3 -c 'import petsc4py, mpi4py, h5py' works
-  PETSc of your own, built with petsc4py: export PETSC_DIR=... PETSC_ARCH=...
-  a virtual environment: pip install '${here}[solver,post]' (builds PETSc from source), then activate it
-  a container: tests/Containerfile
-END
+    say "packages are missing, and this is not Debian 12 or newer, where they could be installed.
+found:   $(python3 "$check" found "$@" 2>/dev/null || command -v python3 || echo "no python3")
+needed:  Python 3.11 or newer with ${run_modules// /, }, and the mpirun of their MPI, first on the PATH:
+  a cluster: module load ..., until python3 -c 'import petsc4py, mpi4py, h5py' works; or export PETSC_DIR=...
+  a virtual environment: pip install '${here}[solver,post]' (builds PETSc), then activate it
+  conda-forge, a container, WSL: see README.md"
 }
 
 set_environment() {
@@ -138,6 +118,7 @@ set_environment() {
     # Open MPI 4 | 5; another MPI does not read them. No binding, as runs side by side would share a core.
     export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
     export OMPI_MCA_orte_execute_quiet=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    export OMPI_MCA_ess_singleton_isolated=1 # no daemon for a rank without mpirun
     [ "$(nodes)" = 1 ] || return 0
     # shared memory alone, by copies that a container allows, and no wait for a network or munge
     export OMPI_MCA_btl=${OMPI_MCA_btl:-^tcp,ofi,openib,uct} OMPI_MCA_smsc=${OMPI_MCA_smsc:-^cma}
@@ -148,41 +129,21 @@ set_environment() {
 # Machines that a batch system has allocated
 nodes() {
     local list=${PBS_NODEFILE:-${PE_HOSTFILE:-${LSB_DJOB_HOSTFILE-}}}
-    [ ! -r "$list" ] || SLURM_JOB_NUM_NODES=${SLURM_JOB_NUM_NODES:-$(cut -d ' ' -f 1 "$list" | sort -u | wc -l)}
-    echo "${SLURM_JOB_NUM_NODES:-1}"
+    if [ -r "$list" ]; then cut -d ' ' -f 1 "$list" | sort -u | wc -l; else echo "${SLURM_JOB_NUM_NODES:-1}"; fi
 }
 
 # A waiting rank yields its core where ranks are more than cores, and before Linux 6.6: since then it comes back after
 # a turn of all others, and two ranks beside a busy process take ten times as long. A rank on every core keeps its own.
 settings_of_ranks() {
-    local yields=1 policy=none processors cores
+    local yields=1 policy=none cores
     [ "$(nodes)" = 1 ] || return 0
-    processors=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc) # nproc would count the threads of BLAS
     cores=$(lscpu --parse=CORE | grep -v '^#' | sort -u | wc -l)
-    if [ "$1" -le "$processors" ] && printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; fi
-    : "${users_yield=${OMPI_MCA_mpi_yield_when_idle-}}" # as it was before the first call
-    if [ "$1" -gt 1 ] && [ "$1" = "$processors" ] && [ "$1" = "$cores" ]; then policy=core; fi
-    export OMPI_MCA_mpi_yield_when_idle=${users_yield:-$yields}
-    export OMPI_MCA_hwloc_base_binding_policy=$policy PRTE_MCA_hwloc_default_binding_policy=$policy
-    [ "$1" -le "$processors" ] ||
+    if [ "$1" -le "$cores" ] && printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; fi
+    if [ "$1" -gt 1 ] && [ "$1" = "$cores" ]; then policy=core; fi
+    export OMPI_MCA_mpi_yield_when_idle=$yields OMPI_MCA_hwloc_base_binding_policy=$policy
+    export PRTE_MCA_hwloc_default_binding_policy=$policy
+    [ "$1" -le "$cores" ] ||
         export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
-}
-
-# Leave out the comment of Open MPI 5 on an exit status that the run has explained
-without_comment() {
-    trap '' INT TERM HUP USR1
-    exec awk '/^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
-        /^-+$/ && length > 70 && held == "" { held = $0 "\n"; next }
-        /^-+$/ && length > 70 { if (held !~ /prterun[ \n]+(detected|noticed)/) printf "%s%s\n", held, $0; held = ""; next }
-        held != "" { held = held $0 "\n"; next }
-        { print; fflush() }
-        END { printf "%s", held }'
-}
-
-# mpirun would end a run whose reader has gone, as `head -1` does
-outliving_its_reader() {
-    trap '' INT TERM HUP USR1 PIPE
-    cat 2>/dev/null || exec cat >/dev/null
 }
 
 # mpirun loses what comes before its ranks are there; the run takes the same request twice as one
@@ -199,67 +160,40 @@ stopped_early() {
 
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it passes on, and they stop after the current step.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
-run_case() {
-    local status=0 comments copier="" asked="" killed=""
+run_ranks() {
+    local status=0 asked="" job
     settings_of_ranks "$ranks"
-    if [ -p /dev/stdout ]; then
-        exec > >(outliving_its_reader)
-        copier=$!
-    fi
-    exec {comments}> >(without_comment >&2)
-    local filter=$!
-    setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null 2>&$comments &
-    local job=$!
-    exec {comments}>&-
-    trap 'asked=1; ask_until_heard $job & trap "killed=143; kill -TERM $job" INT TERM' INT TERM HUP USR1
+    setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null &
+    job=$!
+    trap 'asked=1; ask_until_heard $job & trap "kill -TERM $job" INT TERM' INT TERM HUP USR1
     wait $job || status=$?
     while kill -0 $job 2>/dev/null; do # a signal ends wait, not mpirun
         status=0
         wait $job || status=$?
     done
-    exec >&-
-    wait $filter $copier || true
-    status=${killed:-$status} # Open MPI 5 ends with 1 when it is killed
     # of SIGUSR1 only mpirun and a Python die that have hardly begun: the run takes it as a request
     if [ -n "$asked" ] && [ $status = 138 ]; then stopped_early; fi
-    [ $status -lt 129 ] || say "a rank was ended by signal $((status - 128))"
     exit $status
 }
 
 run_tests() {
-    local only="$here/.test-packages" log # what the tests compare with and Debian does not have
     cd "$here"
-    [ -d "$only/rainflow" ] || [ -e "$only/rainflow.py" ] ||
-        quietly "$python" -m pip install --retries 1 --no-deps --target "$only" rainflow==3.2.0 ||
-        say "PyPI cannot be reached: the comparison with its rainflow is left out"
-    export PYTHONPATH="$PYTHONPATH:$only"
     # more processes than two cores: many tests wait for a signal, or for mpirun to end
     "$python" -m pytest -p no:cacheprovider -q -n 3 --dist loadfile -m "not mpi" "${@:-tests}"
-    for ranks in 1 2 3; do # rank 0 reports, the others where a test failed
+    for ranks in 1 2 3; do
         say "tests on $ranks rank(s)"
         settings_of_ranks $ranks
-        log=$(mktemp)
-        # shellcheck disable=SC2016
-        timeout 1800 "$mpirun" -n $ranks /bin/sh -c '[ "${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-$PMIX_RANK}}" = 0 ] ||
-            exec >>"$1" 2>&1; shift; exec "$@"' sh "$log" \
-            "$python" -m pytest -p no:cacheprovider -q --color=no -m mpi tests/mpi ||
-            { tail -n 100 "$log"; say "tests on $ranks rank(s) failed"; exit 1; }
-        rm -f "$log"
+        timeout 1800 "$mpirun" -n $ranks "$python" -m pytest -p no:cacheprovider -q --color=no -m mpi tests/mpi ||
+            { say "tests on $ranks rank(s) failed"; exit 1; }
     done
 }
 
 # A link to this script, which by its name knows that it is a command
 write_command() {
-    local folder path
-    [ -n "$1" ] || { say "--commands: name a folder of your PATH, as ~/.local/bin"; exit 2; }
-    { mkdir -p -- "$1" && folder=$(CDPATH='' cd -- "$1" && pwd) && [ -w "$folder" ]; } 2>/dev/null ||
-        { say "$1 is no folder that can be written to"; exit 2; }
-    path=$folder/ehlpetsc
-    [ ! -e "$path" ] || [ "$(basename -- "$(readlink -- "$path")")" = run_mpi.sh ] ||
-        { say "$path is there and is not this command: nothing was written"; exit 2; }
-    ln -sfn -- "$here/run_mpi.sh" "$path"
-    say "in $folder: ehlpetsc"
-    [[ :$PATH: = *:"$folder":* ]] || say "not on your PATH yet; type: export PATH=\"$folder:\$PATH\""
+    mkdir -p -- "$1" && [ ! -e "$1/ehlpetsc" ] || [ -L "$1/ehlpetsc" ] || { say "$1/ehlpetsc: is not such a link"; exit 2; }
+    ln -sfn -- "$here/run_mpi.sh" "$1/ehlpetsc"
+    say "in $1: ehlpetsc"
+    [[ :$PATH: = *:"$1":* ]] || say "not on your PATH yet; type: export PATH=\"$1:\$PATH\""
 }
 
 ranks=""
@@ -282,9 +216,9 @@ case ${1-} in
     *)
         trap stopped_early INT TERM HUP USR1
         prepare "$run_modules" "$drawing"
-        [[ $1 = *.toml || -n $ranks ]] || exec "$python" -m ehlpetsc "$@"
-        # one rank for one contact unless the gain is certain: a large mesh, and two idle cores
-        [ -n "$ranks" ] || ranks=$("$python" -m ehlpetsc --ranks "$@" 2>/dev/null | grep -x 2) || ranks=1
-        run_case "$@"
+        # two ranks gain nothing certain for one contact, and all of the second for the members of a series
+        [ -n "$ranks" ] || [[ $1 != *.toml ]] || ! grep -qs '^ *\[series\]' "$1" || ranks=2
+        [ -n "$ranks" ] || exec "$python" -m ehlpetsc "$@"
+        run_ranks "$@"
         ;;
 esac

@@ -117,22 +117,20 @@ def _run(words: list[str]) -> int:
     missing = packages.prepare()
     if missing:
         return refuse(packages.advice(missing, words))
-    from ehlpetsc.run.cli import parse
+    from ehlpetsc.run.cli import parse, run
 
     try:
-        command = parse(words)
+        chosen = parse(words)
     except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
-    if "-help" in [*command.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
+    if "-help" in [*chosen.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
         _print(help_text())
-        if command.case is None:
+        if chosen.case is None:
             return ExitStatus.DONE
-    if command.shows_ranks:
-        return _print(command.worthwhile_ranks())
     problem = packages.startup_problem()
     if problem:
         return refuse(f"ehlpetsc: {problem}")
-    return command.run()
+    return run(chosen)
 
 
 def help_text() -> str:
@@ -144,11 +142,11 @@ def help_text() -> str:
         "       ehlpetsc COMMAND ...            each with -h:",
         *(f"  {name:9s} {command.text}" for name, command in COMMANDS.items()),
         "  python    SCRIPT.py: run a script in which import ehlpetsc works",
-        "Options of a run, also as -ehl_output ..., in [petsc] of the case, in PETSC_OPTIONS or a file:",
+        "Options of a run, also as -ehl_output ...:",
         *(option.help_line(name) for name, option in OPTIONS.items()),
         "  --version",
-        "Of one option the last of [petsc], PETSC_OPTIONS and the command line counts.",
-        "With a case, -help lists PETSc's options: -snes_*, -ksp_*, -pc_*, -log_view ...",
+        "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",
+        "may be in [petsc] of the case, in PETSC_OPTIONS and on the command line; the last one counts.",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
     ]
     return "\n".join(lines)

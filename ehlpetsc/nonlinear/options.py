@@ -170,9 +170,9 @@ def _linear_solver(wanted: dict) -> dict:
 
 
 def unused() -> list[str]:
-    """Unused options in PETSc's table, without ``-ehl_*`` and the options read by PetscFinalize."""
+    """Unused options in PETSc's table, without the options read by PetscFinalize."""
     names = PETSc.Options().getAll()
-    return sorted(n for n in names if not (n.startswith("ehl_") or n in READ_BY_FINALIZE or was_read(n)))
+    return sorted(n for n in names if not (n in READ_BY_FINALIZE or was_read(n)))
 
 
 def was_read(name: str) -> bool:

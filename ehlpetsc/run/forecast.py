@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import time as clock
 from collections.abc import Iterator
 from functools import cache
@@ -31,7 +30,6 @@ PROBE_OPERATIONS = 3000
 START_PROBES = 70.0  # time of imports and of loading compiled loops, over that of `probe`
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
-MIN_NODES_OF_TWO_RANKS = 8000  # with fewer, two ranks gain little on a quiet machine and lose on a busy one
 
 
 def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
@@ -202,25 +200,4 @@ def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> l
         f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
         *(surface_lines(case, scales, rough) if rough else []),
         *lambda_line(case, scales, rough),
-        *_note_on_ranks(scales, ranks),
-    ]
-
-
-def worthwhile_ranks(case: Case) -> int:
-    """Default number of ranks: two for a series, and for a large mesh if two cores are idle; else one."""
-    is_large = case.mesh.nodes >= MIN_NODES_OF_TWO_RANKS
-    return 2 if case.series or (is_large and idle_cores() >= 2) else 1
-
-
-def idle_cores() -> int:
-    """Idle cores of this process, mean over the last minute."""
-    return round(len(os.sched_getaffinity(0)) - os.getloadavg()[0])
-
-
-def _note_on_ranks(scales: Scales, ranks: int) -> list[str]:
-    if ranks == 1 or scales.nx >= MIN_NODES_OF_TWO_RANKS:
-        return []
-    return [
-        f"note: at {scales.nx} nodes a second rank saves two fifths of the time at most, on idle cores; "
-        "the members of a series gain from ranks at any size"
     ]

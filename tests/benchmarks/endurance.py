@@ -64,9 +64,9 @@ def memory(process):
 def main(steps=100_000):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.h5"
-        words = [sys.executable, "-m", "ehlpetsc", str(CASE), "-ehl_output", str(path)]
+        words = [sys.executable, "-m", "ehlpetsc", str(CASE), "--output", str(path)]
         for override in overrides(steps):
-            words += ["-ehl_set", override]
+            words += ["--set", override]
         process = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.DEVNULL)
         first, greatest = 0.0, 0.0
         while process.poll() is None:

@@ -22,7 +22,7 @@ from support.running import run, settings
 from ehlpetsc.results.reader import read_result
 
 BEGIN = 2.5  # half widths travelled before
-NEAR = "-ehl_set mesh.near_field=8"  # what is best without the far field in the preconditioner
+NEAR = "--set mesh.near_field=8"  # what is best without the far field in the preconditioner
 ONE_RANK = (
     "",
     "-snes_atol 1e-3",
@@ -32,7 +32,7 @@ ONE_RANK = (
     "-ksp_rtol 1e-8",
     f"-pc_type lu {NEAR}",
     "-pc_type lu",
-    "-pc_type lu -ehl_set mesh.near_field=20",
+    "-pc_type lu --set mesh.near_field=20",
     f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}",
     f"-pc_type ilu -pc_factor_levels 1 {NEAR}",
     "-ksp_type gmres",
@@ -53,14 +53,14 @@ MORE_RANKS = (
 def start(case, folder):
     """Run to travel BEGIN; the name of the restart file."""
     sets = settings(f"time.travel={BEGIN}", "output.checkpoint=1e-5", "output.every=100000")
-    done = run(*case, *sets, "-ehl_output", "begin.h5", cwd=folder)
+    done = run(*case, *sets, "--output", "begin.h5", cwd=folder)
     assert done.returncode == 0, done.stderr
     return "begin.restart.h5"
 
 
 def advance(case, options, ranks, folder, restart):
     """Seconds, Newton iterations, halved steps, contact node-steps and last pressures; None if it failed."""
-    words = [*case, "-ehl_restart", restart, "-ehl_output", "run.h5", *options.split()]
+    words = [*case, "--restart", restart, "--output", "run.h5", *options.split()]
     done = run(*words, cwd=folder, ranks=ranks if ranks > 1 else 0)
     if done.returncode:
         return None

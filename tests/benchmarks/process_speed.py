@@ -29,9 +29,9 @@ def usage(words, folder):
 
 
 def case(name, folder, *overrides):
-    words = [f"cases/{name}.toml", "-ehl_output", str(Path(folder) / "run.h5")]
+    words = [f"cases/{name}.toml", "--output", str(Path(folder) / "run.h5")]
     for override in overrides:
-        words += ["-ehl_set", override]
+        words += ["--set", override]
     return words
 
 

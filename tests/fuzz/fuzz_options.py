@@ -94,8 +94,8 @@ class Draw:
         name, *settings = SCENES[scene]
         for left in self.folder.glob("*.h5"):
             left.unlink()
-        sets = [word for setting in (*MESH, *settings) for word in ("-ehl_set", setting)]
-        limit = [] if "-ehl_time_limit" in words else ["-ehl_time_limit", RUN_MINUTES]
+        sets = [word for setting in (*MESH, *settings) for word in ("--set", setting)]
+        limit = [] if "-ehl_time_limit" in words else ["--time-limit", RUN_MINUTES]
 
         def work():
             os.chdir(self.folder)

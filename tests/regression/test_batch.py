@@ -61,7 +61,7 @@ def test_requeued_job_continues(tmp_path):
 @pytest.mark.slow
 def test_job_without_a_step_is_not_requeued(tmp_path):
     environment = slurm(tmp_path) | {"SLURM_RESTART_COUNT": "20"}
-    words = [*JOB, "-ehl_time_limit", "1e-6"]
+    words = [*JOB, "--time-limit", "1e-6"]
     done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
     assert done.returncode == 4 and requeued(tmp_path) == []
     assert "queued 20 times" in done.stderr

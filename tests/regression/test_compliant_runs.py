@@ -33,7 +33,7 @@ def test_restart_gives_the_same_run(case, tmp_path):
     assert run(*words, cwd=whole).returncode == 0
     stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, 40))
     assert stopped.returncode == 4, stopped.stderr
-    done = run(*words, "-ehl_restart", "layer.restart.h5", cwd=parts)
+    done = run(*words, "--restart", "layer.restart.h5", cwd=parts)
     assert done.returncode == 0, done.stderr
     with read_result(whole / "layer.h5") as one, read_result(parts / "layer.h5") as other:
         assert len(one.time) == len(other.time) > 50

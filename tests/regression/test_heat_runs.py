@@ -29,7 +29,7 @@ def test_restart_is_bitwise_identical(tmp_path):
     assert run(*words, cwd=whole).returncode == 0
     stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, 30))
     assert stopped.returncode == 4, stopped.stderr
-    done = run(*words, "-ehl_restart", "table1_heat.restart.h5", cwd=parts)
+    done = run(*words, "--restart", "table1_heat.restart.h5", cwd=parts)
     assert done.returncode == 0, done.stderr
     with read_result(whole / "table1_heat.h5") as one, read_result(parts / "table1_heat.h5") as other:
         assert len(one.time) == len(other.time) > 50

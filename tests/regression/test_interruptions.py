@@ -14,7 +14,7 @@ from ehlpetsc.results.reader import read_result
 
 COARSE = ["mesh.inlet=-1.5", "mesh.points_per_half_width=20"]
 STEADY = [ROOT / "cases" / "table1_smooth.toml", *settings(*COARSE)]
-LONG = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT[:3], "time.travel=500"), "-ehl_output", "r.h5"]
+LONG = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT[:3], "time.travel=500"), "--output", "r.h5"]
 
 
 def start(*words, cwd, ranks=0, **more):
@@ -34,7 +34,7 @@ def assert_stopped_whole(folder):
     with read_result(folder / "r.h5") as result:
         assert result.attrs["status"] == "stopped"
         last = result.steps("step")[-1]
-    done = run(*LONG, *settings("time.travel=0.01"), "-ehl_restart", "r.restart.h5", cwd=folder)
+    done = run(*LONG, *settings("time.travel=0.01"), "--restart", "r.restart.h5", cwd=folder)
     assert done.returncode == 0 and f"step {last}, " in done.stdout
 
 
@@ -56,7 +56,7 @@ def test_signal_interrupts_a_long_step(tmp_path):
     """mpirun kills one second after the signal: the state before the current step is saved by then."""
     never = ["-snes_max_it", 100000, "-snes_atol", "1e-30", "-snes_convergence_test", "skip", "-snes_monitor"]
     assert run(*LONG, cwd=tmp_path, tampered=("SIGTERM", 0, 2)).returncode == 4
-    process = start(*LONG, "-ehl_restart", "r.restart.h5", *never, cwd=tmp_path)
+    process = start(*LONG, "--restart", "r.restart.h5", *never, cwd=tmp_path)
     within = (line for line in process.stdout if line.lstrip().startswith("30 SNES "))
     assert next(within, None), process.stderr.read()
     asked = time.monotonic()
@@ -67,7 +67,7 @@ def test_signal_interrupts_a_long_step(tmp_path):
 
 # on a fast machine the run has started by then and stops too
 def test_signal_during_imports_prints_one_line_at_most(tmp_path):
-    endless = [*STEADY, *settings("time.courant=1.0", "time.travel=500"), "-ehl_overwrite"]
+    endless = [*STEADY, *settings("time.courant=1.0", "time.travel=500"), "--overwrite"]
     process = start(*endless, cwd=tmp_path)
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
@@ -81,7 +81,7 @@ def test_folder_removed_during_a_run_is_an_error(tmp_path):
     folder = tmp_path / "out"
     folder.mkdir()
     soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there
-    process = start(*LONG, *soon, "-ehl_output", folder / "r.h5", cwd=tmp_path)
+    process = start(*LONG, *soon, "--output", folder / "r.h5", cwd=tmp_path)
     wait_for(folder / "r.h5", process)
     shutil.rmtree(folder)
     _, output, errors = ended(process)

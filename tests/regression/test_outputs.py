@@ -38,14 +38,14 @@ def test_same_case_overwrites_and_another_is_refused(done):
     refused = run(*other, cwd=done)
     assert refused.returncode == 2 and path.read_bytes() == before
     assert is_line_with(refused.stderr, "table1_smooth.h5: ", "another case", "--set", "-o", "--overwrite")
-    assert run(*other, "-ehl_overwrite", cwd=done).returncode == 0
+    assert run(*other, "--overwrite", cwd=done).returncode == 0
     with read_result(path) as result:
         assert "viscosity = 0.004" in result.attrs["case"]
     assert [p.name for p in done.iterdir()] == ["table1_smooth.h5"]
 
 
 def test_stopped_result_is_not_overwritten(tmp_path):
-    case = [*LONG, "-ehl_output", "r.h5"]
+    case = [*LONG, "--output", "r.h5"]
     stopped = run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5))
     assert stopped.returncode == 4
     before = (tmp_path / "r.h5").read_bytes()
@@ -59,7 +59,7 @@ def test_stopped_result_is_not_overwritten(tmp_path):
 
 
 def test_same_command_continues_a_run(tmp_path):
-    case = [*LONG[:-2], *settings("time.travel=0.2"), "-ehl_output", "r.h5"]
+    case = [*LONG[:-2], *settings("time.travel=0.2"), "--output", "r.h5"]
     assert run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5)).returncode == 4
     done = run(*case, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -71,7 +71,7 @@ def test_same_command_continues_a_run(tmp_path):
 
 
 def test_run_killed_before_its_first_checkpoint_starts_again(tmp_path):
-    case = [*LONG[:-2], *settings("time.travel=0.2"), "-ehl_output", "r.h5"]
+    case = [*LONG[:-2], *settings("time.travel=0.2"), "--output", "r.h5"]
     assert run(*case, cwd=tmp_path, tampered=("SIGKILL", 0, 5)).returncode == -9
     assert sorted(path.name for path in tmp_path.iterdir() if path.name.endswith(".h5")) == ["r.h5"]
     done = run(*case, cwd=tmp_path)
@@ -81,7 +81,7 @@ def test_run_killed_before_its_first_checkpoint_starts_again(tmp_path):
 
 
 def test_damaged_restart_file_is_refused_and_kept(tmp_path):
-    case = [*LONG, "-ehl_output", "r.h5"]
+    case = [*LONG, "--output", "r.h5"]
     assert run(*case, cwd=tmp_path, tampered=("SIGTERM", 0, 5)).returncode == 4
     raw = bytearray((tmp_path / "r.restart.h5").read_bytes())
     raw[2000] ^= 1
@@ -106,7 +106,7 @@ def make_fifo(folder):
 )
 def test_foreign_file_is_refused_and_kept(tmp_path, make, output, fault):
     make(tmp_path)
-    refused = run(*CASE, "-ehl_output", output, cwd=tmp_path)
+    refused = run(*CASE, "--output", output, cwd=tmp_path)
     assert refused.returncode == 2 and is_line_with(refused.stderr, f"{output}: ", fault)
     assert len(refused.stderr.splitlines()) == 1
     names = [p.name for p in tmp_path.iterdir()]
@@ -115,7 +115,7 @@ def test_foreign_file_is_refused_and_kept(tmp_path, make, output, fault):
         assert (tmp_path / "there").read_text() == "mine"
 
 
-@pytest.mark.parametrize("words", [[], ["-ehl_overwrite"]])
+@pytest.mark.parametrize("words", [[], ["--overwrite"]])
 def test_input_is_never_an_output(tmp_path, words):
     case = (ROOT / "cases" / "table1_rough.toml").read_text().replace("profiles/", "")
     profile = (ROOT / "cases" / "profiles" / "alicona_meander_profile.csv").read_text()
@@ -123,7 +123,7 @@ def test_input_is_never_an_output(tmp_path, words):
     (tmp_path / "alicona_meander_profile.csv").write_text(profile)
     os.link(tmp_path / "case.toml", tmp_path / "link.h5")
     for name in ("case.toml", "link.h5", "alicona_meander_profile.csv"):
-        refused = run("case.toml", "-ehl_output", name, *words, cwd=tmp_path)
+        refused = run("case.toml", "--output", name, *words, cwd=tmp_path)
         assert refused.returncode == 2 and f"{name}: is read " in refused.stderr
     assert (tmp_path / "case.toml").read_text() == case
     assert (tmp_path / "alicona_meander_profile.csv").read_text() == profile
@@ -132,7 +132,7 @@ def test_input_is_never_an_output(tmp_path, words):
 def running(folder, *more):
     """A long run whose result file exists."""
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    words = command(*LONG, "-ehl_output", "r.h5", *more)
+    words = command(*LONG, "--output", "r.h5", *more)
     process = subprocess.Popen(words, cwd=folder, env=BARE | SCRIPT, **pipes)
     wait_for(folder / "r.h5", process)
     return process
@@ -142,14 +142,14 @@ def running(folder, *more):
 def test_output_lock_excludes_a_second_run_and_ends_with_its_process(tmp_path):
     process = running(tmp_path)
     try:
-        second = run(*LONG, "-ehl_output", "r.h5", "-ehl_overwrite", cwd=tmp_path)
+        second = run(*LONG, "--output", "r.h5", "--overwrite", cwd=tmp_path)
         assert second.returncode == 2
         assert is_line_with(second.stderr, "r.h5: ", f" process {process.pid} on ")
     finally:
         process.kill()
         process.communicate()
     (tmp_path / "r.h5").unlink()
-    after = run(*CASE, "-ehl_output", "r.h5", cwd=tmp_path)
+    after = run(*CASE, "--output", "r.h5", cwd=tmp_path)
     assert after.returncode == 0, after.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["r.h5"]
 

@@ -49,7 +49,7 @@ def test_every_pass_has_a_result_and_an_index_entry(tmp_path):
 def test_pass_index_is_locked_by_one_run(tmp_path):
     """A second run of passes, or post-processing that would write to the index, names the first run."""
     with Lock(tmp_path / "running_in.passes.json"):
-        second = run(CASE, *settings(*SHORT), "-ehl_overwrite", cwd=tmp_path)
+        second = run(CASE, *settings(*SHORT), "--overwrite", cwd=tmp_path)
         assert second.returncode == 2
         (message,) = second.stderr.splitlines()
         assert message.startswith("ehlpetsc: running_in.passes.json: ")
@@ -179,7 +179,7 @@ def test_lost_pass_index_is_rewritten(tmp_path, uninterrupted):
 
 def test_additional_passes_continue_from_the_last_one(tmp_path, uninterrupted):
     copied(uninterrupted, tmp_path)
-    more = [*BRIEF, *settings("time.passes=3"), "-ehl_restart", "running_in.pass2.restart.h5"]
+    more = [*BRIEF, *settings("time.passes=3"), "--restart", "running_in.pass2.restart.h5"]
     done = run(CASE, *more, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     rows = json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
@@ -205,7 +205,7 @@ def test_read_only_folder_is_refused(tmp_path, case):
     """Root writes everywhere but without one capability; another user could not read a private clone."""
     (tmp_path / "out").mkdir(mode=0o500)
     as_user = ["setpriv", "--bounding-set", "-dac_override"] if os.getuid() == 0 else []
-    words = [*settings("mesh.points_per_half_width=20", "time.travel=0.2"), "-ehl_output", "out/r.h5"]
+    words = [*settings("mesh.points_per_half_width=20", "time.travel=0.2"), "--output", "out/r.h5"]
     done = subprocess.run(
         [*as_user, *command(case, *words)],
         cwd=tmp_path,

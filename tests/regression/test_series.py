@@ -19,7 +19,7 @@ QUICK = [*SHORT[:-1], "time.travel=0.5"]
 
 def series(folder, *words, ranks=2, values=VALUES, key="fluid.viscosity", tampered=()):
     sets = [*QUICK, f"series.key='{key}'", f"series.values={json.dumps(list(values))}"]
-    words = ["-ehl_output", "out.h5", *settings(*sets), *words]
+    words = ["--output", "out.h5", *settings(*sets), *words]
     return run(CASE, *words, cwd=folder, ranks=ranks, tampered=tampered)
 
 
@@ -65,7 +65,7 @@ def test_series_member_equals_a_single_run(finished, tmp_path):
     folder, _ = finished
     alone = run(
         ROOT / "cases" / "table1_rough.toml",
-        "-ehl_output",
+        "--output",
         "alone.h5",
         *settings(*QUICK, "fluid.viscosity=0.003"),
         cwd=tmp_path,
@@ -86,10 +86,10 @@ def test_rerun_computes_missing_members_only(finished):
     assert [file for file in files if before[file] != file.stat().st_mtime_ns] == files[:1]
     one, two = summary(first.stdout), summary(again.stdout)
     assert all(one[name] == two[name] for name in ("steps", "newton", "contacts", "h_min"))
-    other = series(folder, "-ehl_set", "time.courant=1.0", ranks=0)
+    other = series(folder, "--set", "time.courant=1.0", ranks=0)
     assert other.returncode == 2 and "out_viscosity_0.01.h5, out_viscosity_0.006.h5" in other.stderr
     assert "another case" in other.stderr
-    other = series(folder, "-ehl_set", "time.courant=1.0", "-ehl_overwrite", ranks=0)
+    other = series(folder, "--set", "time.courant=1.0", "--overwrite", ranks=0)
     assert other.returncode == 0 and " 3 of " in other.stdout
 
 
@@ -115,7 +115,7 @@ def test_failed_member_is_named_and_does_not_stop_the_series(tmp_path):
 def test_series_in_a_removed_folder_ends_on_every_rank(tmp_path):
     """Only the first rank writes the index: if it fails, the others must not wait forever."""
     (tmp_path / "out").mkdir()
-    done = series(tmp_path, "-ehl_output", "out/out.h5", tampered=("lost", 0, 5))
+    done = series(tmp_path, "--output", "out/out.h5", tampered=("lost", 0, 5))
     assert done.returncode == 2
     assert re.search(r"ehlpetsc: out/out\.series\.json: .*, No such file or directory\n", done.stderr)
     assert re.search(r"out_viscosity_\S+\.h5: .*removed", done.stderr)
@@ -158,10 +158,10 @@ def test_killed_series_is_completed_by_the_same_command(tmp_path, finished, rank
 @pytest.mark.parametrize(
     "words, fault",
     [
-        (["-ehl_ranks_per_member", "3"], "-ehl_ranks_per_member 3: "),
-        (["-ehl_restart", "x.h5"], "--restart with a [series]: "),
-        (["-ehl_set", "series.values=[0.01,0.010]"], "same name"),
-        (["-ehl_set", "series.values=[0.01,-1]"], "series.values: -1"),
+        (["--ranks-per-member", "3"], "--ranks-per-member 3: "),
+        (["--restart", "x.h5"], "--restart with a [series]: "),
+        (["--set", "series.values=[0.01,0.010]"], "same name"),
+        (["--set", "series.values=[0.01,-1]"], "series.values: -1"),
     ],
 )
 def test_invalid_series_are_refused(tmp_path, words, fault):
@@ -181,7 +181,7 @@ def test_grid_of_keys_is_accepted_by_all_commands(tmp_path):
         "surface.1={synthetic={kind='ground',ra=1e-7,correlation=3e-5,seed=9}}",
         f"series={{keys={json.dumps(keys)},values=[[1,2],[5.0,2.0]]}}",
     ]
-    done = run(CASE, "-ehl_output", "out.h5", *settings(*sets), cwd=tmp_path)
+    done = run(CASE, "--output", "out.h5", *settings(*sets), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     index = json.loads((tmp_path / "out.series.json").read_text())
     assert index["keys"] == keys and "key" not in index

@@ -48,7 +48,7 @@ def test_run_stopped_by_a_signal_restarts_on_other_ranks(whole, tmp_path, name, 
     assert f" step {step}; " in stopped.stdout
     assert " --restart table1_rough.restart.h5" in stopped.stdout
     assert last_step(tmp_path / "table1_rough.h5") == (step, "stopped")
-    going_on = [*CASE, "-ehl_restart", "table1_rough.restart.h5"]
+    going_on = [*CASE, "--restart", "table1_rough.restart.h5"]
     done = run(*going_on, cwd=tmp_path, ranks=others)
     assert done.returncode == 0, done.stderr
     assert f"restart: table1_rough.restart.h5, step {step}, " in done.stdout
@@ -77,7 +77,7 @@ def test_killed_run_restarts_from_its_last_checkpoint(whole, tmp_path):
     killed = run(*often, cwd=tmp_path, tampered=("SIGKILL", 0, 11))
     assert killed.returncode not in (0, 4)
     assert last_step(tmp_path / "table1_rough.h5") == (10, "running")
-    done = run(*often, "-ehl_restart", "table1_rough.restart.h5", cwd=tmp_path)
+    done = run(*often, "--restart", "table1_rough.restart.h5", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "step 10, " in done.stdout
     assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
@@ -85,16 +85,16 @@ def test_killed_run_restarts_from_its_last_checkpoint(whole, tmp_path):
 
 
 def test_time_limit_writes_a_restart_file(tmp_path):
-    done = run(*CASE, "-ehl_time_limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
+    done = run(*CASE, "--time-limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
     assert done.returncode == 4
     # the limit is long over in step 5, which is not waited for
     assert last_step(tmp_path / "table1_rough.h5") == (4, "stopped")
     assert (tmp_path / "table1_rough.restart.h5").exists()
 
 
-@pytest.mark.parametrize("words, ranks", [([], 2), (["-ehl_scheme", "sweep"], 0)])
+@pytest.mark.parametrize("words, ranks", [([], 2), (["--scheme", "sweep"], 0)])
 def test_time_limit_ends_the_steady_start(tmp_path, words, ranks):
-    done = run(*CASE, "-ehl_time_limit", "1e-6", *words, cwd=tmp_path, ranks=ranks)
+    done = run(*CASE, "--time-limit", "1e-6", *words, cwd=tmp_path, ranks=ranks)
     assert done.returncode == 4, done.stderr
     assert done.stderr == ""
     message, last = done.stdout.splitlines()[-2:]
@@ -113,7 +113,7 @@ def stopped(tmp_path_factory):
 
 def test_restart_with_another_viscosity_lists_the_change(stopped, tmp_path):
     changed = settings("fluid.viscosity=0.003", "time.travel=0.2", "output.every=2")
-    done = run(*CASE, *changed, "-ehl_restart", stopped, cwd=tmp_path)
+    done = run(*CASE, *changed, "--restart", stopped, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     message = [line for line in done.stdout.splitlines() if line.startswith("restart: ")][1:]
     assert message == ["restart: fluid.viscosity was 0.002, is 0.003", "restart: time.travel was 0.5, is 0.2"]
@@ -124,7 +124,7 @@ def test_restart_with_another_viscosity_lists_the_change(stopped, tmp_path):
 
 
 def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
-    going_on = [*CASE, *settings("time.travel=0.2"), "-ehl_output", "f.h5", "-ehl_restart"]
+    going_on = [*CASE, *settings("time.travel=0.2"), "--output", "f.h5", "--restart"]
     never = ["-snes_atol", 1e-30, "-snes_rtol", 1e-30, "-snes_max_it", 4]
     failed = run(*going_on, stopped, *never, cwd=tmp_path)
     assert failed.returncode == 3
@@ -146,17 +146,14 @@ SMOOTH = [
 def test_film_after_a_step_in_conditions_is_the_steady_one(tmp_path):
     """Twice the load, half the radius or a softer solid from one step to the next."""
     moving = [*SMOOTH, *settings("time.courant=2.0", "time.travel=0.8")]
-    assert run(*moving, "-ehl_output", "r.h5", cwd=tmp_path, tampered=("SIGTERM", 0, 10)).returncode == 4
+    assert run(*moving, "--output", "r.h5", cwd=tmp_path, tampered=("SIGTERM", 0, 10)).returncode == 4
     jumps = ["contact.load=1054e3", "contact.radius=0.0095", "contact.youngs_modulus=[100e9, 207e9]"]
     for name, jump in zip("abc", jumps, strict=True):
-        going_on = ["-ehl_restart", "r.restart.h5", "-ehl_output", f"{name}.h5"]
+        going_on = ["--restart", "r.restart.h5", "--output", f"{name}.h5"]
         done = run(*moving, *settings(jump, "time.travel=7.0"), *going_on, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         assert f"restart: {jump.split('=')[0]} was " in done.stdout
-        assert (
-            run(*SMOOTH, *settings(jump), "-ehl_output", "s.h5", "-ehl_overwrite", cwd=tmp_path).returncode
-            == 0
-        )
+        assert run(*SMOOTH, *settings(jump), "--output", "s.h5", "--overwrite", cwd=tmp_path).returncode == 0
         with read_result(tmp_path / f"{name}.h5") as after, read_result(tmp_path / "s.h5") as steady:
             assert after.steps("retries").sum() == 0
             np.testing.assert_array_equal(after.x, steady.x)
@@ -171,12 +168,12 @@ def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path):
     """Roughness at the same travel is the same; the run ends at the travel of the case."""
     stopped = run(*CASE, cwd=tmp_path, tampered=("SIGTERM", 0, 20))
     assert stopped.returncode == 4, stopped.stderr
-    faster = [*CASE, *settings("motion.entrainment_speed=7.5"), "-ehl_restart", "table1_rough.restart.h5"]
+    faster = [*CASE, *settings("motion.entrainment_speed=7.5"), "--restart", "table1_rough.restart.h5"]
     refused = run(*faster, cwd=tmp_path)
     assert refused.returncode == 2
     assert is_line_with(refused.stderr, "table1_rough.h5: ", "(u1 = 5.625)")
     assert last_step(tmp_path / "table1_rough.h5") == (20, "stopped")
-    done = run(*faster, "-ehl_output", "f.h5", cwd=tmp_path)
+    done = run(*faster, "--output", "f.h5", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     with read_result(tmp_path / "f.h5") as after, read_result(whole / "table1_rough.h5") as one:
         assert list(after.steps("step")) == list(range(21, 41))
@@ -192,7 +189,7 @@ def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path):
 
 
 def test_restart_beyond_the_end_takes_no_step(whole, stopped, tmp_path):
-    done = run(*CASE, *settings("time.travel=0.1"), "-ehl_restart", stopped, cwd=tmp_path)
+    done = run(*CASE, *settings("time.travel=0.1"), "--restart", stopped, cwd=tmp_path)
     assert done.returncode == 0
     assert summary(done.stdout)["steps"] == "10"
 
@@ -216,7 +213,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
         assert len(result.time) == int(step) + 1 and result.attrs["status"] == "stopped"
         assert np.isfinite(result["pressure"][:]).all()
         assert float(time) == pytest.approx(1e6 * result.time[-1], abs=1e-4)
-    going_on = [*settings(f"time.travel={(int(step) + 2) / 140}"), "-ehl_restart", "table1_rough.restart.h5"]
+    going_on = [*settings(f"time.travel={(int(step) + 2) / 140}"), "--restart", "table1_rough.restart.h5"]
     done = run(*scene, *going_on, cwd=tmp_path)
     assert done.returncode == 0 and f"restart: table1_rough.restart.h5, step {step}, {time} us" in done.stdout
     assert last_step(tmp_path / "table1_rough.h5") == (int(step) + 2, "done")

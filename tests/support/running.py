@@ -53,8 +53,8 @@ SHORT = ["mesh.inlet=-1.5", "mesh.outlet=1.3", "mesh.points_per_half_width=40", 
 
 
 def settings(*overrides):
-    """-ehl_set before each override."""
-    return [word for override in overrides for word in ("-ehl_set", override)]
+    """--set before each override."""
+    return [word for override in overrides for word in ("--set", override)]
 
 
 def command(*words, ranks=0, tampered=()):

@@ -89,8 +89,8 @@ def test_profile_of_half_a_million_points_runs(tmp_path):
     case = dense(tmp_path, 500_000, 2e-9)
     keys = [f"{key}={value}" for key, value in COARSE.items()]
     keys += ["surface.1.level=true", "surface.1.cutoff=1e-4", "surface.1.short_cutoff=1e-8"]
-    words = [word for key in keys for word in ("-ehl_set", key)]
-    command = [sys.executable, "-m", "ehlpetsc", str(case), *words, "-ehl_output", str(tmp_path / "r.h5")]
+    words = [word for key in keys for word in ("--set", key)]
+    command = [sys.executable, "-m", "ehlpetsc", str(case), *words, "--output", str(tmp_path / "r.h5")]
     path = f"{ROOT}:{os.environ.get('PYTHONPATH', '')}"
     done = subprocess.run(
         [sys.executable, "-c", MEASURED, *command],

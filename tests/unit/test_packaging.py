@@ -102,7 +102,7 @@ def test_installed_commands_work_in_any_folder(environment, tmp_path):
     case = ROOT / "cases" / "ridge.toml"
     short = "points_per_half_width=10 inlet=-1.3 outlet=1.2".split()
     short = [*(f"mesh.{key}" for key in short), "time.travel=3.2", "time.courant=2"]
-    message = call(case, *(word for key in short for word in ("-ehl_set", key)))
+    message = call(case, *(word for key in short for word in ("--set", key)))
     assert message.splitlines()[-1].startswith("ehlpetsc: done steps=")
     assert "ridge.post.h5" in call("post", "ridge.h5", "--depths", "0.1")
     assert call("plot", "ridge.h5") == "ridge.png\n"

@@ -117,7 +117,6 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
 
 
 STRIBECK = "cases/stribeck.toml"
-NO_TEXT = "a\udcffb"  # a byte that is no UTF-8, as the command line hands it on
 
 
 @pytest.fixture(autouse=True)
@@ -130,8 +129,6 @@ def at_the_root(monkeypatch, request):
     [
         [""],
         ["explain", ""],
-        ["cases/dry_hertz.toml", "-ehl_set", f"title={NO_TEXT}"],
-        ["cases/dry_hertz.toml", "-ehl_output", f"{NO_TEXT}.h5"],
         ["explain", "/dev/zero"],
     ],
 )
