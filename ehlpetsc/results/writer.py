@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
 import time as clock
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -227,7 +226,6 @@ class ResultWriter:
 
     def flush(self) -> None:
         """Write all rows to the file; a killed process then does not lose them."""
-        self._check_still_there()
         file, scalars = self._file, list(self._file["steps"])
         with self._one_sentence("not written on"):
             if self.path:
@@ -273,16 +271,6 @@ class ResultWriter:
         change(self._file, "status", status)
         change(self._file, "limits", limits)
         self._file.close()
-
-    def _check_still_there(self) -> None:
-        """Refuse to continue if the file has been replaced or removed."""
-        if self.path is None:
-            return
-        with contextlib.suppress(OSError):
-            if os.path.samestat(os.stat(self.path), os.fstat(self._file.id.get_vfd_handle())):
-                return
-        self._close_after_a_fault()
-        raise OutputError(f"{self.path}: result file removed or replaced by others during the run")
 
     @contextlib.contextmanager
     def _one_sentence(self, failure: str) -> Iterator[None]:

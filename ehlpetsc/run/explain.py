@@ -16,9 +16,8 @@ from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separa
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import (
-    begin_time,
+    START_SECONDS,
     file_size,
-    height_lines,
     lambda_line,
     run_time,
     steps,
@@ -34,16 +33,14 @@ if TYPE_CHECKING:
 
 def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc explain``; returns its exit status."""
-    parser = CommandParser(
-        "explain", "Summary of a case before its run: film, lambda ratio, run time, effects switched off."
-    )
+    parser = CommandParser("explain", "Summary of a case before its run: film, lambda ratio, run time.")
     parser.add_argument("case", metavar="CASE.toml")
     chosen = parser.parse_args(words)
     return exit_status("explain", lambda: put(explain(load(chosen.case, chosen.set)), chosen))
 
 
 def explain(case: Case) -> str:
-    """Text summary of a case: conditions, mesh size, effects that are switched off.
+    """Text summary of a case: conditions, surfaces, mesh, run time.
 
     Returns
     -------
@@ -62,9 +59,7 @@ def explain(case: Case) -> str:
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
-        height_lines(rough, scales),
         _size(case, scales, rough),
-        _switched_off(case, rough),
         [f"Warning: {line}" for line in warnings(case, scales)],
         [f"Refused: {line}" for line in domain_faults(case, scales)],
     ]
@@ -113,10 +108,12 @@ def _motion(case: Case, s: Scales) -> list[str]:
     line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; surfaces 1, 2 at {s.u1:g}, {s.u2:g} m/s"
     if case.time is None:
         return [line, "Time: steady"]
+    begin = ["Start: rough, after a ramp before time 0"] if case.time.start == "rough" else []
     return [
         line,
         f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
         f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
+        *begin,
     ]
 
 
@@ -159,7 +156,7 @@ def _series(case: Case) -> list[str]:
         f"{key} = {', '.join(map(str, values))}"
         for key, values in zip(keys_of(series), zip(*combinations(series), strict=True), strict=True)
     )
-    seconds, size = begin_time(), 0.0
+    seconds, size = START_SECONDS, 0.0
     for _, member in members(case):
         scales = Scales.of(member)
         seconds += work_time(member, scales, Roughness.of(member, scales))
@@ -168,20 +165,6 @@ def _series(case: Case) -> list[str]:
         f"A series: {values}; below, the base case.",
         f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
     ]
-
-
-def _switched_off(case: Case, rough: Roughness | None) -> list[str]:
-    fluid = case.fluid
-    off = {
-        "Reynolds equation (no [fluid])": fluid is None,
-        "time (no [time])": case.time is None,
-        "roughness (no [surface])": not rough,
-        "Eyring stress (Newtonian)": fluid and fluid.eyring_stress is None,
-        "compressibility": fluid and fluid.density == "incompressible",
-        "starvation (fully flooded inlet)": fluid and fluid.inlet_film is None,
-        "boundary friction at dry nodes": case.contact.boundary_friction == 0.0,
-    }
-    return ["Switched off: " + (", ".join(name for name, is_off in off.items() if is_off) or "nothing")]
 
 
 def _duration(seconds: float) -> str:

@@ -3,12 +3,7 @@
 from __future__ import annotations
 
 import math
-import time as clock
-from collections.abc import Iterator
-from functools import cache
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from ehlpetsc import __version__
 from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
@@ -21,13 +16,10 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
 
-# time of a Newton iteration on one rank over that of `probe`: constant part and part for each node, measured
-# side by side on 141 to 2661 nodes; a step takes the time of its iterations and of one more
-ITERATION_PROBES, NODE_PROBES = 0.105, 6.7e-5
+# wall clock time [s] of a run's start, of a Newton iteration and of each node in it, on one core of a server
+START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
 # Newton iterations a step: before roughness enters, with roughness in full film, in mixed lubrication
 SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
-PROBE_OPERATIONS = 3000
-START_PROBES = 70.0  # time of imports and of loading compiled loops, over that of `probe`
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 
@@ -39,19 +31,14 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 
 
 def run_time(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Expected wall clock time of all passes on one rank of this machine at its current load [s]."""
-    return begin_time() + work_time(case, s, rough)
-
-
-def begin_time() -> float:
-    """Wall clock time before the first iteration, once for a series [s]."""
-    return START_PROBES * probe()
+    """Expected wall clock time of all passes on one rank [s]."""
+    return START_SECONDS + work_time(case, s, rough)
 
 
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the iterations [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
-    each = (ITERATION_PROBES + NODE_PROBES * s.nx) * probe()
+    each = ITERATION_SECONDS + NODE_SECONDS * s.nx
     return passes * (iterations(case, s, rough) + solves) * each
 
 
@@ -72,22 +59,6 @@ def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
     entries = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
     first = min(times[0] if times else 0.0 for times in entries)
     return min(max(1.0 - first / case.time.travel, 0.0), 1.0)
-
-
-@cache
-def probe() -> float:
-    """Time of `PROBE_OPERATIONS` small array operations, as in a time step, on this machine [s]."""
-    return sorted(_timed_operations() for _ in range(3))[1]
-
-
-def _timed_operations() -> float:
-    small = np.linspace(0.0, 1.0, 400)
-    begun = clock.perf_counter()
-    for k in range(PROBE_OPERATIONS):
-        other = small * 0.5 + small
-        other[3:30] = other[2:29]
-        float(np.fft.rfft(other)[k % 200].real if k % 4 == 0 else other.max())
-    return clock.perf_counter() - begun
 
 
 def steps(s: Scales) -> int:
@@ -169,26 +140,9 @@ def _part_in_contact(case: Case, s: Scales, profile: Profile) -> list[str]:
     if through >= length:
         return []
     needed = reaches + (2.0 + length / s.a) * slower
-    passing = (
-        f"x = 0 to {1e3 * through:.3g} mm pass the contact" if through > 0.0 else "none passes the contact"
-    )
-    return [
-        f"of {1e3 * length:.4g} mm {passing}, x = 0 enters first; time.travel = {math.ceil(needed)} for all"
-    ]
-
-
-def height_lines(rough: Roughness | None, s: Scales) -> Iterator[str]:
-    """Height ranges of the profiles, and of their means over the cells of the mesh."""
-    for side in ("1", "2"):
-        profile = rough and rough.side(side)
-        if profile:
-            ends = profile.heights.min(), profile.heights.max()
-            heights, means = (
-                " to ".join(f"{1e6 * round(z, 12):.3g}" for z in pair)
-                for pair in (ends, profile.extremes_of_cells(s.dx))
-            )
-            note = "means over cells, as the mesh has them"
-            yield f"Surface {side}: heights from {heights} um; {note}, {means} um"
+    part = f"0 to {1e3 * through:.3g} mm of {1e3 * length:.4g} mm pass through the contact, x = 0 first"
+    part = part if through > 0.0 else "no part passes through the contact"
+    return [f"{part}; the whole profile needs time.travel = {math.ceil(needed)}"]
 
 
 def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:

@@ -103,7 +103,9 @@ class Run:
                 raise
             outcome = Outcome(ExitStatus.BAD_INPUT, error, clock.monotonic() - begun)
             if self.root:
-                print(f"ehlpetsc: {error}", file=self.err, flush=True)
+                saved = f"; the same command continues from {self.recorder.restart}"
+                saved = saved if self.recorder.restart.exists() else ""
+                print(f"ehlpetsc: {error}{saved}", file=self.err, flush=True)
             self._print(summary_line(outcome.status, self.recorder.totals, outcome.wall))
             return outcome
         outcome = Outcome(status, failure, clock.monotonic() - begun)

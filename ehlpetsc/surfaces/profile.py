@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 WAVE_NODES = 4  # nodes per wavelength below which a wave is not resolved
 MAX_SAMPLES = 5_000_000  # of a stored profile
-STEPS_PER_SAMPLE = 16  # between samples: cells narrower than them have the extremes of the spline
 
 
 class Profile:
@@ -117,20 +116,6 @@ class Profile:
     def entered(self, s: np.ndarray) -> np.ndarray:
         """Ramp factor of the heights at body points s [m]: 0 ahead of the profile."""
         return self._entry_factor(self._sign * (s - self._origin))
-
-    def extremes_of_cells(self, cell: float) -> tuple[float, float]:
-        """Minimum and maximum mean height [m] over cells of a mesh at any position on the profile.
-
-        Parameters
-        ----------
-        cell
-            Width [m].
-        """
-        first, last = self.X[0], self.X[-1]
-        step = max(0.25 * cell, (last - first) / (STEPS_PER_SAMPLE * self.X.size))
-        start = np.arange(first, max(last - cell, first) + 0.5 * step, step)
-        mean = self._level + (self._integral(start + cell) - self._integral(start)) / cell
-        return float(mean.min()), float(mean.max())
 
     def _entry_factor(self, X: np.ndarray) -> np.ndarray:
         """Factor on the heights, 0 where X < 0, 1 beyond the ramp."""

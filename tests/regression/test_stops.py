@@ -136,34 +136,6 @@ def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
     assert last_step(tmp_path / "f.h5") == (16, "done")
 
 
-SMOOTH = [
-    ROOT / "cases" / "table1_smooth.toml",
-    *settings("mesh.inlet=-1.5", "mesh.outlet=1.5", "mesh.points_per_half_width=30"),
-]
-
-
-@pytest.mark.slow
-def test_film_after_a_step_in_conditions_is_the_steady_one(tmp_path):
-    """Twice the load, half the radius or a softer solid from one step to the next."""
-    moving = [*SMOOTH, *settings("time.courant=2.0", "time.travel=0.8")]
-    assert run(*moving, "--output", "r.h5", cwd=tmp_path, tampered=("SIGTERM", 0, 10)).returncode == 4
-    jumps = ["contact.load=1054e3", "contact.radius=0.0095", "contact.youngs_modulus=[100e9, 207e9]"]
-    for name, jump in zip("abc", jumps, strict=True):
-        going_on = ["--restart", "r.restart.h5", "--output", f"{name}.h5"]
-        done = run(*moving, *settings(jump, "time.travel=7.0"), *going_on, cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
-        assert f"restart: {jump.split('=')[0]} was " in done.stdout
-        assert run(*SMOOTH, *settings(jump), "--output", "s.h5", "--overwrite", cwd=tmp_path).returncode == 0
-        with read_result(tmp_path / f"{name}.h5") as after, read_result(tmp_path / "s.h5") as steady:
-            assert after.steps("retries").sum() == 0
-            np.testing.assert_array_equal(after.x, steady.x)
-            films = [result.frame("film_thickness", -1) for result in (after, steady)]
-            middle = np.abs(steady.x) < steady.attrs["a"]
-            np.testing.assert_allclose(films[0][middle], films[1][middle], rtol=1e-4)
-            pressures = [result.frame("pressure", -1) for result in (after, steady)]
-            np.testing.assert_allclose(*pressures, rtol=0, atol=1e-5 * steady.attrs["p0"])
-
-
 def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path):
     """Roughness at the same travel is the same; the run ends at the travel of the case."""
     stopped = run(*CASE, cwd=tmp_path, tampered=("SIGTERM", 0, 20))
@@ -205,9 +177,8 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
     full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
     assert full.returncode == 2
     step, time = re.search(r" step (\d+) \((\S+) us\)", full.stderr).groups()
-    assert is_line_with(
-        full.stderr, "table1_rough.h5: ", "File too large", f"--restart table1_rough.restart.h5 (step {step})"
-    )
+    same = "the same command continues from table1_rough.restart.h5"
+    assert is_line_with(full.stderr, "table1_rough.h5: ", "File too large", same)
     with read_result(tmp_path / "table1_rough.h5") as result:
         np.testing.assert_array_equal(result.steps("step"), range(int(step) + 1))
         assert len(result.time) == int(step) + 1 and result.attrs["status"] == "stopped"
@@ -215,5 +186,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
         assert float(time) == pytest.approx(1e6 * result.time[-1], abs=1e-4)
     going_on = [*settings(f"time.travel={(int(step) + 2) / 140}"), "--restart", "table1_rough.restart.h5"]
     done = run(*scene, *going_on, cwd=tmp_path)
-    assert done.returncode == 0 and f"restart: table1_rough.restart.h5, step {step}, {time} us" in done.stdout
+    assert done.returncode == 0, done.stderr
+    begun = int(re.search(r"restart: table1_rough.restart.h5, step (\d+), ", done.stdout)[1])
+    assert 0 < begun <= int(step)
     assert last_step(tmp_path / "table1_rough.h5") == (int(step) + 2, "done")

@@ -13,7 +13,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run import forecast
 from ehlpetsc.run.explain import explain
-from ehlpetsc.run.forecast import file_size, steps, worthwhile_ranks
+from ehlpetsc.run.forecast import file_size, steps
 from ehlpetsc.run.warnings import warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -55,14 +55,9 @@ def test_explained_minimum_film_within_four_percent(eta0, speed, film):
     assert smooth_films(c.fluid, scales.E, scales.conditions)[1] * 1e6 == pytest.approx(film, rel=0.04)
 
 
-def test_disabled_effects_are_listed():
-    (dry,) = starting(lines("dry_hertz.toml"), "Switched off")
-    for part in ("Reynolds equation (no [fluid])", "(no [time])", "(no [surface])", "boundary friction"):
-        assert part in dry
-    moes = starting(lines("moes.toml"), "Switched off")[0]
-    assert "Newtonian" in moes and "compressibility" in moes
-    full = lines("table1_rough.toml", "fluid.inlet_film=1e-6")
-    assert starting(full, "Switched off") == ["Switched off: nothing"]
+def test_rough_start_is_named():
+    begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
+    assert begun == ["Start: rough, after a ramp before time 0"]
 
 
 @pytest.mark.parametrize(
@@ -117,34 +112,6 @@ def test_predicted_iterations_within_a_factor_of_one_and_a_half(name, overrides,
     scales = Scales.of(c)
     expected = forecast.iterations(c, scales, Roughness.of(c, scales))
     assert newton / 1.5 < expected < 1.5 * newton
-
-
-@pytest.mark.parametrize(
-    "name, overrides, ranks",
-    [
-        ("table1_rough.toml", (), 1),
-        ("table1_rough.toml", ("mesh.points_per_half_width=1900",), 1),
-        ("table1_rough.toml", ("mesh.points_per_half_width=2100",), 2),
-        ("fig4.toml", (), 2),
-    ],
-)
-def test_fine_mesh_or_series_uses_two_ranks(name, overrides, ranks, monkeypatch):
-    monkeypatch.setattr("os.sched_getaffinity", lambda process: {0, 1})
-    monkeypatch.setattr("os.getloadavg", lambda: (0.2, 0.0, 0.0))
-    assert worthwhile_ranks(case.load(CASES / name, overrides)) == ranks
-
-
-def test_spike_warning_gives_its_height_on_the_mesh(tmp_path):
-    """A point of 3 um on a flat: the spline through it, spread over a cell of 3.4 um, is 0.9 um high."""
-    x = 0.5e-6 * np.arange(2000)
-    z = np.where(np.arange(2000) == 1000, 3e-6, 0.0)
-    spike = {"surface": {"2": {"x": x, "z": z}}, "time": {"travel": 4.0}}
-    text = explain(case.load(CASES / "table1_smooth.toml", spike | {"mesh.points_per_half_width": 100}))
-    (line,) = [line for line in text.splitlines() if "heights" in line]
-    given, seen = (float(part.split(" to ")[1].split()[0]) for part in line.split(";"))
-    area = 0.5e-6 * 3e-6 * 1.0  # of the spline, its undershoots beside the point included
-    assert given == pytest.approx(3.0, rel=0.01)
-    assert seen == pytest.approx(1e6 * area / 3.357e-6, rel=0.3) and seen < 0.3 * given
 
 
 @pytest.mark.parametrize(

@@ -312,13 +312,6 @@ def test_coarse_mesh_note_has_its_figure():
     assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
 
 
-def test_extremes_of_cells_much_narrower_than_the_samples():
-    """Those of the wave, without a point in each of the billion cells on it."""
-    X = np.linspace(0.0, 1e-3, 101)
-    wave = profile(X, np.cos(4e3 * np.pi * X))
-    assert wave.extremes_of_cells(1e-12) == pytest.approx((-1.0, 1.0), rel=1e-4)
-
-
 def test_fraction_of_short_waves_is_that_of_the_variance():
     X = np.arange(8193) * 1e-6
     z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)

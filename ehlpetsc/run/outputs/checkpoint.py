@@ -1,4 +1,4 @@
-"""State of a run in a restart file: saving, loading, checks against the case, conversion to other scales."""
+"""State of a run in a restart file: saving, loading, checks against the case."""
 
 from __future__ import annotations
 
@@ -27,9 +27,7 @@ TOTAL, RECORD = "total ", "record "  # prefixes of the names of totals and of ef
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 SCALE_TOLERANCE = 1e-12  # relative
-CORE_HALF_WIDTH = 0.5  # in a: the approach changes by the mean change of the film between -0.5 and 0.5
-STATE_PREFIXES = ("", "smooth_")  # of the names of the states that are converted to other scales
-HISTORY = ("m", "m_older", "earlier_travelled", "earlier_q", "earlier_h", "earlier_contact_pressure")
+SCALES = ("a", "p0", "h")  # of load, radius and elasticity
 Pair = tuple[np.ndarray, np.ndarray]
 
 
@@ -37,18 +35,8 @@ Pair = tuple[np.ndarray, np.ndarray]
 class Checkpoint:
     """State from which a run continues.
 
-    Attributes
-    ----------
-    state
-        Its `m` is None if the size of the contact has changed since it was saved; it then follows from q, w.
-    baseline
-        Steady q and w for the predictor.
-    contact_count
-        Steps in contact of each node.
-    totals
-        Totals of all steps so far, for the summary.
-    positions
-        Positions at the beginning of the run (saved) or at the state (loaded).
+    `baseline` are steady q and w for the predictor, `contact_count` the steps in contact of each node,
+    `totals` those of all steps so far, `positions` those at the state.
     """
 
     state: State
@@ -56,23 +44,15 @@ class Checkpoint:
     contact_count: np.ndarray
     totals: dict[str, float]
     positions: SurfacePositions
-    pass_number: int = 1
-
-    @classmethod
-    def of(cls, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> Checkpoint:
-        """Checkpoint of a simulation at its last state."""
-        state, baseline = simulation.solution, simulation.stepper.baseline
-        if state is None or baseline is None:
-            raise ValueError("no state yet")
-        positions = simulation.scene.positions
-        return cls(state, baseline, contact_count, totals, positions, simulation.pass_number)
+    pass_number: int
 
 
-def save(path: Path, checkpoint: Checkpoint, case: Case, scales: Scales, model: ContactModel) -> None:
-    """Write the restart file of a run."""
-    state, positions = checkpoint.state, checkpoint.positions
-    arrays = {"x": scales.x * scales.a, "contact_count": checkpoint.contact_count}
-    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *checkpoint.baseline)
+def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
+    """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
+    case, scales, positions = simulation.case, simulation.scales, simulation.scene.positions
+    state, model = simulation.solution, simulation.stepper.problem.model
+    arrays = {"x": scales.x * scales.a, "contact_count": contact_count}
+    arrays |= _fields(model, "", state.q, state.w) | _fields(model, "smooth_", *simulation.stepper.baseline)
     arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
     if state.earlier:
         arrays["earlier_travelled"] = np.array([level.travelled for level in state.earlier])
@@ -80,17 +60,11 @@ def save(path: Path, checkpoint: Checkpoint, case: Case, scales: Scales, model: 
         arrays |= {name: np.array([level[name] for level in levels]) for name in levels[0]}
     attributes = {
         "case": case.text,
-        "pass_number": checkpoint.pass_number,
-        "time": state.time,
+        "pass_number": simulation.pass_number,
         "dt": state.dt or 0.0,
-        "step": state.step,
-        "retries": state.retries,
-        "h00": state.h00,
-        "a": scales.a,
-        "p0": scales.p0,
-        "h_scale": scales.h,
+        **{name: getattr(state, name) for name in ("time", "step", "retries", "h00", "travelled")},
+        **{name: getattr(scales, name) for name in SCALES},
         "speeds": (scales.u1, scales.u2),
-        "travelled": state.travelled,
         "domain_ends_at_entry": positions.domain_ends_at_entry,
         "profile_offsets": positions.profile_offsets,
     }
@@ -98,8 +72,8 @@ def save(path: Path, checkpoint: Checkpoint, case: Case, scales: Scales, model: 
         attributes[RECORD + name] = 1
         for key, value in flat(record, name).items():
             (arrays if isinstance(value, np.ndarray) else attributes)[key] = value
-    totals = {TOTAL + name: value for name, value in checkpoint.totals.items()}
-    save_restart(path, arrays, attributes | totals)
+    stored = {TOTAL + name: value for name, value in totals.items()}
+    save_restart(path, arrays, attributes | stored)
 
 
 def load(path: Path, case: Case, scales: Scales, model: ContactModel) -> tuple[Checkpoint, list[str]]:
@@ -115,8 +89,6 @@ def load(path: Path, case: Case, scales: Scales, model: ContactModel) -> tuple[C
         misfit = _misfit(arrays, attributes, earlier, case, scales)
         if misfit:
             raise OutputError(f"{path}: {misfit}")
-
-        rescale(arrays, attributes, scales)
         checkpoint = _checkpoint(arrays, attributes, model)
     except KeyError as missing:
         raise OutputError(f"{path}: restart file of another ehlpetsc, without {missing}") from None
@@ -135,21 +107,6 @@ def changed_keys(earlier: dict, now: dict) -> list[str]:
     old, new = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
     return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
-
-
-def advice_on_resuming(restart: Path, case: Case, step: int | None) -> str:
-    """End of a sentence on a failed write: how to continue once the cause is removed.
-
-    The restart file may be missing or belong to another case; `step` is the last complete one in the result.
-    """
-    try:
-        attributes = load_restart(restart)[1]
-        if step is not None and attributes["case"] == case.text and attributes["step"] <= step:
-            return f"once this is mended, continue with --restart {restart} (step {attributes['step']})"
-    except OutputError:
-        pass  # none, or a damaged one
-    again = "repeat it with --overwrite" if restart.exists() else "the same command begins at time 0"
-    return f"there is no restart file of it: once this is mended, {again}"
 
 
 def _checkpoint(arrays: dict[str, np.ndarray], attributes: dict[str, Any], model: ContactModel) -> Checkpoint:
@@ -209,6 +166,8 @@ def _misfit(
     if ("fluid" in earlier) != (case.fluid is not None):
         one, other = ("with", "without") if "fluid" in earlier else ("without", "with")
         return f"a run {one} [fluid] cannot continue {other} it"
+    if not all(np.isclose(attributes[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
+        return "of another load, radius or elasticity; what changes with time is in [operation]"
     start = earlier.get("time", {}).get("start", "smooth")
     if case.time.start != start:
         return f'time.start was "{start}"; it must be as it was, or the profiles would jump'
@@ -219,43 +178,3 @@ def _misfit(
                 "a rough surface can neither start, stop nor turn round in mid-run"
             )
     return None
-
-
-def rescale(arrays: dict[str, np.ndarray], attributes: dict[str, Any], scales: Scales) -> None:
-    r"""Convert the content of a restart file to the load, radius or elasticity of a case, in place.
-
-    Fields keep their position x/a, that is, their node:
-
-    * pressures in p0 do not change: their sum over the nodes carries the new load;
-    * the excess of the film over the gap outside Hertz' dry contact keeps its thickness in metres, and the
-      gap is that of the new contact, :math:`h=g+r(h_0-g)` in a^2/R, :math:`r` the old a^2/R over the new one
-      and g as in :func:`ehlpetsc.physics.exact_solutions.hertz_gap`;
-    * a cavity keeps its oil film in metres, :math:`(1+q)h=r(1+q_0)h_0`.
-
-    Earlier masses per area do not apply to the new contact: the next step is a step of backward Euler from
-    the mass of the converted state, without earlier levels.
-    """
-    from ehlpetsc.physics.exact_solutions import hertz_gap
-
-    old = np.array([attributes[name] for name in ("a", "p0", "h_scale")])
-    new = np.array([scales.a, scales.p0, scales.h])
-    if (np.abs(old - new) <= SCALE_TOLERANCE * new).all():
-        return
-    ratio, x = attributes["h_scale"] / scales.h, scales.x
-    gap = hertz_gap(x, 1.0, 1.0)
-    core = np.abs(x) <= CORE_HALF_WIDTH
-    if core.any():
-        attributes["h00"] += (ratio - 1.0) * (arrays["h"] - gap)[core].mean()
-    for prefix in STATE_PREFIXES:
-        q, h = arrays[prefix + "q"], arrays[prefix + "h"]
-        arrays[prefix + "q"], arrays[prefix + "h"] = _converted(q, h, gap, ratio)
-    for name in HISTORY:
-        arrays.pop(name, None)
-    attributes["dt"] = 0.0
-
-
-def _converted(q: np.ndarray, h: np.ndarray, gap: np.ndarray, ratio: float) -> Pair:
-    film = np.maximum(gap + ratio * (h - gap), 0.0)
-    oil = ratio * (1.0 + q) * h
-    void = np.clip(oil / np.where(film > 0.0, film, np.inf) - 1.0, -1.0, 0.0)
-    return np.where((q < 0.0) & (film > 0.0), void, q), film

@@ -1,10 +1,8 @@
-"""Recorder of a run: result and restart file, the lock on these files, advice after a failed write."""
+"""Recorder of a run: result and restart file, the lock on these files."""
 
 from __future__ import annotations
 
-import contextlib
 import time as clock
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,14 +12,14 @@ import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of, remove_stale
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter
-from ehlpetsc.run.outputs.checkpoint import Checkpoint, advice_on_resuming, load, save
+from ehlpetsc.run.outputs.checkpoint import load, save
 from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.stepping.time_stepping import on_level
@@ -37,8 +35,7 @@ OFFSET_TOLERANCE = 1e-6  # mesh spacings: smaller offsets are rounding
 class Recorder:
     """Output that stores the accepted states of a simulation.
 
-    The restart file is written every few minutes, at a stop and after a failed write, only for states that
-    are in the result file.
+    The restart file is written every few minutes and at a stop.
 
     Parameters
     ----------
@@ -63,7 +60,6 @@ class Recorder:
         self.limits: list[str] = []
         self._lock: Lock | None = None
         self._writer: Any = None  # a ResultWriter, on rank 0
-        self._stored: Checkpoint | None = None
         self._is_open, self._saved = False, clock.monotonic()
 
     def __enter__(self) -> Recorder:
@@ -102,33 +98,30 @@ class Recorder:
 
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
-        simulation, model = self.simulation, self.simulation.stepper.problem.model
-        stored, notes = load(path, simulation.case, simulation.scales, model)
+        simulation = self.simulation
+        stored, notes = load(path, simulation.case, simulation.scales, simulation.stepper.problem.model)
         solution = stored.state
         simulation.resume(solution, stored.baseline, stored.positions)
         self.totals = Totals(stored.totals)
         self._open(solution.step, stored.contact_count)
-        self._note_stored()
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
 
     def write(self, state: AcceptedState) -> None:
         """Store an accepted state; write the restart file if it is due."""
-        with self._advice_on_failure():
-            if not self._is_open:
-                self._open()
-            with events.OUTPUT:
-                on_root(self.comm, self._append, state)
-            self.totals.add(state.scalars)
-            self._note_stored()
-            due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
-            if state.step and self.comm.bcast(due):
-                self._save()
-                self._saved = clock.monotonic()
+        if not self._is_open:
+            self._open()
+        with events.OUTPUT:
+            on_root(self.comm, self._append, state)
+        self.totals.add(state.scalars)
+        due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
+        if state.step and self.comm.bcast(due):
+            self.checkpoint()
+            self._saved = clock.monotonic()
 
     def checkpoint(self) -> None:
         """Write the restart file, if any, for the last state."""
-        with self._advice_on_failure():
-            self._save()
+        if self.restart is not None:
+            on_root(self.comm, self._save)
 
     def close(self, status: ExitStatus) -> None:
         """Write the remaining data and the status of the run, and the restart file of an unfinished run.
@@ -136,12 +129,11 @@ class Recorder:
         A pass that is continued by the next one also leaves a restart file.
         """
         time = self.simulation.case.time
-        needed = status is not ExitStatus.DONE or time is not None and time.passes > 1
-        with self._advice_on_failure():
-            if needed and self.simulation.solution is not None and self._is_open:
-                self._save()
-            if self._is_open:
-                on_root(self.comm, self._close, status)
+        if not self._is_open:
+            return
+        if status is not ExitStatus.DONE or time is not None and time.passes > 1:
+            self.checkpoint()
+        on_root(self.comm, self._close, status)
 
     def to_bytes(self) -> bytes:
         """The bytes of a result in memory, on every rank."""
@@ -198,47 +190,8 @@ class Recorder:
         self._writer.close(status.words, self.limits)
 
     def _save(self) -> None:
-        if self.restart is not None:
-            on_root(self.comm, self._flush_and_save)
-
-    def _flush_and_save(self) -> None:
         self._writer.flush()
-        self._note_stored()
-        self._write_restart(self._checkpoint())
-
-    def _note_stored(self) -> None:
-        """Remember the state up to which the result file on rank 0 is complete."""
-        state = self.simulation.solution
-        if self.restart and self.simulation.case.time and self._writer and state:
-            if self._writer.written == (state.step, state.time):
-                self._stored = self._checkpoint()
-
-    def _checkpoint(self) -> Checkpoint:
-        count, totals = self._writer.contact_count.copy(), dict(self.totals.values)
-        return Checkpoint.of(self.simulation, count, totals)
-
-    def _write_restart(self, state: Checkpoint) -> None:
-        simulation = self.simulation
-        model = simulation.stepper.problem.model
-        if self.restart is not None:
-            save(self.restart, state, simulation.case, simulation.scales, model)
-
-    @contextlib.contextmanager
-    def _advice_on_failure(self) -> Iterator[None]:
-        """After a failed write save the last stored state, and add advice on resuming to the error."""
-        try:
-            yield
-        except OutputError as error:
-            if self.restart is None:
-                raise
-            advice = None
-            if self.comm.rank == 0:
-                if self._stored:
-                    with contextlib.suppress(OutputError):
-                        self._write_restart(self._stored)
-                step = self._stored.state.step if self._stored else None
-                advice = advice_on_resuming(self.restart, self.simulation.case, step)
-            raise OutputError(f"{error}; {self.comm.bcast(advice)}") from error
+        save(self.restart, self.simulation, self._writer.contact_count, self.totals.values)
 
 
 def libraries() -> dict[str, str]:
