@@ -6,12 +6,9 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import h5py
-
 from ehlpetsc.base.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces.profile import WAVE_NODES
 from ehlpetsc.surfaces.profile_checks import needed_points
 
@@ -51,7 +48,7 @@ def pass_file(path: Path, position: int, positions: int) -> Path:
 
 
 def check_files(path: Path, case: Case) -> None:
-    """Refuse to overwrite an input, a file that is not a life, or a result that is not a pass of a life.
+    """Refuse to overwrite an input or a file that is not a life.
 
     Parameters
     ----------
@@ -62,24 +59,12 @@ def check_files(path: Path, case: Case) -> None:
     ------
     OutputError
     """
-    from ehlpetsc.results.output_guard import check_derived, check_output_path, exists, inputs_of
+    from ehlpetsc.results.output_guard import check_derived, check_output_path, inputs_of
 
     check_derived(path, inputs_of(case), (".h5",), signature=b"\x89HDF")
     positions = number_of_positions(case)
     for position in range(positions):
-        one_pass = pass_file(path, position, positions)
-        check_output_path(one_pass, inputs_of(case), "-o")
-        if exists(one_pass) and one_pass.stat().st_size and not _is_pass(one_pass):
-            raise OutputError(f"{one_pass}: exists and is not a pass of a life; remove it or give another -o")
-
-
-def _is_pass(path: Path) -> bool:
-    """Whether a file is the result of a pass of a life, or an HDF5 file damaged by a killed run."""
-    try:
-        with read_result(path) as result:
-            return result.case.life is not None
-    except OutputError:
-        return h5py.is_hdf5(path)
+        check_output_path(pass_file(path, position, positions), inputs_of(case), "-o")
 
 
 def _tables_of_surfaces(text: str) -> dict:

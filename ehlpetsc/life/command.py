@@ -3,27 +3,22 @@
 Wear and fatigue damage of a solved pass are multiplied over the passes in which the surfaces hardly change,
 see the table [life] of the case; the next pass is solved with the changed surfaces. The same command
 continues a life. A case with [series] runs a life for each member and writes the index
-``OUT.life.series.json`` and a picture of the regimes, wear or fatigue. Under mpirun each rank solves a
-position of surface 2, or a life.
+``OUT.life.series.json``. Under mpirun each rank solves a position of surface 2, or a life.
 """
 
 from __future__ import annotations
 
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import UsageError
-
-if TYPE_CHECKING:
-    pass
 
 
 def arguments() -> CommandParser:
     """The command line."""
     parser = CommandParser("life", __doc__)
-    parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 or its index to draw")
+    parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 to draw")
     parser.add_argument("-o", "--output", metavar="FILE.h5", help="default: CASE.life.h5")
     parser.add_argument("--overwrite", action="store_true", help="start again")
     parser.add_argument(
@@ -42,47 +37,35 @@ def main(words: list[str]) -> int:
 
 
 def _run(chosen: Namespace) -> None:
-    """Run a life or a series of them, where a case is given; draw it on the first rank."""
+    """Run a life or a series of them, where a case is given; draw a life on the first rank."""
     path, is_root = Path(chosen.case), True
-    if path.suffix not in (".h5", ".json"):
+    if path.suffix != ".h5":
         path, is_root = _run_lives(chosen)
     elif not chosen.no_picture:
-        _pictures(chosen, path, [path])
-    if is_root and not chosen.no_picture:
-        (_draw_regimes if path.suffix == ".json" else _draw)(chosen, path)
+        _check_pictures(chosen, path, [path])
+    if is_root and path.suffix == ".h5" and not chosen.no_picture:
+        _draw(chosen, path)
 
 
 def _draw(chosen: Namespace, path: Path) -> None:
     from ehlpetsc.life.history import read_life
-    from ehlpetsc.pictures.lives import draw
+    from ehlpetsc.pictures.lives import draw, save_movie
 
     life, target = read_life(path), path.with_suffix(".png")
     draw(life, target)
     print(target)
     if chosen.movie:
-        from ehlpetsc.pictures.lives import save_movie
-
         save_movie(life, Path(chosen.movie))
         print(chosen.movie)
 
 
-def _draw_regimes(chosen: Namespace, path: Path) -> None:
-    from ehlpetsc.pictures.lives import draw_regimes, read_index
-
-    target = path.with_suffix(".png")
-    draw_regimes(read_index(path), target)
-    print(target)
-
-
-def _pictures(chosen: Namespace, path: Path, inputs: list[Path]) -> None:
-    """Check the paths of the pictures of a life or an index."""
+def _check_pictures(chosen: Namespace, path: Path, inputs: list[Path]) -> None:
+    """Check the paths of the picture and the movie of a life."""
     from ehlpetsc.results.output_guard import MOVIES, PICTURES, check_derived
 
     check_derived(path.with_suffix(".png"), inputs, PICTURES)
     if chosen.movie:
         check_derived(Path(chosen.movie), inputs, MOVIES, "--movie")
-        if path.suffix == ".json":
-            raise UsageError(f"--movie {chosen.movie}: of a life; allowed with a series: left out")
 
 
 def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
@@ -94,34 +77,27 @@ def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
     from mpi4py import MPI
 
     from ehlpetsc.life.driver import run_life
-    from ehlpetsc.life.regimes import index_of, run_regimes
+    from ehlpetsc.life.regimes import run_regimes
     from ehlpetsc.results.output_guard import inputs_of
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.stop import StopRequest
 
     comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)
-    path = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
-    output = index_of(path) if case.series else path
-    is_root = comm.rank == 0
-    if output.name and not chosen.no_picture:
-        on_root(comm, _pictures, chosen, output, inputs_of(case))
-    if case.series and chosen.after:
-        raise UsageError(f"--after {chosen.after}: of a life; allowed with a series: left out")
+    output = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
 
     def show(text: str) -> None:
-        if is_root:
+        if comm.rank == 0:
             print(text, flush=True)
 
-    shared = {
-        "overwrite": chosen.overwrite,
-        "unresolved": chosen.unresolved,
-        "comm": comm,
-        "show": show,
-        "stop": StopRequest(),
-    }
+    options = {name: getattr(chosen, name) for name in ("overwrite", "unresolved")}
+    options |= {"comm": comm, "show": show, "stop": StopRequest()}
     if case.series:
-        run_regimes(case, path, **shared)
+        if chosen.after or chosen.movie:
+            raise UsageError("--after, --movie: of a life; allowed with a series: left out")
+        output = run_regimes(case, output, **options)
     else:
-        run_life(case, path, after=chosen.after, **shared)
+        if output.name and not chosen.no_picture:
+            on_root(comm, _check_pictures, chosen, output, inputs_of(case))
+        run_life(case, output, after=chosen.after, **options)
     show(str(output))
-    return output, is_root
+    return output, comm.rank == 0

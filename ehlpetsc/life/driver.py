@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,11 +28,16 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
 
 
-PACE_WEIGHT = 0.5  # of the last round in the mean time of a round
+WIDTHS = {"solved": 6, "passes": 14, "D1": 7, "D2": 7, "pitted1": 9, "pitted2": 9}
+WIDTHS |= {"worn1": 9, "worn2": 9, "friction": 10, "time": 8}
 
 
-def opening_line(case: Case, scales: Scales, scene: Scene, positions: int) -> str:
-    """Line before the first round: passes of a round, steps and expected run time of a pass.
+def _columns(values: Iterable[str]) -> str:
+    return "".join(f"{value:>{width}}" for value, width in zip(values, WIDTHS.values(), strict=True))
+
+
+def opening(case: Case, scales: Scales, scene: Scene, positions: int) -> str:
+    """Lines before the first round: passes of a round, steps and expected run time of a pass; header.
 
     Parameters
     ----------
@@ -44,48 +49,21 @@ def opening_line(case: Case, scales: Scales, scene: Scene, positions: int) -> st
     seconds = forecast.work_time(case, scales, scene.roughness)
     rounds = f"rounds of {positions} passes" if positions > 1 else "rounds of one pass"
     steps = scene.operation.step_count(scales.dt)
-    return f"{rounds}, each of {steps} steps and {_time(seconds)} on one rank"
+    head = f"{rounds}, each of {steps} steps and {_time(seconds)} on one rank; worn in um^2"
+    return f"{head}\n{_columns(WIDTHS)}"
 
 
-class Progress:
-    """Lines after solved rounds, with the expected number of remaining rounds and their time.
-
-    Parameters
-    ----------
-    passes
-        Of the life.
-    """
-
-    def __init__(self, passes: int) -> None:
-        self.passes, self._pace, self._rounds = passes, 0.0, 0
-
-    def line(self, history: LifeHistory, seconds: float, remaining: tuple[int, int]) -> str:
-        """Line of the last row.
-
-        Parameters
-        ----------
-        seconds
-            Wall clock time of its round.
-        remaining
-            Least and largest number of rounds expected, as of `jumps.Jumps.expected_rounds`.
-        """
-        # the first round also loads compiled code
-        self._pace = seconds if self._rounds < 2 else PACE_WEIGHT * seconds + (1.0 - PACE_WEIGHT) * self._pace
-        self._rounds += 1
-        row = history.rows[-1]
-        shown = [f"{row['passes']:.4g} passes of {self.passes:.4g}, {history.solved} solved"]
-        for k in (1, 2):
-            shown.append(
-                f"surface {k}: D {row[f'damage_{k}']:.3g}, {row[f'pits_{k}']} pits on "
-                f"{row[f'pitted_share_{k}']:.1%}, worn {1e12 * row[f'wear_volume_{k}']:.4g} um^2, "
-                f"Ra {1e6 * row[f'ra_{k}']:.4f} um"
-            )
-        shown.append(f"friction {row['friction']:.4f}, {_time(seconds)}")
-        fewest, most = remaining
-        if most:
-            rounds = f"{fewest} to {most}" if fewest < most else f"{most}"
-            shown.append(f"remaining: {rounds} rounds, {_time(fewest * self._pace)} or more")
-        return "; ".join(shown)
+def line_of(history: LifeHistory, seconds: float) -> str:
+    """Line of the last row, whose round took a wall clock time."""
+    row = history.rows[-1]
+    values = [f"{history.solved}", f"{row['passes']:,}"]
+    for name, unit, form in (
+        ("damage", 1.0, ".3g"),
+        ("pitted_share", 1.0, ".2%"),
+        ("wear_volume", 1e12, ".4g"),
+    ):
+        values += [f"{unit * row[f'{name}_{k}']:{form}}" for k in (1, 2)]
+    return _columns([*values, f"{row['friction']:.4f}", _time(seconds)])
 
 
 def _time(seconds: float) -> str:
@@ -190,18 +168,17 @@ class _Life:
         return self.history
 
     def _run(self, stop: Callable | None, max_rounds: int | None) -> None:
-        progress, rounds = Progress(self.jumps.passes), 0
+        rounds = 0
         if not self.history.rows:
             for line in mesh_warnings(self._scene.roughness, self.scales):
                 self.show(f"warning: {line}")
-            self.show(opening_line(self.case, self.scales, self._scene, self.positions.count))
+            self.show(opening(self.case, self.scales, self._scene, self.positions.count))
         while self._is_living and (max_rounds is None or rounds < max_rounds):
             begun = clock.monotonic()
             solved_round = self._solve(stop)
             bodies = self.history.bodies[-1] if self.history.rows else None
             self._jump(solved_round, bodies or self.positions.new_bodies(solved_round.passes[0]))
-            remaining = self.jumps.expected_rounds(self.history.bodies[-1], solved_round, self.history.done)
-            self.show(progress.line(self.history, clock.monotonic() - begun, remaining))
+            self.show(line_of(self.history, clock.monotonic() - begun))
             rounds += 1
 
     @property

@@ -64,15 +64,6 @@ class Rates(NamedTuple):
             slopes.append(np.clip((new - old) / passes, -bound, bound))
         return self._replace(slopes=tuple(slopes))
 
-    def without(self, columns: np.ndarray) -> Rates:
-        """Rates without damage in some columns.
-
-        Parameters
-        ----------
-        columns : shape (n,)
-        """
-        return self._replace(damage=np.where(columns, 0.0, self.damage))
-
     def after(self, passes: float) -> tuple:
         """Wear [m], damage and worn volume [m^2] of a number of passes."""
         rates: Any = zip((self.wear, self.damage, self.volume), self.slopes, strict=True)
@@ -88,7 +79,6 @@ class Rates(NamedTuple):
 
 
 BREAK_OUT_DELAY = 1.1  # longest jump over the allowed one, where it then ends with a break-out
-MAX_LOOKAHEAD = 200  # rounds simulated one by one
 
 
 class Jumps:
@@ -133,15 +123,11 @@ class Jumps:
             )
             max_passes = min(max_passes, int(MAX_EXTRAPOLATION * before))
         jump = self._allowed(bodies, rates, solved_round, max_passes)
-        return self._bodies_after(bodies, rates, jump, done), jump, rates
-
-    def _bodies_after(
-        self, bodies: tuple[LifeBody, ...], rates: tuple[Rates, ...], jump: int, done: int
-    ) -> tuple[LifeBody, ...]:
-        return tuple(
+        after = tuple(
             body.after(rate, jump, done, self.life.break_out)
             for body, rate in zip(bodies, rates, strict=True)
         )
+        return after, jump, rates
 
     def _allowed(
         self, bodies: tuple[LifeBody, ...], rates: tuple[Rates, ...], solved_round: Round, left: int
@@ -159,32 +145,3 @@ class Jumps:
             )
             passes = ends if ends < late else passes
         return min(left, max(int(passes), len(solved_round.passes)))
-
-    def expected_rounds(
-        self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int
-    ) -> tuple[int, int]:
-        """Least and largest expected number of rounds until the end of the life, at the rates of this one.
-
-        In one count columns that break out carry no load, in the other they carry as before: a pit unloads
-        its own column and loads the neighbours.
-        """
-        counts = [
-            self._rounds_to_come(bodies, solved_round, done, are_relieved) for are_relieved in (True, False)
-        ]
-        return min(counts), max(counts)
-
-    def _rounds_to_come(
-        self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int, are_relieved: bool
-    ) -> int:
-        rounds, jump, begin = 0, 1, bodies
-        while done < self.passes and rounds < MAX_LOOKAHEAD:
-            rates = solved_round.rates(bodies)
-            if are_relieved:
-                rates = tuple(
-                    rate.without(body.pit > new.pit)
-                    for rate, body, new in zip(rates, bodies, begin, strict=True)
-                )
-            jump = self._allowed(bodies, rates, solved_round, self.passes - done)
-            bodies = self._bodies_after(bodies, rates, jump, done)
-            rounds, done = rounds + 1, done + jump
-        return rounds + -(-(self.passes - done) // jump)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, OutputError, PostError, Stopped
-from ehlpetsc.post.fatigue.accumulate import Counting
+from ehlpetsc.post.fatigue.accumulate import Counter
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, Task, solve
@@ -152,7 +152,8 @@ def _means(file: Path) -> dict[str, float]:
 def _damage(file: Path) -> list[tuple]:
     """Points s, depths [m] and damage of both surfaces, of the points that passed the whole contact."""
     with Loads(file) as loads:
-        job = Job(str(file), "", counting=Counting(strain=loads.case.post.strain))
+        job = Job(str(file), "").of_case(loads.case)
+        column = len(Counter.columns) if job.criteria else 0
         prepared = prepare(loads, SIDES, lambda text: None)
         damages = []
         for side in SIDES:
@@ -162,6 +163,6 @@ def _damage(file: Path) -> list[tuple]:
                 raise PostError(
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
-            values = solve(job, prepared, Task(side, depths))[..., 0]
+            values = solve(job, prepared, Task(side, depths))[..., column]
             damages.append((prepared.s[passed], loads.a * np.array(depths), values[:, passed]))
     return damages

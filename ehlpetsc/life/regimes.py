@@ -204,10 +204,5 @@ class _Lives:
 def _words(row: dict) -> str:
     if "winner" not in row:
         return f"{row['state']}: {row.get('reason', '')}".rstrip(": ")
-    won = "neither wins" if row["winner"] == NEITHER else f"{row['winner']} wins"
-    failed = row["first_failure"]
-    return (
-        f"{won}, {row['passes']:.3g} passes ({row['solved']} solved), largest D {row['damage']:.3g}, "
-        + (f"first failure after {failed:.3g}, " if failed else "")
-        + f"pitted {row['pitted_share']:.1%}, worn {1e6 * row['worn_depth']:.3g} um"
-    )
+    failed = f"first failure after {row['first_failure']:.3g}, " if row["first_failure"] else ""
+    return f"{row['winner']} after {row['passes']:.3g} passes, {failed}pitted {row['pitted_share']:.1%}"

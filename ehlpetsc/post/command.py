@@ -192,7 +192,7 @@ def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> No
     else:
         _check_output(Path(output), inputs, chosen.overwrite)
         run(job, lambda text: _say(f"{path}: {text}"), Progress(path))
-    _summary(output, job.criteria, time.perf_counter() - start)
+    _summary(output, time.perf_counter() - start)
 
 
 def _check_output(output: Path, inputs: Sequence[str], overwrite: bool) -> None:
@@ -204,7 +204,7 @@ def _check_output(output: Path, inputs: Sequence[str], overwrite: bool) -> None:
         raise OutputError(f"{output}: exists; give another -o, or --overwrite to replace it")
 
 
-def _summary(output: str, criteria: Sequence[str], wall: float) -> None:
+def _summary(output: str, wall: float) -> None:
     """Print one line for each depth and one for the result."""
     result = PostResult(output)
     surfaces = sorted(result.surfaces)
@@ -212,7 +212,7 @@ def _summary(output: str, criteria: Sequence[str], wall: float) -> None:
         words = [f"z/a={z:<6g}"]
         for surface in surfaces:
             words.append(f"{surface}: D_max={result.largest(surface, k):.3e}")
-            words += [f"{name}={_largest(result, name, surface, k):.3g}" for name in criteria]
+            words += [f"{name}={_largest(result, name, surface, k):.3g}" for name in result.criteria]
         print(" ".join([*words, *_weibull(result.fits[k])]))
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():

@@ -16,6 +16,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
+from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import Counter, Counting
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared, Settings, prepare
@@ -31,7 +32,7 @@ class Job(NamedTuple):
     """One result file and the settings of its processing.
 
     `depths` overrides the depths of the case, `settings` ("table.key=value") other keys; the strain rule of
-    `counting` is that of the case.
+    `counting` is that of the case, whose criterion is added to `criteria`.
     """
 
     path: str
@@ -47,6 +48,12 @@ class Job(NamedTuple):
         """Overrides of the case, see `ehlpetsc.load`."""
         depths = () if self.depths is None else (("post.depths", list(self.depths)),)
         return [*self.settings, *depths]
+
+    def of_case(self, case: Case) -> Job:
+        """The job with the strain rule and the criterion of a case."""
+        own = () if case.post.criterion == "von-mises" else (case.post.criterion,)
+        criteria = tuple(name for name in CRITERIA if name in (*self.criteria, *own))
+        return self._replace(counting=self.counting._replace(strain=case.post.strain), criteria=criteria)
 
     def fingerprint(self) -> str:
         """Hash of the settings and of the version of the result file."""
@@ -125,7 +132,7 @@ def run(
     job.counting.check()
     with Loads(job.path, job.overrides()) as loads:
         identity = job.fingerprint()
-        job = job._replace(counting=job.counting._replace(strain=loads.case.post.strain))
+        job = job.of_case(loads.case)
         prepared = prepare(loads, job.surfaces, report)
         _note_material(loads.case, job.criteria, report)
         _note_heat(loads, job.surfaces, report)

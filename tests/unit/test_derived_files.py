@@ -12,11 +12,8 @@ from support.made_results import make_result
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.summary import main as summary
-from ehlpetsc.base.errors import OutputError
-from ehlpetsc.case.loading import load
 from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.command import main as life
-from ehlpetsc.life.driver import run_life
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.restart_file import save_restart
@@ -153,21 +150,3 @@ def test_life_does_not_overwrite_another_file(tmp_path, monkeypatch, capsys, nam
     before = {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
     assert sentence(capsys, life, COARSE_LIFE, "-o", name, "--overwrite")
     assert {path: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
-
-
-def test_life_keeps_a_result_named_as_its_pass(tmp_path):
-    other = make_result(tmp_path / "x.life.pass.h5")
-    before = other.read_bytes()
-    with pytest.raises(OutputError, match=r"x\.life\.pass\.h5: exists"):
-        run_life(load(COARSE_LIFE), tmp_path / "x.life.h5", most=1, unresolved=True)
-    assert other.read_bytes() == before
-
-
-def test_life_overwrites_its_own_passes_only(tmp_path):
-    case, path = load(COARSE_LIFE), tmp_path / "x.life.h5"
-    first = run_life(case, path, most=1, unresolved=True).done
-    assert run_life(case, path, most=1, unresolved=True).done > first  # continued
-    assert run_life(case, path, most=1, overwrite=True, unresolved=True).done == first
-    one_pass = tmp_path / "x.life.pass.h5"
-    one_pass.write_bytes(one_pass.read_bytes()[:4096])  # as of a run killed while it writes
-    assert run_life(case, path, most=1, overwrite=True, unresolved=True).done == first

@@ -25,18 +25,26 @@ def scaled(scale):
     return {"surface.1.scale": scale, "surface.2.scale": scale}
 
 
-def test_cells_without_wear_fail_after_one_over_damage_passes(tmp_path):
-    keys = {"wear": None, "life.break_out": "none", "life.damage_jump": 0.5, "life.passes": 1e12}
+@pytest.mark.parametrize("criterion", ["von-mises", "fatemi-socie"])
+def test_cells_without_wear_fail_after_one_over_damage_passes(criterion, tmp_path):
+    """By the criterion of [post], which post computes as well."""
+    keys = {
+        "post.criterion": criterion,
+        "wear": None,
+        "life.break_out": "none",
+        "life.damage_jump": 0.5,
+        "life.passes": 1e12,
+    }
     scene = Simulation(case(keys)).scene
     edges = laws.cell_edges(CELL_SIZE * scene.rq, 6 * CELL_SIZE * scene.rq)
     depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]
     life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", most=3, unresolved=True)
     post(Job(str(tmp_path / "a.life.pass.h5"), str(tmp_path / "a.post.h5")))
     found = PostResult(tmp_path / "a.post.h5")
-    failed = 0
+    failed, damages = 0, found.damage if criterion == "von-mises" else found.criteria[criterion]
     for name, body in zip(("1", "2"), life.bodies[-1], strict=True):
         columns = np.abs(found.s[:, None] - body.s).argmin(axis=0)
-        damage = found.damage[name][1:, columns]
+        damage = damages[name][1:, columns]
         known = np.isfinite(body.failed[: len(damage)])
         failed += np.count_nonzero(known)
         assert body.failed[: len(damage)][known] == pytest.approx(1.0 / damage[known], rel=1e-9)

@@ -99,6 +99,11 @@ POST_KEYS = {
         choices=("neuber", "glinka", "direct"),
         default="neuber",
     ),
+    "criterion": Key(
+        "of the damage of a life; ehlpetsc post computes it beside D, which is von-mises",
+        choices=("von-mises", "fatemi-socie", "shear", "swt"),
+        default="von-mises",
+    ),
     "residual_stress": Key(
         "[[z/a, Pa], ...], stress along the surface, depths increasing", kind=object, many="list"
     ),
