@@ -19,8 +19,6 @@ from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.roughness import Roughness
 
 SIZE = (12.0, 3.6)  # inches, for each profile
-MAX_POINTS = 20_000  # drawn of a profile
-MIN_VARIANCE = 1e-3  # of the heights, that is printed
 NAMES = {"ra": "Ra", "rq": "Rq", "rz": "Rz", "rk": "Rk", "rpk": "Rpk", "rvk": "Rvk"}
 
 
@@ -59,37 +57,30 @@ def passing(profile: Profile, case: Case, scales: Scales) -> tuple[float, float]
 
 
 def _heights(axes: Axes, profile: Profile, case: Case, scales: Scales, side: str) -> None:
-    X, z = profile.X, profile.heights
-    stride = -(-len(X) // MAX_POINTS)
-    axes.plot(1e3 * X[::stride], 1e6 * z[::stride], color=style.FAINT, lw=0.7)
+    x, z = 1e3 * profile.X, 1e6 * profile.heights
+    axes.plot(x, z, color=style.FAINT, lw=0.7)
     begin, end = passing(profile, case, scales)
-    inside = (X >= begin) & (X <= end)
-    if end > begin:
-        passes = 1e3 * X[inside][::stride], 1e6 * z[inside][::stride]
-        axes.plot(*passes, color=style.SURFACES[side], lw=0.8)
-    top, bottom = 1e6 * z.max(), 1e6 * z.min()
-    room, at = 0.18 * (top - bottom), 1e3 * X[0] + 0.03e3 * (X[-1] - X[0])
-    axes.set(xlim=(1e3 * X[0], 1e3 * X[-1]), ylim=(bottom - room, top + 1.4 * room))
+    inside = (profile.X >= begin) & (profile.X <= end) & (end > begin)
+    axes.plot(x[inside], z[inside], color=style.SURFACES[side], lw=0.8, label="passes the whole contact")
+    room = 0.18 * np.ptp(z)
+    width = dict(color="k", lw=2.0, label=f"2a = {2e3 * scales.a:.3g} mm")
+    axes.plot([x[0], x[0] + 2e3 * scales.a], [z.max() + 0.5 * room] * 2, **width)
+    axes.set(xlim=(x[0], x[-1]), ylim=(z.min() - room, z.max() + 1.4 * room))
     axes.set(xlabel="abscissa of the profile [mm]", ylabel=f"surface {side} [µm]")
-    width = min(2e3 * scales.a, 0.5e3 * (X[-1] - X[0]))
-    axes.plot([at, at + width], [top + 0.5 * room] * 2, color="k", lw=2.0)
-    name = "2a" if width == 2e3 * scales.a else f"{width / (1e3 * scales.a):.2g} a"
-    place = dict(xytext=(4, 0), textcoords="offset points", va="center")
-    axes.annotate(name, (at + width, top + 0.5 * room), **place)
-    axes.set_title(_description(profile, case, scales, begin, end), fontsize="small", loc="left")
+    axes.set_title(_description(profile, case, scales), fontsize="small", loc="left")
+    axes.legend(loc="upper right", ncols=2, frameon=False, **style.SMALL)
 
 
-def _description(profile: Profile, case: Case, scales: Scales, begin: float, end: float) -> str:
-    coarse = profile.unresolved_variance(scales.dx)
-    share = f"{100 * coarse:.2g} %" if coarse > MIN_VARIANCE else f"less than {100 * MIN_VARIANCE:g} %"
-    mesh = f"{share} of the height variance in waves of fewer than 4 nodes"
+def _description(profile: Profile, case: Case, scales: Scales) -> str:
+    coarse = 100.0 * profile.unresolved_variance(scales.dx)
+    mesh = f"{coarse:.2g} % of the height variance in waves of fewer than 4 nodes" if coarse > 0.1 else ""
     arrives = entry_times(profile, scales)
     if case.time is None or arrives is None:
-        return f"under the domain from the start; {mesh}"
-    part = "in colour: passes" if profile.X[-1] > end > begin else "none of it passes"
-    part = "all of it passes" if end >= profile.X[-1] > begin else part
-    enters = f"its left end enters first and reaches the contact at travel {arrives[0]:.2f} a"
-    return f"{enters}\n{part} the whole contact within travel {case.time.travel:g} a; {mesh}"
+        return ", ".join(filter(None, ["under the domain from the start", mesh]))
+    enters = (
+        f"left end enters first, reaches the contact at travel {arrives[0]:.2f} a of {case.time.travel:g} a"
+    )
+    return "\n".join(filter(None, [enters, mesh]))
 
 
 def _abbott(axes: Axes, profile: Profile, colour: str) -> None:

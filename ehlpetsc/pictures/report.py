@@ -27,11 +27,10 @@ from ehlpetsc.results.reader import Result
 
 MAX_FRAMES, MAX_NODES, MAX_ROWS, MAX_POINTS = 200, 1200, 2000, 2000  # on a page
 MIN_CHANGE = 1e-9  # relative change over a run below which a scalar counts as constant
-ERROR_SCALARS = {"load_error", "mass_error"}  # relative errors: changes by rounding do not count
 MINIMUM_SCALARS = {"h_min", "film_central", "mean_gap_ratio"}  # of several steps; of others the maximum
 FIELDS = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
 SHOWN_UNITS = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
-HIDDEN_SCALARS = {"step", "time", "load", "wall"}
+HIDDEN_SCALARS = {"step", "time", "load", "wall", "load_error", "mass_error"}
 MEANS = {  # over the time in which both surfaces fill the contact: label, factor, unit
     "friction_coefficient": ("mean friction coefficient", 1.0, ""),
     "film_central": ("mean central film", 1e6, " µm"),
@@ -39,18 +38,7 @@ MEANS = {  # over the time in which both surfaces fill the contact: label, facto
     "mean_gap_ratio": ("mean gap ratio", 1.0, ""),
     "contact_share": ("mean share of the load on the solids", 100.0, " %"),
 }
-CONDITIONS = {"load_given": ("load", "N/mm", 1e-3), "radius": ("radius", "mm", 1e3)}  # that vary
-CONDITIONS |= {f"speed_{side}": (f"speed of surface {side}", "m/s", 1.0) for side in "12"}
 TEMPERATURES = ("film_temperature_max", "temperature_1_max", "temperature_2_max")
-LEADING_SCALARS = (
-    "friction_coefficient",
-    "contact_share",
-    "h_min",
-    "film_central",
-    "p_max",
-    "mean_gap_ratio",
-    "contacts",
-)
 
 
 def save_report(result: Result, path: Path) -> None:
@@ -99,10 +87,10 @@ def facts(result: Result) -> list[tuple[str, str]]:
         ("minimum film", f"{1e6 * np.nanmin(steps('h_min')):.4g} µm"),
         ("maximum pressure", f"{1e-9 * np.nanmax(steps('p_max')):.4g} GPa"),
     ]
-    for name, value in means(result).items():
-        if name in MEANS:
-            label, factor, unit = MEANS[name]
-            rows.append((label, f"{factor * value:.4g}{unit}"))
+    found = means(result)
+    for name, (label, factor, unit) in MEANS.items():
+        if name in found:
+            rows.append((label, f"{factor * found[name]:.4g}{unit}"))
     if TEMPERATURES[0] in result.scalars:
         values = ", ".join(f"{np.nanmax(steps(name)) - 273.15:.1f}" for name in TEMPERATURES)
         rows.append(("maximum temperature of film, surface 1, surface 2", f"{values} °C"))
@@ -114,23 +102,28 @@ def facts(result: Result) -> list[tuple[str, str]]:
 
 def _conditions(result: Result, case: Case) -> list[tuple[str, str]]:
     """Contact, oil and speeds, with their ranges where they vary."""
-    rows = [("contact", f"{case.contact.model} contact")]
     if "load_given" in result.scalars:
-        for name, (label, unit, factor) in CONDITIONS.items():
-            ends = (factor * end(result.steps(name)) for end in (np.nanmin, np.nanmax))
-            rows.append((label, " to ".join(dict.fromkeys(f"{value:.4g}" for value in ends)) + f" {unit}"))
+        load, radius = result.steps("load_given"), result.steps("radius")
+        speeds = [result.steps("speed_1"), result.steps("speed_2")]
     else:
-        sizes = f"radius {1e3 * case.contact.radius:g} mm, load {1e-3 * case.contact.load:g} N/mm"
-        rows = [("contact", f"{sizes}, {case.contact.model} contact")]
-        if case.motion:
-            speeds = f"{result.attrs['u1']:.4g} and {result.attrs['u2']:.4g} m/s"
-            rows.append(("speeds of surface 1 and 2", speeds))
+        load, radius = case.contact.load, case.contact.radius
+        speeds = [result.attrs["u1"], result.attrs["u2"]]
+    rows = [
+        ("contact", f"{case.contact.model} contact"),
+        ("load", f"{_range(load, 1e-3)} N/mm"),
+        ("radius", f"{_range(radius, 1e3)} mm"),
+    ]
     if case.fluid:
-        words, grade = [f"{1e3 * case.fluid.viscosity:.4g} mPa s"], case.fluid.grade
-        if grade:
-            words.append(f"{1e6 * grade.v40:g} and {1e6 * grade.v100:g} mm²/s at 40 and 100 °C")
-        rows.append(("oil", ", ".join([*words, case.fluid.law])))
+        shown = " and ".join(_range(speed) for speed in speeds)
+        oil = f"{1e3 * case.fluid.viscosity:.4g} mPa s, {case.fluid.law}"
+        rows += [("speeds of surface 1 and 2", f"{shown} m/s"), ("oil", oil)]
     return rows
+
+
+def _range(values: np.ndarray | float, factor: float = 1.0) -> str:
+    """One value, or minimum and maximum."""
+    ends = (f"{factor * end:.4g}" for end in (np.nanmin(values), np.nanmax(values)))
+    return " to ".join(dict.fromkeys(ends))
 
 
 def frames(result: Result) -> dict:
@@ -167,11 +160,10 @@ def scalars_over_time(result: Result) -> dict:
     if len(time) < 2:
         return {"time": _packed([]), "figures": []}
     width, figures = -(-len(time) // MAX_ROWS), []
-    for name in sorted(set(result.scalars) - HIDDEN_SCALARS, key=_sort_key):
+    for name in (name for name in STEP_SCALARS if name in result.scalars and name not in HIDDEN_SCALARS):
         values = result.steps(name).astype(float)[1:]
         finite = values[np.isfinite(values)]
-        least = MIN_CHANGE * max(np.abs(finite).max(initial=0.0), name in ERROR_SCALARS)
-        if not finite.size or np.ptp(finite) <= least:
+        if not finite.size or np.ptp(finite) <= MIN_CHANGE * np.abs(finite).max():
             continue
         attributes = result[f"steps/{name}"].attrs
         units = attributes.get("units", "1")
@@ -183,23 +175,13 @@ def scalars_over_time(result: Result) -> dict:
     return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
 
 
-def _sort_key(name: str) -> tuple[int, int, str]:
-    """Sort key of the charts: `LEADING_SCALARS` first, then in the order of the table of quantities."""
-    leading = LEADING_SCALARS.index(name) if name in LEADING_SCALARS else len(LEADING_SCALARS)
-    order = list(STEP_SCALARS)
-    return leading, order.index(name) if name in order else len(order), name
-
-
 def damage(result: Result) -> dict | None:
     """Damage below the surfaces from RESULT.post.h5; None without this file."""
     post = damage_beside(result)
     if post is None:
         return None
     width = -(-len(post.s) // MAX_POINTS)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        decades = {side: np.log10(values) for side, values in post.damage.items()}
-    for values in decades.values():
-        values[~np.isfinite(values)] = np.nan
+    decades = {side: np.log10(np.where(values > 0.0, values, np.nan)) for side, values in post.damage.items()}
     return {
         "s": _packed(binned(post.s / post.a, width, np.mean)),
         "depths": post.z.tolist(),

@@ -62,4 +62,4 @@ def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     texts = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert any("Ra 0.079 µm" in text and "Rpk" in text and "Rsk 0.08" in text for text in texts)
     titles = [axes.get_title(loc="left") for axes in figure.axes]
-    assert "travel 5 a" in titles[0] and "travel 1.50 a" in titles[0]
+    assert "travel 1.50 a of 5 a" in titles[0]
