@@ -11,7 +11,16 @@ from ehlpetsc.base.materials import GRADES, Steel, fatigue_constants, flow_press
 from ehlpetsc.case.checking import Fault, Tables, check, is_number, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.physics.laws import gold_pressure_viscosity, walther, walther_constants
+from ehlpetsc.physics.laws import (
+    ROELANDS_PRESSURE,
+    ROELANDS_VISCOSITY,
+    STANDARD_TEMPERATURE,
+    gold_pressure_viscosity,
+    roelands_slope_of_secant,
+    walther,
+    walther_constants,
+)
+from ehlpetsc.physics.oils import OILS
 
 BY_MATERIAL = "material"
 ELASTIC = ("youngs_modulus", "poisson_ratio")
@@ -21,11 +30,11 @@ MM2 = 1e6  # mm^2/s in m^2/s
 
 
 def with_derived(tables: Tables) -> Tables:
-    """Tables of a case with the constants of its steels and of its oil grade.
+    """Tables of a case with the constants of its steels and of its oil.
 
     Tables with faults, which are found by the check of the keys, do not change.
     """
-    return _with_grade(_with_material(tables))
+    return _with_oil(_with_grade(_with_material(tables)))
 
 
 def _with_material(tables: Tables) -> Tables:
@@ -67,9 +76,43 @@ def _with_grade(tables: Tables) -> Tables:
     if oil is None or not is_number(temperature) or not 200.0 < temperature < 700.0:
         return tables
     nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])
-    properties = {"viscosity": nu / MM2 * oil.density, "pressure_viscosity": gold_pressure_viscosity(nu)}
-    tables = tables | {"fluid": properties | fluid}
+    properties = {"viscosity": nu / MM2 * oil.density} | fluid
+    alpha = _slope(gold_pressure_viscosity(nu), properties)
+    tables = tables | {"fluid": {"pressure_viscosity": alpha} | properties}
     return tables | {"heat": {"oil_density": oil.density} | heat} if heat else tables
+
+
+def _slope(secant: float, fluid: Tables) -> float:
+    """Pressure-viscosity coefficient [1/Pa] of a law with the secant of Gold et al. over 2000 bar."""
+    constants = {"reference_viscosity": ROELANDS_VISCOSITY, "roelands_pressure": ROELANDS_PRESSURE} | fluid
+    names = ("viscosity", "reference_viscosity", "roelands_pressure")
+    values = [constants[name] for name in names]
+    if fluid.get("law") != "roelands" or not all(is_number(v) and v > 0.0 for v in values):
+        return secant
+    z = fluid.get("roelands_z")
+    eta, reference, pressure = values
+    if z is None and eta <= reference:
+        return secant
+    return roelands_slope_of_secant(secant, math.log(eta / reference), pressure, z if is_number(z) else None)
+
+
+def _with_oil(tables: Tables) -> Tables:
+    """Constants of a measured oil; a case that gives an Eyring stress has none of Carreau's law."""
+    fluid, heat = tables.get("fluid"), tables.get("heat", {})
+    if not isinstance(fluid, dict) or not isinstance(heat, dict):
+        return tables
+    oil, temperature = fluid.get("oil"), _oil_temperature(fluid, heat) or STANDARD_TEMPERATURE
+    if not isinstance(oil, str) or oil not in OILS or not is_number(temperature):
+        return tables
+    if not 200.0 < temperature < 700.0:
+        return tables
+    of_fluid, of_heat = OILS[oil].at(temperature), OILS[oil].heat
+    if "eyring_stress" in fluid:
+        of_fluid = {key: value for key, value in of_fluid.items() if not key.startswith("carreau")}
+    if "viscosity_temperature" in heat:
+        of_heat = {key: value for key, value in of_heat.items() if key != "roelands_s0"}
+    tables = tables | {"fluid": of_fluid | fluid}
+    return tables | {"heat": of_heat | heat} if heat else tables
 
 
 def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:

@@ -19,7 +19,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.physics.laws import relative_density
-from ehlpetsc.physics.rheology import mobilities
+from ehlpetsc.physics.rheology import mobilities, tabulated_mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
 ONE = unsigned(1)
@@ -88,10 +88,12 @@ def fluidities(at: np.ndarray, left: int, right: int) -> tuple:
 def flux_through(
     at: np.ndarray,
     left: int,
+    table: np.ndarray,
     per_length: float,
     per_film: float,
-    eyring: float,
-    slip: float,
+    stress: float,
+    stress_rise: float,
+    sliding: float,
     entrainment: float,
 ) -> tuple:
     """Mass flux through the face right of node `left`, and its derivatives.
@@ -103,8 +105,10 @@ def flux_through(
     at : shape (10 or 13, nodes)
     per_length, per_film
         p0 over the spacing [Pa/m]; a^2/R [m].
-    eyring, slip
-        See :func:`ehlpetsc.physics.rheology.mobilities`.
+    table
+        Of :func:`ehlpetsc.physics.rheology.flow_table`.
+    stress, stress_rise, sliding
+        Stress of the shear law without pressure, infinite: Newtonian, its rise over p0 [Pa]; |u1 - u2| [m/s].
     entrainment
         Entrainment speed over that of the scales.
     """
@@ -112,7 +116,10 @@ def flux_through(
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
-    mobility_l, mobility_r = mobilities(film, gradient, *fluidities(at, left, right), eyring, slip)
+    if stress_rise != 0.0:
+        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
+    state = film, gradient, *fluidities(at, left, right), stress, sliding / stress
+    mobility_l, mobility_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
     by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
@@ -120,6 +127,11 @@ def flux_through(
     by_state_l = at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
     by_state_r = at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
     by_p_l, by_p_r = half * by_state_l - by_difference, half * by_state_r + by_difference
+    if stress_rise != 0.0:
+        by_stress = rho_l * (mobility_l[0] + mobility_l[3] + gradient * mobility_l[2])
+        by_stress += rho_r * (mobility_r[0] + mobility_r[3] + gradient * mobility_r[2])
+        by_stress *= -0.5 * half * stress_rise / stress
+        by_p_l, by_p_r = by_p_l + by_stress, by_p_r + by_stress
     by_film_l = by_film_r = by_film
     if at.shape[0] > PROPERTIES:
         by_thermal = -half * (rho_l * mobility_l[3] + rho_r * mobility_r[3])
@@ -146,6 +158,7 @@ def balance(
     at: np.ndarray,
     first: int,
     law: tuple,
+    table: np.ndarray,
     m_old: np.ndarray,
     extrapolated: np.ndarray,
     k: float,
@@ -162,7 +175,9 @@ def balance(
     first
         Index of the first cell's node.
     law
-        `per_length`, `per_film`, `eyring`, `slip` and `entrainment` of :func:`flux_through`.
+        `per_length` to `entrainment` of :func:`flux_through`.
+    table
+        See there.
     m_old, extrapolated : shape (cells,)
         `m` and `extrapolated` of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
     k, rate
@@ -172,10 +187,10 @@ def balance(
         With respect to q and h of the nodes i-2 .. i+1.
     """
     first = unsigned(first)  # numba takes longer over indices that may be negative
-    inflow = flux_through(at, first - ONE, *law)
+    inflow = flux_through(at, first - ONE, table, *law)
     for i in range(unsigned(len(residual))):
         node, row = first + i, derivatives[i]
-        outflow = flux_through(at, node, *law)
+        outflow = flux_through(at, node, table, *law)
         stored, by_m, _ = positive_extrapolation(at[M, node], m_old[i], k)
         residual[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]

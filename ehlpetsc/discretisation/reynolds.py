@@ -36,6 +36,7 @@ from ehlpetsc.discretisation.finite_volumes import (
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 from ehlpetsc.physics.laws import density, density_law, ln_viscosity, viscosity_law
+from ehlpetsc.physics.rheology import NEWTON, flow_law, flow_table, stress_pressure
 from ehlpetsc.physics.scales import Scales
 
 
@@ -99,9 +100,16 @@ class Reynolds:
 
     def face_law(self, inputs: StepInputs) -> tuple:
         """Constants of :func:`.finite_volumes.flux_through`."""
-        s, tau0, now = self.scales, inputs.fluid.eyring_stress, inputs.conditions
-        eyring = np.inf if tau0 is None else tau0
-        return s.p0 / (s.a * self.dx), s.h, eyring, abs(now.sliding) / eyring, now.entrainment / s.u
+        s, flow, now = self.scales, flow_law(inputs.fluid), inputs.conditions
+        stress = np.inf if flow.kind == NEWTON else flow.stress
+        rise = s.p0 * stress_pressure(inputs.fluid)
+        stresses = stress, stress * rise if rise else 0.0
+        return s.p0 / (s.a * self.dx), s.h, *stresses, abs(now.sliding), now.entrainment / s.u
+
+    def flow_table(self, inputs: StepInputs) -> np.ndarray:
+        """Table of the pressure flow, empty where the shear law has a closed form."""
+        kind, _, *constants = flow_law(inputs.fluid)
+        return flow_table(kind, *constants)
 
     def evaluate(
         self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
@@ -129,7 +137,7 @@ class Reynolds:
         residual = np.empty(self.local.stop - self.local.start)
         derivatives = np.zeros((len(residual), n_dofs(STENCIL)))
         inner = slice(int(self.has_inlet), None)
-        balance(at, first, law, *storage, residual[inner], derivatives[inner])
+        balance(at, first, law, self.flow_table(inputs), *storage, residual[inner], derivatives[inner])
         if self.has_outlet:
             derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
             derivatives[-1, OWN + 2 :] = 0.0

@@ -42,42 +42,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined
-from ehlpetsc.physics import rheology
+from ehlpetsc.physics.rheology import FlowLaw, flow_stress
 
-NEWTON, EYRING, CARREAU = 0, 1, 2
-MAX_LN_SINH = 20.0  # above it asinh(exp(x)) is x + ln 2 to 1e-17, below its negative exp(x) to 1e-17
-MAX_EXPONENT = 600.0
 MIN_HEATING = 1e-280
 SERIES_LIMIT = 0.1  # y below which the series of coth(y) - 1/y is exact to 1e-13
 MEAN_SERIES_LIMIT = 0.2  # y/2 below which the series of the mean rise is exact to 1e-14
 ITERATIONS = 200
 ACCURACY = 1e-7  # relative change of y in an iteration of Newton's method, after which it is exact to 1e-14
-
-_limited = inlined(rheology.limited_shear)
-
-
-class FlowLaw(NamedTuple):
-    r"""Shear stress by shear rate of an oil at one pressure and temperature.
-
-    * `NEWTON`: :math:`\tau=\eta\dot\gamma`;
-    * `EYRING`: :math:`\tau=\tau_0\,\mathrm{asinh}(\eta\dot\gamma/\tau_0)`;
-    * `CARREAU`: :math:`\tau=\eta\dot\gamma[1+(\eta\dot\gamma/G)^a]^{(n-1)/a}` (Carreau 1972: a = 2; Yasuda
-      1979), by the relaxation time :math:`\eta/G`.
-
-    Attributes
-    ----------
-    kind
-        One of the above.
-    stress
-        :math:`\tau_0` or G [Pa]; 1 Pa for `NEWTON`.
-    n, a
-        Of `CARREAU`.
-    """
-
-    kind: int
-    stress: float = 1.0
-    n: float = 1.0
-    a: float = 2.0
 
 
 class FilmStress(NamedTuple):
@@ -107,38 +78,6 @@ class FilmStress(NamedTuple):
     middle: np.ndarray
     maximum: np.ndarray
     y: np.ndarray
-
-
-@inlined
-def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, float]:
-    r"""Shear stress [Pa] by :math:`x=\ln(\eta\dot\gamma/\tau_s)`, :math:`\tau_s` the constant of the law.
-
-    Limited by :func:`.rheology.limited_shear` to `limit` [Pa]; infinite: not limited.
-
-    Returns
-    -------
-    stress, by_x, by_limit
-    """
-    if flow.kind == NEWTON or x.real < -MAX_LN_SINH:
-        tau = flow.stress * (np.exp(x) if x.real < MAX_EXPONENT else np.exp(MAX_EXPONENT + 0.0 * x))
-        by_x = tau
-    elif flow.kind == EYRING:
-        if x.real > MAX_LN_SINH:
-            tau, by_x = flow.stress * (x + 0.6931471805599453), flow.stress + 0.0 * x
-        else:
-            e = np.exp(x)
-            tau, by_x = flow.stress * np.arcsinh(e), flow.stress * e / np.sqrt(1.0 + e * e)
-    else:
-        thinned, ln_sum = 1.0 + 0.0 * x, flow.a * x
-        if ln_sum.real < 2.0 * MAX_LN_SINH:
-            e = np.exp(ln_sum)
-            thinned, ln_sum = e / (1.0 + e), np.log(1.0 + e)
-        tau = flow.stress * np.exp(x + (flow.n - 1.0) / flow.a * ln_sum)
-        by_x = tau * (1.0 + (flow.n - 1.0) * thinned)
-    if limit == np.inf:
-        return tau, by_x, 0.0 * by_x
-    value, by_tau, by_limit = _limited(tau, limit)
-    return value, by_x * by_tau, by_limit + 0.0 * by_x
 
 
 @inlined

@@ -1,14 +1,129 @@
-r"""Flow of a film: Eyring's factors, the mobility of the pressure flow and the shear stress at the walls."""
+r"""Shear laws of the oil: stress by rate, mobility of the pressure flow, shear stress at the walls.
+
+A law is a branch of :func:`flow_stress` and a line in `SHEAR_LAWS`. The pressure flow of Newton's and of
+Eyring's law has a closed form; that of any other is a table over the sliding speed and the pressure gradient,
+:func:`flow_table`, computed once for its constants.
+"""
 
 from __future__ import annotations
 
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.compiled import compiled, inlined, unsigned
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
+NEWTON, EYRING, CARREAU = 0, 1, 2
+SHEAR_LAWS = {"eyring_stress": EYRING, "carreau_stress": CARREAU}  # by the key of its stress; none: Newton
+MAX_LN_SINH = 20.0  # above it asinh(exp(x)) is x + ln 2 to 1e-17, below its negative exp(x) to 1e-17
+MAX_EXPONENT = 600.0
+MIN_RATE = 1e-30  # shear rate and stress difference of a film at rest, over those of its law
+NO_FLOW = 0.0, 0.0, 0.0, 0.0
+ONE, TWO, THREE = unsigned(1), unsigned(2), unsigned(3)
+
+
+class FlowLaw(NamedTuple):
+    r"""Shear stress by shear rate of an oil at one pressure and temperature.
+
+    * `NEWTON`: :math:`\tau=\eta\dot\gamma`;
+    * `EYRING`: :math:`\tau=\tau_0\,\mathrm{asinh}(\eta\dot\gamma/\tau_0)`;
+    * `CARREAU`: :math:`\tau=\eta\dot\gamma[1+(\eta\dot\gamma/G)^a]^{(n-1)/a}` (Carreau 1972: a = 2; Yasuda
+      1979), by the relaxation time :math:`\eta/G`.
+
+    Attributes
+    ----------
+    kind
+        One of the above.
+    stress
+        :math:`\tau_0` or G [Pa]; 1 Pa for `NEWTON`.
+    n, a
+        Of `CARREAU`.
+    """
+
+    kind: int
+    stress: float = 1.0
+    n: float = 1.0
+    a: float = 2.0
+
+
+@inlined
+def limited_shear(stress: float, limit: float) -> tuple[float, float, float]:
+    r"""Shear stress of a film that bears `limit` at most, :math:`(\tau^{-4}+\tau_L^{-4})^{-1/4}`.
+
+    Smooth, within 1.5 % of the smaller one where they differ by a factor of two. (Bair & Winer 1979
+    introduced :math:`\tau_L=\Lambda p`; the power 4 is a choice.)
+
+    Parameters
+    ----------
+    stress, limit
+        [Pa], not negative.
+
+    Returns
+    -------
+    value, by_stress, by_limit : float
+    """
+    if stress == 0.0 or limit == 0.0:
+        return 0.0, 0.0, 0.0
+    ratio = stress / limit
+    if ratio.real > 1.0:
+        down = 1.0 / ratio**4
+        value = limit * (1.0 + down) ** -0.25
+    else:
+        value = stress * (1.0 + ratio**4) ** -0.25
+    return value, (value / stress) ** 5, (value / limit) ** 5
+
+
+@inlined
+def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, float]:
+    r"""Shear stress [Pa] by :math:`x=\ln(\eta\dot\gamma/\tau_s)`, :math:`\tau_s` the constant of the law.
+
+    Limited by :func:`limited_shear` to `limit` [Pa]; infinite: not limited.
+
+    Returns
+    -------
+    stress, by_x, by_limit
+    """
+    if flow.kind == NEWTON or x.real < -MAX_LN_SINH:
+        tau = flow.stress * (np.exp(x) if x.real < MAX_EXPONENT else np.exp(MAX_EXPONENT + 0.0 * x))
+        by_x = tau
+    elif flow.kind == EYRING:
+        if x.real > MAX_LN_SINH:
+            tau, by_x = flow.stress * (x + 0.6931471805599453), flow.stress + 0.0 * x
+        else:
+            e = np.exp(x)
+            tau, by_x = flow.stress * np.arcsinh(e), flow.stress * e / np.sqrt(1.0 + e * e)
+    else:
+        thinned, ln_sum = 1.0 + 0.0 * x, flow.a * x
+        if ln_sum.real < 2.0 * MAX_LN_SINH:
+            e = np.exp(ln_sum)
+            thinned, ln_sum = e / (1.0 + e), np.log(1.0 + e)
+        tau = flow.stress * np.exp(x + (flow.n - 1.0) / flow.a * ln_sum)
+        by_x = tau * (1.0 + (flow.n - 1.0) * thinned)
+    if limit == np.inf:
+        return tau, by_x, 0.0 * by_x
+    value, by_tau, by_limit = limited_shear(tau, limit)
+    return value, by_x * by_tau, by_limit + 0.0 * by_x
+
+
+def flow_law(fluid: Any) -> FlowLaw:
+    """Shear law of a case."""
+    for key, kind in SHEAR_LAWS.items():
+        if getattr(fluid, key, None) is not None:
+            stress = float(getattr(fluid, key))
+            if kind == EYRING:
+                return FlowLaw(kind, stress)
+            return FlowLaw(kind, stress, float(fluid.carreau_exponent), float(fluid.carreau_width))
+    return FlowLaw(NEWTON)
+
+
+def stress_pressure(fluid: Any) -> float:
+    """Relative rise of the Eyring stress with pressure [1/Pa]."""
+    return getattr(fluid, "eyring_stress_pressure", None) or 0.0
+
+
+# ---- pressure flow ----
 
 
 @compiled
@@ -45,7 +160,12 @@ def flow_factors(sigma: float) -> tuple[float, float, float, float]:
 
 @compiled
 def mobilities(
-    h: float, gradient: float, fluidity_l: float, fluidity_r: float, eyring: float, slip: float
+    h: float,
+    gradient: float,
+    fluidity_l: float,
+    fluidity_r: float,
+    eyring: float,
+    slip: float,
 ) -> tuple[tuple, tuple]:
     r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, of two oils in one gap.
 
@@ -61,7 +181,7 @@ def mobilities(
     fluidity_l, fluidity_r
         :math:`1/\eta` [1/(Pa s)] on both sides.
     eyring, slip
-        :math:`\tau_0` [Pa], infinite for a Newtonian fluid, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
+        Stress of the shear law [Pa], infinite: Newtonian, S = 1; :math:`|u_1-u_2|/\tau_0` [m/(Pa s)].
 
     Returns
     -------
@@ -103,72 +223,274 @@ def _mobility(
     )
 
 
-def wall_shear(
-    h: Any, gradient: Any, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`.
+# ---- tables of the pressure flow ----
 
-    :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`
-    (Conry, Wang & Cusano 1987); Newtonian: :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress
-    :math:`\tau_m` is limited to :math:`\Lambda p`, see :func:`limited_shear`.
+STEPS = 0.25, 0.05  # of x = ln(Gamma) and V, over the width of a bend in either, see flow_table
+RANGES = 14.0, 7.0  # of both: beyond -+14 in x the table does not depend on it, beyond 7 in V it is linear
+SHALLOW = 1e-4  # stress difference across the film over the law's stress, below which there is none
+_Z, _WEIGHTS = (0.5 * half for half in np.polynomial.legendre.leggauss(20))
+_Z += 0.5  # on either side of the lowest stress, squared: dense there
+
+
+@inlined
+def rate_of_stress(t: float, n: float, a: float) -> tuple[float, float]:
+    """Shear rate times viscosity of Carreau's law by the stress, both over the law's, and its derivative."""
+    size = abs(t)
+    if size < 1e-8:
+        return t, 1.0
+    ln_t, power = np.log(size), (n - 1.0) / a
+    x = ln_t if size < 1.0 else ln_t / n
+    slope = 1.0
+    for _ in range(50):
+        e = np.exp(-a * abs(x))
+        thinned = e / (1.0 + e) if x < 0.0 else 1.0 / (1.0 + e)
+        slope = 1.0 + (n - 1.0) * thinned
+        change = (ln_t - x - power * (max(a * x, 0.0) + np.log(1.0 + e))) / slope
+        x += change
+        if abs(change) < 1e-10:
+            break
+    rate = np.exp(x)
+    return (rate if t > 0.0 else -rate), rate / (size * slope)
+
+
+@compiled
+def flow_across(gamma: float, drop: float, n: float, a: float) -> tuple[float, float]:
+    r"""Mobility and mean stress of a film of Carreau's law, isothermal across it, by Gauss points.
+
+    :math:`\Phi=12\eta M/h^3=(12/s)\int z\,\dot\gamma(t+zs)\,dz` and t by :math:`\int\dot\gamma\,dz=\Gamma`.
+
+    Parameters
+    ----------
+    gamma, drop
+        :math:`\Gamma=\eta|u_1-u_2|/(hG)` and :math:`s=hp_x/G`, not negative.
+    """
+    steep = max(drop, SHALLOW)
+    low, high = 0.0, gamma + 1e-300  # the mean stress is below the viscous one, and its rate convex
+    t = min(gamma, gamma**n)
+    moment = 0.0
+    for _ in range(200):
+        mean, slope, moment = 0.0, 0.0, 0.0
+        lowest = max(-t / steep, -0.5)
+        for length in (0.5 - lowest, -0.5 - lowest):
+            for k in range(len(_Z)):
+                z, weight = lowest + length * _Z[k] * _Z[k], 2.0 * abs(length) * _Z[k] * _WEIGHTS[k]
+                rate, by_t = rate_of_stress(t + z * steep, n, a)
+                mean += weight * rate
+                slope += weight * by_t
+                moment += weight * z * rate
+        low, high = (t, high) if mean < gamma else (low, t)
+        new = t + (gamma - mean) / slope
+        if not low <= new <= high:
+            new = 0.5 * (low + high)
+        change, t = abs(new - t), new
+        if change <= 1e-13 * (t + steep):
+            break
+    return 12.0 * moment / steep, t
+
+
+@compiled
+def _fill_table(n: float, a: float, b: float, x: np.ndarray, v: np.ndarray, out: np.ndarray) -> None:
+    for i in range(len(x)):
+        gamma, power = np.exp(x[i]), np.exp(a * x[i])
+        stress = gamma * (1.0 + power) ** ((n - 1.0) / a)
+        slope = stress / gamma * (1.0 + (n - 1.0) * power / (1.0 + power))
+        for j in range(len(v)):
+            drop = np.expm1(b * v[j]) ** (1.0 / b) * (1.0 + power) ** (n / a)
+            phi, t = flow_across(gamma, drop, n, a)
+            out[0, i, j], out[1, i, j] = np.log(phi * slope), np.log(t / stress)
+
+
+@cache
+def flow_table(kind: int, n: float, a: float) -> np.ndarray:
+    r"""Table of the pressure flow of a shear law, empty where it has a closed form.
+
+    With :math:`L=1+\Gamma^a` and :math:`Y=s/L^{n/a}` (of :func:`flow_across`) the quantities
+    :math:`\ln(\Phi\,d\tau/d\Gamma)` and :math:`\ln(t/\tau(\Gamma))`, :math:`\tau(\Gamma)` without a gradient,
+    vanish at Y = 0 and depend on Y alone for small and for large :math:`\Gamma`; in
+    :math:`V=\ln(1+Y^b)/b`, b = min(a, 2), they become linear. Cubic between its points, to 1e-4.
+
+    Returns
+    -------
+    ndarray, shape (points of x and 1, points of V, 8)
+        Value, derivatives by x, V and both of either quantity, in steps; the last row has n, a, b, the first
+        x, one over both steps, n/a and 1/b.
+    """
+    if kind != CARREAU:
+        return np.zeros((0, 0, 8))
+    from scipy.interpolate import RectBivariateSpline
+
+    b, bend = min(a, 2.0), max(a, 2.0) / 2.0
+    last, step_x, step_v = RANGES[0] / b, STEPS[0] / bend, STEPS[1] / min(bend, 2.0)
+    x, v = np.arange(-last, last, step_x), np.arange(0.0, RANGES[1], step_v)
+    values, table = np.empty((2, len(x), len(v))), np.zeros((len(x) + 1, len(v), 8))
+    _fill_table(n, a, b, x, v, values)
+    u, w = (np.arange(len(points), dtype=float) for points in (x, v))
+    for quantity in range(2):
+        spline = RectBivariateSpline(u, w, values[quantity], s=0)
+        for order, (by_u, by_v) in enumerate(((0, 0), (1, 0), (0, 1), (1, 1))):
+            table[:-1, :, 4 * quantity + order] = spline(u, w, dx=by_u, dy=by_v)
+    table[-1, :8, 0] = n, a, b, -last, 1.0 / step_x, 1.0 / step_v, n / a, 1.0 / b
+    return table
+
+
+@inlined
+def _interpolated(
+    quantity: int, x: float, ln_sum: float, thinned: float, ln_drop: float, table: np.ndarray
+) -> tuple[float, float, float]:
+    """A quantity of :func:`flow_table` at x and ln(s), its derivatives by both."""
+    last = unsigned(table.shape[0] - 1)
+    n, b, first, n_a = table[last, 0, 0], table[last, 2, 0], table[last, 3, 0], table[last, 6, 0]
+    per_x, per_v = table[last, 4, 0], table[last, 5, 0]
+    power = np.exp(b * (ln_drop - n_a * ln_sum))
+    u, v = (x - first) * per_x, np.log(1.0 + power) * table[last, 7, 0] * per_v
+    inside = 0.0 < u < table.shape[0] - 2.0
+    u = min(max(u, 0.0), table.shape[0] - 2.0)
+    beyond = max(v - (table.shape[1] - 1.0), 0.0)
+    v -= beyond
+    i, j = unsigned(min(u, table.shape[0] - 2.5)), unsigned(min(v, table.shape[1] - 1.5))
+    s, i1, k = u - i, i + ONE, unsigned(4 * quantity)
+    k1, k2, k3 = k + ONE, k + TWO, k + THREE
+    t = s * s
+    a2 = t * (3.0 - 2.0 * s)
+    a0, a1, a3 = 1.0 - a2, s * (1.0 - s) * (1.0 - s), t * (s - 1.0)
+    d2 = 6.0 * s * (1.0 - s)
+    d1, d3 = (1.0 - s) * (1.0 - 3.0 * s), s * (3.0 * s - 2.0)
+    s = v - j
+    t = s * s
+    b2 = t * (3.0 - 2.0 * s)
+    b0, b1, b3 = 1.0 - b2, s * (1.0 - s) * (1.0 - s), t * (s - 1.0)
+    e2 = 6.0 * s * (1.0 - s)
+    e1, e3 = (1.0 - s) * (1.0 - 3.0 * s), s * (3.0 * s - 2.0)
+    value, by_u, by_v = 0.0, 0.0, 0.0
+    for side in range(2):
+        m = j + unsigned(side)
+        f, g, fv, gv = (b0, b1, -e2, e1) if side == 0 else (b2, b3, e2, e3)
+        c00, c01, c02, c03 = table[i, m, k], table[i, m, k1], table[i, m, k2], table[i, m, k3]
+        c10, c11, c12, c13 = table[i1, m, k], table[i1, m, k1], table[i1, m, k2], table[i1, m, k3]
+        plain = a0 * c00 + a1 * c01 + a2 * c10 + a3 * c11
+        sloped = a0 * c02 + a1 * c03 + a2 * c12 + a3 * c13
+        value += f * plain + g * sloped
+        by_v += fv * plain + gv * sloped
+        by_u += f * (d2 * (c10 - c00) + d1 * c01 + d3 * c11) + g * (d2 * (c12 - c02) + d1 * c03 + d3 * c13)
+    value += beyond * by_v
+    by_ln_y = by_v * power / (1.0 + power) * per_v
+    return value, (by_u * per_x if inside else 0.0) - n * thinned * by_ln_y, by_ln_y
+
+
+@inlined
+def _rate(x: float, a: float) -> tuple[float, float]:
+    """ln(1 + Gamma^a) by x = ln(Gamma), and its derivative over a."""
+    power = np.exp(-a * abs(x))
+    thinned = 1.0 / (1.0 + power)
+    ln_sum = -np.log(thinned)
+    return (ln_sum, power * thinned) if x < 0.0 else (a * x + ln_sum, thinned)
+
+
+@inlined
+def _tabulated_mobility(
+    h: float, per_film: float, ln_drop: float, fluidity: float, stress: float, slip: float, table: np.ndarray
+) -> tuple[float, float, float, float]:
+    """One of :func:`mobilities`; `per_film` is s/(2 h)."""
+    last = unsigned(table.shape[0] - 1)
+    n, a = table[last, 0, 0], table[last, 1, 0]
+    x = np.log(max(slip / (fluidity * h), MIN_RATE))
+    ln_sum, thinned = _rate(x, a)
+    value, by_x, by_drop = _interpolated(0, x, ln_sum, thinned, ln_drop, table)
+    bend = 1.0 + (n - 1.0) * thinned
+    by_x -= (n - 1.0) * thinned * (1.0 + a * (1.0 - thinned) / bend)
+    mobility = h * h * h * fluidity / (12.0 * bend) * np.exp(value + (1.0 / a - table[last, 6, 0]) * ln_sum)
+    by_gradient = 0.5 * mobility * by_drop / (per_film * stress) if per_film != 0.0 else 0.0
+    return mobility, mobility / h * (3.0 - by_x + by_drop), by_gradient, mobility * (by_x - 1.0)
+
+
+@compiled
+def tabulated_mobilities(
+    h: float,
+    gradient: float,
+    fluidity_l: float,
+    fluidity_r: float,
+    stress: float,
+    slip: float,
+    table: np.ndarray,
+) -> tuple[tuple, tuple]:
+    """As :func:`mobilities`, of a law with a table by :func:`flow_table`."""
+    if h <= 0.0:
+        return NO_FLOW, NO_FLOW
+    per_film = gradient * (0.5 / stress)
+    ln_drop = np.log(max(2.0 * h * abs(per_film), MIN_RATE))
+    return (
+        _tabulated_mobility(h, per_film, ln_drop, fluidity_l, stress, slip, table),
+        _tabulated_mobility(h, per_film, ln_drop, fluidity_r, stress, slip, table),
+    )
+
+
+@inlined
+def stress_spread(sigma: float, x: float, table: np.ndarray) -> float:
+    r"""Decrease of x = :math:`\ln(\eta\dot\gamma/\tau_s)` that gives the mean stress with a gradient.
+
+    :math:`\Sigma=h|p_x|/(2\tau_s)`; :math:`\ln(\sinh\Sigma/\Sigma)` of Eyring's law, so that neither a huge
+    viscosity nor a steep gradient overflows.
+    """
+    if len(table) > 0:
+        n, a = table[-1, 0, 0], table[-1, 1, 0]
+        ln_sum, thinned = _rate(x, a)
+        ln_drop = np.log(max(2.0 * sigma, MIN_RATE))
+        lower = _interpolated(1, x, ln_sum, thinned, ln_drop, table)[0]
+        return x - np.log(rate_of_stress(np.exp(x + (n - 1.0) / a * ln_sum + lower), n, a)[0])
+    if sigma < SERIES_LIMIT:
+        square = sigma * sigma
+        return square * (1 / 6 - square * (1 / 180 - square / 2835))
+    return sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)
+
+
+# ---- stress ----
+
+
+def wall_shear(
+    h: Any, gradient: Any, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | float = np.inf
+) -> tuple[np.ndarray, np.ndarray]:
+    r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`, isothermal.
+
+    Eyring: :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`,
+    :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)` (Conry, Wang & Cusano 1987); Newtonian:
+    :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress :math:`\tau_m` is limited to
+    :math:`\Lambda p`, see :func:`limited_shear`.
 
     Returns
     -------
     lower, upper : ndarray
         Shear stress [Pa] in the film at the walls of surface 2 (lower) and 1 (upper), at h > 0.
     """
-    rate = sliding / h
-    half = h * gradient / 2.0
-    if fluid.eyring_stress is None:
-        mean = fluid.viscosity * np.exp(ln_eta) * rate
-        mean = _limited_mean(mean, fluid, p)
-        return mean - half, mean + half
-    tau0 = fluid.eyring_stress
-    sigma = np.abs(half) / tau0
-    # ln(sinh(s)/s), so that neither a huge viscosity nor a steep gradient overflows
-    small = sigma < SERIES_LIMIT
-    s, square = np.where(small, 1.0, sigma), sigma * sigma
-    series = square * (1 / 6 - square * (1 / 180 - square / 2835))
-    log_sinh_ratio = np.where(small, series, s + np.log1p(-np.exp(-2 * s)) - np.log(2 * s))
-    with np.errstate(divide="ignore"):
-        ln_argument = np.log(np.abs(rate) * fluid.viscosity / tau0) + ln_eta - log_sinh_ratio
-    large = ln_argument > 20.0
-    asinh = np.where(large, ln_argument + np.log(2.0), np.arcsinh(np.exp(np.minimum(ln_argument, 20.0))))
-    mean = _limited_mean(tau0 * np.sign(sliding) * asinh, fluid, p)
+    flow, limit = flow_law(fluid), getattr(fluid, "limiting_shear", None)
+    half = np.asarray(h * gradient / 2.0)
+    rise = stress_pressure(fluid)
+    arrays = np.broadcast_arrays(h, half, ln_eta, 1.0 + rise * p if rise else 1.0, p)
+    columns = [np.ravel(array).astype(float) for array in arrays]
+    viscous = np.full(len(columns[0]), fluid.viscosity * abs(sliding))
+    mean = np.zeros(len(columns[0]))
+    if sliding:
+        table = flow_table(flow.kind, flow.n, flow.a)
+        _mean_stress(*columns, viscous, flow, np.inf if limit is None else float(limit), table, mean)
+    mean = np.sign(sliding) * mean.reshape(arrays[0].shape)
     return mean - half, mean + half
 
 
-def _limited_mean(mean: np.ndarray, fluid: Any, p: np.ndarray | None) -> np.ndarray:
-    """Mean shear stress, limited if the fluid has a limiting shear stress."""
-    if getattr(fluid, "limiting_shear", None) is None:
-        return mean
-    size, limit = np.abs(mean), fluid.limiting_shear * p
-    smaller, ratio = np.minimum(size, limit), np.ones_like(mean)
-    np.divide(smaller, np.maximum(size, limit), out=ratio, where=np.maximum(size, limit) > 0.0)
-    return np.sign(mean) * smaller * (1.0 + ratio**4) ** -0.25
-
-
-def limited_shear(stress: float, limit: float) -> tuple[float, float, float]:
-    r"""Shear stress of a film that bears `limit` at most, :math:`(\tau^{-4}+\tau_L^{-4})^{-1/4}`.
-
-    Smooth, within 1.5 % of the smaller one where they differ by a factor of two. (Bair & Winer 1979
-    introduced :math:`\tau_L=\Lambda p`; the power 4 is a choice.)
-
-    Parameters
-    ----------
-    stress, limit
-        [Pa], not negative.
-
-    Returns
-    -------
-    value, by_stress, by_limit : float
-    """
-    if stress == 0.0 or limit == 0.0:
-        return 0.0, 0.0, 0.0
-    ratio = stress / limit
-    if ratio.real > 1.0:
-        down = 1.0 / ratio**4
-        value = limit * (1.0 + down) ** -0.25
-    else:
-        value = stress * (1.0 + ratio**4) ** -0.25
-    return value, (value / stress) ** 5, (value / limit) ** 5
+@compiled
+def _mean_stress(
+    h: np.ndarray,
+    half: np.ndarray,
+    ln_eta: np.ndarray,
+    grown: np.ndarray,
+    p: np.ndarray,
+    viscous: np.ndarray,
+    law: FlowLaw,
+    limit: float,
+    table: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    for i in range(len(h)):
+        flow = FlowLaw(law.kind, law.stress * grown[i], law.n, law.a)
+        x = np.log(viscous[i] / (h[i] * flow.stress)) + ln_eta[i]
+        if flow.kind != NEWTON:
+            x -= stress_spread(abs(half[i]) / flow.stress, x, table)
+        out[i] = flow_stress(x, flow, limit * p[i] if limit < np.inf else limit)[0]

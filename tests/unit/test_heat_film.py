@@ -12,8 +12,9 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, FilmLaw, film_law, film_temperature
-from ehlpetsc.physics.film_shear import EYRING, NEWTON, FlowLaw, film_stress
+from ehlpetsc.physics.film_shear import film_stress
 from ehlpetsc.physics.laws import EXPONENTIAL, ROELANDS, ln_viscosity, padded
+from ehlpetsc.physics.rheology import EYRING, NEWTON, FlowLaw
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"

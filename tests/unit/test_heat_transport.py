@@ -5,8 +5,8 @@ import pytest
 
 from ehlpetsc.effects.heat.film_law import FilmLaw
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
-from ehlpetsc.physics.film_shear import NEWTON, FlowLaw
 from ehlpetsc.physics.laws import padded
+from ehlpetsc.physics.rheology import NEWTON, FlowLaw
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
 LAW = FilmLaw(

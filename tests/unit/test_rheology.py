@@ -75,3 +75,64 @@ def test_derivatives_of_mobility(stress, sliding):
     for derivative, values in zip(exact, stepped, strict=True):
         step = values[0].imag / STEP
         np.testing.assert_allclose(derivative, step, rtol=2e-7, atol=1e-9 * np.abs(step).max())
+
+
+# ---- Carreau ----
+
+STRESS, FILM, ETA = 6e6, 0.4e-6, 5.0
+
+
+def carreau(n, a):
+    return rheology.FlowLaw(rheology.CARREAU, STRESS, n, a)
+
+
+@pytest.mark.parametrize("n, a", [(0.45, 2.0), (0.35, 5.0)])
+def test_rate_inverts_the_stress_of_carreaus_law(n, a):
+    for x in np.linspace(-15.0, 15.0, 31):
+        stress, by_x, _ = rheology.flow_stress(x, carreau(n, a), np.inf)
+        rate, slope = rheology.rate_of_stress(-stress / STRESS, n, a)
+        assert -rate == pytest.approx(np.exp(x), rel=1e-12)
+        assert slope == pytest.approx(-rate * STRESS / by_x, rel=1e-9)
+
+
+@pytest.mark.parametrize("n, a", [(0.45, 2.0), (0.35, 5.0), (0.8, 1.0)])
+@pytest.mark.parametrize("sliding", [0.0, 0.3, 5.0])
+@pytest.mark.parametrize("drop", [0.0, 0.1, 1.0, 4.0, 60.0])
+def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
+    """Mobility and stress by the table, against 2,000 points across the film."""
+    gradient = drop * STRESS / FILM
+    flow = carreau(n, a)
+    table = rheology.flow_table(*flow[:1], n, a)
+    state = FILM, gradient, 1.0 / ETA, 1.0, STRESS, sliding / STRESS
+    (mobility, *_), _ = rheology.tabulated_mobilities(*state, table)
+    fluid = SimpleNamespace(viscosity=ETA, carreau_stress=STRESS, carreau_exponent=n, carreau_width=a)
+    lower, upper = rheology.wall_shear(FILM, gradient, np.array(0.0), fluid, sliding)
+    z = (np.arange(2000) + 0.5) / 2000 - 0.5
+    gamma = ETA * sliding / FILM / STRESS
+    stress = 0.5 * (lower + upper) / STRESS
+    rate = np.array([rheology.rate_of_stress(stress + at * drop, n, a)[0] for at in z])
+    assert rate.mean() == pytest.approx(gamma, rel=5e-4, abs=1e-12)
+    if drop:
+        moment = 12.0 * (z * rate).mean() / drop
+        assert mobility * 12.0 * ETA / FILM**3 == pytest.approx(moment, rel=2e-4)
+    elif not sliding:
+        assert mobility == pytest.approx(FILM**3 / (12.0 * ETA), rel=1e-6)
+
+
+@pytest.mark.parametrize("gradient", [1e10, -8e12, 6e13])
+def test_derivatives_of_carreaus_flow(gradient):
+    state = {"h": FILM, "gradient": gradient, "ln_eta": np.log(ETA)}
+    table = rheology.flow_table(rheology.CARREAU, 0.45, 2.0)
+
+    def mobility(values):
+        fluidity = np.exp(-values["ln_eta"])
+        return rheology.tabulated_mobilities(
+            values["h"], values["gradient"], fluidity, fluidity, STRESS, 2.0 / STRESS, table
+        )[1]
+
+    value, *derivatives = mobility(state)
+    for key, derivative in zip(state, derivatives, strict=True):
+        step = 1e-5 * abs(state[key])
+        up, down = (mobility(state | {key: state[key] + sign * step})[0] for sign in (1.0, -1.0))
+        found = (up - down) / (2.0 * step)
+        assert found == pytest.approx(derivative, rel=1e-6, abs=1e-7 * value / abs(state[key]))

@@ -8,7 +8,8 @@ import pytest
 from scipy.special import k0e
 
 from ehlpetsc.physics import film_shear
-from ehlpetsc.physics.film_shear import CARREAU, EYRING, NEWTON, FlowLaw, film_stress
+from ehlpetsc.physics.film_shear import film_stress
+from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
 
 N = 80
 BETA, CONDUCTIVITY, FILM = 0.04, 0.14, 0.3e-6

@@ -28,7 +28,7 @@ from ehlpetsc.discretisation.finite_volumes import (
 from ehlpetsc.effects.heat.film_law import A, B, FilmLaw, film_temperature, fixed_at
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.physics.laws import ln_viscosity
-from ehlpetsc.physics.rheology import mobilities
+from ehlpetsc.physics.rheology import MIN_RATE, mobilities, stress_spread, tabulated_mobilities
 
 
 class FilmHeat(NamedTuple):
@@ -153,7 +153,8 @@ def _fill_fluidity(
 @compiled
 def faces(
     at: np.ndarray,
-    law: FilmLaw,
+    law: tuple,
+    table: np.ndarray,
     oil: np.ndarray,
     max_flow: tuple[float, float],
     couette: np.ndarray,
@@ -165,8 +166,8 @@ def faces(
 
     Parameters
     ----------
-    law
-        Of :func:`.finite_volumes.flux_through`.
+    law, table
+        Of :func:`.finite_volumes.balance`.
     oil
         Nodes where the Reynolds equation holds: flow through faces of others has no meaning, shape (nodes,).
     max_flow
@@ -176,12 +177,12 @@ def faces(
     pressure_heat
         Filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node, shape (nodes,).
     spread
-        Filled in: :math:`\ln(\sinh\Sigma/\Sigma)` of the nodes, shape (nodes,).
+        Filled in: :func:`.rheology.stress_spread` of the nodes, shape (nodes,).
     gradient
         Filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
-    per_length, _, eyring, slip, entrainment = law
+    per_length, _, no_pressure, stress_rise, sliding, entrainment = law
     pressure_heat[:] = 0.0
     slope = 0.0
     for i in range(nodes):
@@ -189,7 +190,11 @@ def faces(
         drawn = positive_extrapolation(at[M, i], at[M, behind], 0.5 if i > 0 else 0.0)[0]
         before, slope = slope, per_length * (at[P, i + 1] - at[P, i])
         film = 0.5 * (at[H, i] + at[H, i + 1])
-        left, right = mobilities(film, slope, *fluidities(at, i, i + 1), eyring, slip)
+        stress = no_pressure
+        if stress_rise != 0.0:
+            stress += 0.5 * stress_rise * (at[P, i] + at[P, i + 1])
+        state = film, slope, *fluidities(at, i, i + 1), stress, sliding / stress
+        left, right = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
         couette[i + 1] = entrainment * drawn
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
@@ -201,11 +206,12 @@ def faces(
         if i < nodes - 1:
             pressure_heat[i + 1] += heat
         gradient[i] = 0.5 * (before + slope)
-        sigma = abs(at[H, i] * gradient[i]) * (0.5 / eyring)
-        small = sigma < 0.1
-        spread[i] = (
-            sigma * sigma / 6.0 - sigma**4 / 180.0
-            if small
-            else sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)
-        )
+        spread[i] = 0.0
+        if no_pressure < np.inf and at[H, i] > 0.0:
+            stress = no_pressure
+            if stress_rise != 0.0:
+                stress += stress_rise * at[P, i]
+            fluidity = at[FLUIDITY, i] * at[THERMAL, i] * at[THERMAL, i]
+            rate = max(sliding / (stress * at[H, i] * fluidity), MIN_RATE)
+            spread[i] = stress_spread(0.5 * at[H, i] * abs(gradient[i]) / stress, np.log(rate), table)
     couette[0] = couette[1]

@@ -35,16 +35,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.physics.film_shear import (
-    EYRING,
-    NEWTON,
-    FlowLaw,
-    across,
-    flow_stress,
-    mean_rise,
-    resolved_stress,
+from ehlpetsc.physics.film_shear import across, mean_rise, resolved_stress
+from ehlpetsc.physics.laws import (
+    ROELANDS_ZERO,
+    SLOTS,
+    conductivity,
+    is_linear_in_temperature,
+    ln_viscosity,
+    viscosity_law,
 )
-from ehlpetsc.physics.laws import ROELANDS_ZERO, SLOTS, is_linear_in_temperature, ln_viscosity, viscosity_law
+from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 30  # of Newton's method, before bisection
@@ -55,6 +55,7 @@ QUADRATIC_Y = 1e-5  # the same of y
 MAX_SPLIT_CHANGE = 1e-6  # of d
 MIN_SLOPE = 1e-12  # 1/K
 MIN_HEATING = 1e-12  # of b: less does not heat the film
+MIN_STRESS = 0.1  # of the shear law's stress, over that at the reference temperature
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
 A, B, G, SPREAD, W1, W2, R1, R2, SECANT, REFERENCE = range(10)  # rows of FilmHeat.of_nodes
@@ -75,7 +76,7 @@ class FilmLaw(NamedTuple):
     eta0
         Viscosity at ambient pressure and reference temperature [Pa s].
     flow
-        :class:`ehlpetsc.physics.film_shear.FlowLaw` as a tuple.
+        :class:`ehlpetsc.physics.rheology.FlowLaw` as a tuple.
     limit
         Limiting shear stress over pressure; infinite: none.
     conductivity, conductivity_pressure, conductivity_saturation
@@ -85,6 +86,9 @@ class FilmLaw(NamedTuple):
         |u1 - u2| [m/s].
     thinnest
         Film [m] below which the shear stress is that of this film; 0: films of no thickness are not sheared.
+    stress_pressure, stress_temperature
+        Relative rise of the stress of the shear law with pressure [1/Pa] and, from the temperature at which
+        the viscosity is eta0, with temperature [1/K].
     """
 
     viscosity: tuple
@@ -97,6 +101,8 @@ class FilmLaw(NamedTuple):
     conductivity_saturation: float
     sliding: float
     thinnest: float = 0.0
+    stress_pressure: float = 0.0
+    stress_temperature: float = 0.0
 
 
 def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
@@ -110,17 +116,18 @@ def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> Fi
         return FilmLaw(
             (0, (0.0,) * SLOTS, 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, *conduction, 0.0
         )
-    law, stress = viscosity_law(fluid, heat), fluid.eyring_stress
-    flow = FlowLaw(NEWTON) if stress is None else FlowLaw(EYRING, float(stress))
+    law = viscosity_law(fluid, heat)
     return FilmLaw(
         tuple(law),
         is_linear_in_temperature(law),
         float(fluid.viscosity),
-        tuple(flow),
+        tuple(flow_law(fluid)),
         np.inf if fluid.limiting_shear is None else float(fluid.limiting_shear),
         *conduction,
         abs(float(sliding)),
         thinnest,
+        stress_pressure(fluid),
+        getattr(fluid, "eyring_stress_temperature", None) or 0.0,
     )
 
 
@@ -160,12 +167,10 @@ def fluxes(
 
 
 @inlined
-def conductivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
+def _resistivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
     """1/k_f [m K/W] of a film with a fraction of oil, and d ln(k_f)/dp [1/Pa]."""
-    below = 1.0 + law.conductivity_saturation * p
-    factor = 1.0 + law.conductivity_pressure * p / below
-    over = 1.0 / (law.conductivity * factor * max(left, MIN_CONDUCTING_FRACTION))
-    return over, law.conductivity_pressure / (below * below * factor)
+    k, by_p = conductivity(p, law.conductivity, law.conductivity_pressure, law.conductivity_saturation)
+    return 1.0 / (k * max(left, MIN_CONDUCTING_FRACTION)), by_p / k
 
 
 @inlined
@@ -243,9 +248,15 @@ def film_temperature(
         :math:`T_s` [K] and y.
     """
     w1, w2, r1, r2 = walls
-    over_k, k_slope = conductivity(p, left, law)
+    over_k, k_slope = _resistivity(p, left, law)
     r = h * over_k
-    flow = FlowLaw(*law.flow)
+    kind, stress, n, width = law.flow
+    stress_p = 0.0
+    if law.stress_pressure != 0.0 or law.stress_temperature != 0.0:
+        grown = 1.0 + law.stress_pressure * p
+        stress *= grown * max(1.0 + law.stress_temperature * (reference - law.viscosity[2]), MIN_STRESS)
+        stress_p = law.stress_pressure / grown
+    flow = FlowLaw(kind, stress, n, width)
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
     ln_rate, limit, ln_eta, beta, eta_p, beta_p = 0.0, np.inf, 0.0, 1.0, 0.0, 0.0
@@ -257,18 +268,18 @@ def film_temperature(
     t, y = base, profile
     temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
     t_p, t_h, change, low, high = 0.0, 0.0, 0.0, 0.0, 0.0
-    for kind in (PARABOLA, INSULATED, APART):
-        exchange, alpha = exchange_law(kind, r, walls)
+    for case in (PARABOLA, INSULATED, APART):
+        exchange, alpha = exchange_law(case, r, walls)
         if heat == 0.0:
             energy_t = (b + g + alpha * exchange) / (a + exchange)
             t, y, phi, temperature = energy_t, 0.0, 0.0, energy_t
-            q1, q2, by_r = fluxes(kind, energy_t, r, walls, exchange, alpha)
+            q1, q2, by_r = fluxes(case, energy_t, r, walls, exchange, alpha)
             t_r = -by_r / (a + exchange)
             t_p, t_h = -t_r * r * k_slope, t_r * over_k
         else:
             energy_t, low, high = t, ROELANDS_ZERO + 1.0, 1e5
             for k in range(ITERATIONS + BISECTIONS):
-                d = _split(kind, energy_t, r, walls, exchange, alpha, beta)
+                d = _split(case, energy_t, r, walls, exchange, alpha, beta)
                 x = ln_rate + ln_eta - beta * (t - reference)
                 if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
                     y = resolved_stress(y, x, heating, d, flow, limit)[0]
@@ -308,17 +319,18 @@ def film_temperature(
                 t, change_y = t + change, new_y - y
                 y = new_y
                 if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
-                    if abs(d - _split(kind, energy_t, r, walls, exchange, alpha, beta)) < MAX_SPLIT_CHANGE:
+                    if abs(d - _split(case, energy_t, r, walls, exchange, alpha, beta)) < MAX_SPLIT_CHANGE:
                         break
             phi += phi_t * change + phi_y * change_y
             energy_t = t + phi * uniform
             temperature = t + m_phi * phi + (mean + mean_y * change_y) / beta
-            q1, q2, by_r = fluxes(kind, energy_t, r, walls, exchange, alpha)
+            q1, q2, by_r = fluxes(case, energy_t, r, walls, exchange, alpha)
             phi = a * temperature - b - g + q1 + q2  # so that the balance of heat closes
             # derivatives of both equations by the pressure and by the film, at constant t and y
             tau_p, r_p = by_x * (eta_p - beta_p * (t - reference)), -r * k_slope
             if limit < np.inf:
                 tau_p += by_limit * law.limit
+            tau_p += stress_p * (tau - by_x - by_limit * limit if limit < np.inf else tau - by_x)
             heating_p = heating * (beta_p / beta - k_slope)
             tau_h = -by_x / h if h == sheared else 0.0
             heating_h = 0.125 * beta * law.sliding * over_k * max(left, MIN_CONDUCTING_FRACTION)
@@ -338,9 +350,9 @@ def film_temperature(
                     t_p = total
                 else:
                     t_h = total
-        if kind == PARABOLA and (q1 if w1 < w2 else q2) >= -NO_FLUX * exchange:
+        if case == PARABOLA and (q1 if w1 < w2 else q2) >= -NO_FLUX * exchange:
             break
-        if kind == INSULATED and energy_t >= min(w1, w2):
+        if case == INSULATED and energy_t >= min(w1, w2):
             break
     if law.is_linear and heat > 0.0:
         eta = ln_eta - beta * (temperature - reference), eta_p, -beta

@@ -165,7 +165,8 @@ class HeatStep:
         couette, *of_nodes = np.zeros(n + 1), np.empty(n), np.empty(n), np.empty(n)
         at = self.reynolds.properties(q, h, inputs, solved)
         limits = self._max_flow(h, oil, inputs)
-        faces(at, self.reynolds.face_law(inputs), oil, limits, couette, *of_nodes)
+        law = self.reynolds.face_law(inputs), self.reynolds.flow_table(inputs)
+        faces(at, *law, oil, limits, couette, *of_nodes)
         pressure_heat, spread, gradient = of_nodes
         if backward:
             solved, couette, pressure_heat, spread, gradient = map(

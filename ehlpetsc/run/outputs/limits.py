@@ -71,7 +71,7 @@ def _friction(case: Case, totals: dict[str, float]) -> str | None:
         return None
     return (
         f"friction: a coefficient of {coefficient:.3g}, but oils bear a shear stress of about 0.1 of their "
-        "pressure; eyring_stress or limiting_shear in [fluid] bounds it"
+        "pressure; eyring_stress, carreau_stress or limiting_shear in [fluid] bounds it"
     )
 
 
