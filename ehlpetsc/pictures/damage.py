@@ -33,7 +33,6 @@ CRITERIA = {
     "swt": "Smith-Watson-Topper",
     "dang-van": "Dang Van: share of the fatigue limit; line: 1",
 }
-STRAIN_RULES = {"direct": "elastic range as it is", "neuber": "Neuber's rule", "glinka": "Glinka's rule"}
 
 
 class Map(NamedTuple):
@@ -311,4 +310,4 @@ def _ratio(result: PostResult) -> str:
 
 
 def _strain_rule(result: PostResult) -> str:
-    return STRAIN_RULES[result.attrs.get("strain", "direct")]
+    return f"{result.attrs.get('strain', 'direct')} strains"

@@ -157,7 +157,7 @@ def fill_frame(
                 marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3)
                 lower.plot(x[touching], film[touching], "v", label="in contact", **marks)
         upper.plot(x, 1e-9 * result.frame("pressure", index), label=names[number], **line)
-        label = ("film" if style.is_lubricated(result) else "gap") if single else None
+        label = ("film" if result.case.fluid else "gap") if single else None
         lower.plot(x, film, label=label, **line)
         thickest = max(thickest, film[shown & (np.abs(x) <= 1.0)].max(initial=0.0) or film[shown].max())
     draw_hertz(upper, results, indices, window)
@@ -165,21 +165,20 @@ def fill_frame(
     style.legend_beside(lower)
     lower.set(xlabel=ACROSS, xlim=window, ylim=(0.0, 1.15 * thickest or 1.0))
     upper.set(ylabel=PRESSURE, ylim=(0.0, 1.05 * max(highest(upper, window), 1e-3)))
-    lower.set_ylabel(FILM if any(map(style.is_lubricated, results)) else GAP)
+    lower.set_ylabel(FILM if any(result.case.fluid for result in results) else GAP)
     x_in_mm(upper, results)
     mark_flow(upper, results, indices)
 
 
 def draw_solids(axes: Axes, result: Result, index: int, shown: np.ndarray) -> bool:
     """Fill the pressure of the solids; returns whether there is any at the nodes `shown`."""
-    if (
-        "contact_pressure" not in result
-        or not (solids := result.frame("contact_pressure", index))[shown].any()
-    ):
+    if "contact_pressure" not in result:
         return False
-    x = result.x / result.attrs["a"]
-    axes.fill_between(x, 0.0, 1e-9 * solids, color=style.SOLIDS, lw=0, zorder=1.5, label="of the solids")
-    return True
+    solids = 1e-9 * result.frame("contact_pressure", index)
+    if is_any := bool(solids[shown].any()):
+        solid = dict(color=style.SOLIDS, lw=0, zorder=1.5, label="of the solids")
+        axes.fill_between(result.x / result.attrs["a"], 0.0, solids, **solid)
+    return is_any
 
 
 def draw_hertz(
@@ -202,7 +201,7 @@ def highest(axes: Axes, window: tuple[float, float]) -> float:
 def mark_flow(axes: Axes, results: list[Result], indices: Sequence[int]) -> None:
     """Draw an arrow in the direction of the entrainment, if there is oil and all results have the same."""
     signs = {np.sign(sum(style.speeds_at(result, k))) for result, k in zip(results, indices, strict=True)}
-    if len(signs) > 1 or signs == {0.0} or not any(map(style.is_lubricated, results)):
+    if len(signs) > 1 or signs == {0.0} or not any(result.case.fluid for result in results):
         return
     ends = dict(xy=(0.13, 0.9), xytext=(0.02, 0.9), xycoords="axes fraction", textcoords="axes fraction")
     if signs == {-1.0}:
@@ -231,11 +230,9 @@ def deformed_heights(result: Result, index: int) -> tuple[np.ndarray, np.ndarray
         profile = result.profile(side)
         if profile is not None:
             s, z, speed = profile
-            moved = speed * result.time[index]
-            if f"displacement_{side}" in result.scalars:
-                moved = np.interp(
-                    result.time[index], result.steps("time"), result.steps(f"displacement_{side}")
-                )
+            moved, name = speed * result.time[index], f"displacement_{side}"
+            if name in result.scalars:
+                moved = np.interp(result.time[index], result.steps("time"), result.steps(name))
             middle += 0.5 * sign * np.interp(result.x - moved, s, z, left=0.0, right=0.0)
     film = result.frame("film_thickness", index)
     return middle - 0.5 * film, middle + 0.5 * film

@@ -122,17 +122,11 @@ def series_colours(results: list[Result]) -> tuple[list, list[str], str | None]:
     return shades(len(results)), names or [result.path.stem for result in results], key
 
 
-def is_lubricated(result: Result) -> bool:
-    """Whether there is oil in the contact."""
-    return result.case.fluid is not None
-
-
 def speeds_at(result: Result, frame: int) -> tuple[float, float]:
     """Speeds of both surfaces at a stored frame [m/s]."""
     if "speed_1" not in result.scalars:
         return float(result.attrs["u1"]), float(result.attrs["u2"])
-    row = np.searchsorted(result.steps("step"), result.step[frame])
-    return float(result.steps("speed_1")[row]), float(result.steps("speed_2")[row])
+    return _at(result, "speed_1", frame), _at(result, "speed_2", frame)
 
 
 def hertz_at(result: Result, frame: int) -> tuple[float, float]:
@@ -140,9 +134,13 @@ def hertz_at(result: Result, frame: int) -> tuple[float, float]:
     if "load_given" not in result.scalars:
         return float(result.attrs["a"]), float(result.attrs["p0"])
     contact = result.case.contact
-    row = np.searchsorted(result.steps("step"), result.step[frame])
     modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
-    return hertz_line(float(result.steps("load_given")[row]), float(result.steps("radius")[row]), modulus)
+    return hertz_line(_at(result, "load_given", frame), _at(result, "radius", frame), modulus)
+
+
+def _at(result: Result, name: str, frame: int) -> float:
+    """Scalar of the step of a stored frame."""
+    return float(result.steps(name)[np.searchsorted(result.steps("step"), result.step[frame])])
 
 
 def conditions(results: list[Result], frames: Sequence[int] | None = None) -> str:
@@ -160,10 +158,8 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
     elif varies or case.motion:
         u1, u2 = speeds_at(result, frame or 0)
         u = 0.5 * (u1 + u2)
-        texts += [
-            f"u = {u:.4g} m/s",
-            f"slide/roll ratio {(u1 - u2) / u + 0.0:.4g}" if u else "no entrainment",
-        ]
+        ratio = f"slide/roll ratio {(u1 - u2) / u + 0.0:.4g}" if u else "no entrainment"
+        texts += [f"u = {u:.4g} m/s", ratio]
     a, p0 = (result.attrs["a"], result.attrs["p0"]) if frame is None else hertz_at(result, frame)
     texts += [f"a = {1e3 * a:.3g} mm", f"p0 = {1e-9 * p0:.3g} GPa"]
     return [*texts, f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry"]
