@@ -182,7 +182,7 @@ class Deflection:
         ndarray, shape (last - first,)
         """
         rows = np.empty(self.last - self.first)
-        deflection_rows(separation, approach, *sums, *self.form, rows)
+        deflection_rows(separation, approach, *sums, self.form, rows)
         return rows
 
     def integral(self, pressure: np.ndarray) -> np.ndarray:
@@ -192,17 +192,9 @@ class Deflection:
 
 @compiled
 def deflection_rows(
-    g: np.ndarray,
-    approach: float,
-    curvature: np.ndarray,
-    load: np.ndarray,
-    start: int,
-    coefficient: float,
-    end_coefficient: float,
-    has_last: bool,
-    rows: np.ndarray,
+    g: np.ndarray, approach: float, curvature: np.ndarray, load: np.ndarray, form: tuple, rows: np.ndarray
 ) -> None:
-    """Fill in the deflection rows.
+    """Fill in the deflection rows, shape (rows,).
 
     Parameters
     ----------
@@ -210,14 +202,11 @@ def deflection_rows(
         Separation.
     curvature, load
         See `PressureSums`.
-    start
-        Index in g of the first row's node; 0: the first node of the mesh.
-    coefficient, end_coefficient
-        `curvature_coefficient` and `end_row_coefficient` of `Deflection`.
-    has_last
-        Whether the last row belongs to the last node of the mesh.
-    rows : shape (rows,)
+    form
+        Index in g of the first row's node, 0: the first node of the mesh; `curvature_coefficient` and
+        `end_row_coefficient` of `Deflection`; whether the last row is that of the last node of the mesh.
     """
+    start, coefficient, end_coefficient, has_last = form
     inner = len(rows) - has_last
     if start == 0:
         rows[0] = end_coefficient * (g[0] - approach) + load[0]

@@ -19,12 +19,10 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact import contact_model, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads, directional_derivative
-from ehlpetsc.discretisation.deflection import Deflection, PressureSums, deflection_rows
-from ehlpetsc.discretisation.finite_volumes import reynolds_product
+from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
+from ehlpetsc.discretisation.deflection import Deflection, PressureSums
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
@@ -116,7 +114,7 @@ class EHLProblem:
         self._parabola = 0.5 * self.x[self.window] ** 2
         self.inlet_film = None
         if self.fluid is None:
-            self.reynolds = NoOil(first, last, self.window.start)
+            self.reynolds: NoOil | Reynolds = NoOil(first, last, self.window.start)
         else:
             self.reynolds = Reynolds(scales, film_scale, first, last, self.window.start)
             if self.fluid.inlet_film is not None:
@@ -190,48 +188,3 @@ class EHLProblem:
                 inputs.conditions.load / self.scales.load
             )
         return Evaluation(model, state, residual, derivatives)
-
-
-@compiled
-def jacobian_rows(
-    by: np.ndarray,
-    derivatives: np.ndarray,
-    nodes: np.ndarray,
-    v_h00: float,
-    curvature: np.ndarray,
-    load: np.ndarray,
-    start: int,
-    coefficient: float,
-    end_coefficient: float,
-    has_last: bool,
-    change: np.ndarray,
-    rows: np.ndarray,
-) -> None:
-    """Fill in the local rows of the Jacobian times a vector.
-
-    Parameters
-    ----------
-    by : shape (4, 2, window)
-        :meth:`.contact.node_state.NodeState.derivatives`.
-    derivatives
-        As in :class:`Evaluation`.
-    nodes : shape (window, 2)
-        q and w of the vector at the nodes of the window.
-    curvature, load
-        `PressureSums` of the change of pressure.
-    start, coefficient, end_coefficient, has_last
-        See :func:`.deflection.deflection_rows`.
-    change : shape (3, window)
-        Work array for the changes of Reynolds unknown, film and separation.
-    rows
-        Result, interleaved; shape of the local part of the vector.
-    """
-    for k in range(3):
-        directional_derivative(by[k + 1], nodes, 0, change[k])
-    local = 2 * len(derivatives)
-    deflection_rows(
-        change[2], v_h00, curvature, load, start, coefficient, end_coefficient, has_last, rows[0:local:2]
-    )
-    reynolds_product(derivatives, change[0], change[1], start, rows[1:local:2])
-    if len(rows) > local:
-        rows[local] = load[2]

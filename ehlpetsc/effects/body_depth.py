@@ -8,6 +8,7 @@ kept in the record; depths added during the pass are not hidden.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 class BodyDepth(Effect):
     """Effect whose record has `depth` and `hidden`, the part of the depth that is not in the gap."""
 
-    def start(self, before: Any | None = None, **entries) -> Any:
+    def start(self, before: Any | None = None, **entries: Any) -> Any:
         """Depth zero with further entries of the record, or the record of the previous pass."""
         if before is None:
             zero = BodyFields.zero(self.scene.scales.dx)
@@ -47,10 +48,10 @@ class BodyDepth(Effect):
         return dict(zip(self.fields, self.in_gap(record, step), strict=True)), {}
 
     def on_surfaces(
-        self, record: Any, points: tuple[np.ndarray | None, np.ndarray | None]
-    ) -> dict[str, tuple[np.ndarray | None, np.ndarray | None]]:
+        self, record: Any, points: Sequence[np.ndarray | None]
+    ) -> dict[str, Sequence[np.ndarray | None]]:
         """Depth along both surfaces."""
-        return {name: self.scene.mesh_on_bodies.at_points(record.depth, points) for name in self.surface}
+        return dict.fromkeys(self.surface, self.scene.mesh_on_bodies.at_points(record.depth, points))
 
     def _ahead_of_profiles(self, depth: BodyFields) -> BodyFields:
         """Part of the depths of earlier passes ahead of the profiles, `BodyFields`."""

@@ -113,7 +113,7 @@ class Effect:
     """
 
     name = ""
-    record = NoRecord
+    record: type = NoRecord
     table: KeyTable | None = None
     moves_with_surfaces = False
     fields: dict = {}
@@ -176,7 +176,7 @@ class Effect:
 
     def on_surfaces(
         self, record: Any, points: Sequence[np.ndarray | None]
-    ) -> dict[str, tuple[np.ndarray | None, np.ndarray | None]]:
+    ) -> dict[str, Sequence[np.ndarray | None]]:
         """Values of the quantities `surface` at points of surfaces 1 and 2.
 
         Parameters
@@ -193,7 +193,7 @@ class Effect:
 
 def flat(record: Any, name: str) -> dict[str, Any]:
     """Fields of a record, and of records in it, by dotted names."""
-    values = {}
+    values: dict[str, Any] = {}
     for key, value in record._asdict().items():
         inner = f"{name}.{key}"
         values |= flat(value, inner) if hasattr(value, "_asdict") else {inner: value}

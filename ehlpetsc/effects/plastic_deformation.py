@@ -61,9 +61,9 @@ class PlasticDeformation(BodyDepth):
         """Whether the solids yield."""
         return case.contact.yield_pressure is not None
 
-    def start(self, before: PlasticRecord | None = None) -> PlasticRecord:
+    def start(self, before: PlasticRecord | None = None, **entries: Any) -> PlasticRecord:
         """No deformation, or the deformation of the previous pass."""
-        return super().start(before, added=np.zeros(self.scene.scales.nx))
+        return super().start(before, added=np.zeros(self.scene.scales.nx), **entries)
 
     def accept(self, record: PlasticRecord, solution: Solution, step: Step) -> PlasticRecord:
         """Add the depth of the step to both bodies."""

@@ -17,8 +17,6 @@ and with the preconditioner of this program.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from petsc4py import PETSc
 
@@ -31,74 +29,35 @@ MAX_IT = 100  # of a solve
 CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences is right to as many digits
 
 
-class Basis(NamedTuple):
-    """Vectors and numbers of a solve.
-
-    Attributes
-    ----------
-    vectors
-        v, shape (MAX_IT + 1, size); z, (MAX_IT, size); products of the vectors, local parts of each rank,
-        (ranks, MAX_IT + 2); norms of the residuals, (MAX_IT + 1,).
-    numbers
-        Columns of the triangular matrix, shape (MAX_IT, MAX_IT + 1); cosines and sines, (MAX_IT, 2); rotated
-        right-hand side, (MAX_IT + 1,), whose last number is the residual.
-    """
-
-    vectors: tuple
-    numbers: tuple
-
-    @classmethod
-    def of(cls, size: int, ranks: int) -> Basis:
-        """Room for vectors of a local size on so many ranks."""
-        sums, norms = np.zeros((ranks, MAX_IT + 2)), np.zeros(MAX_IT + 1)
-        vectors = np.empty((MAX_IT + 1, size)), np.empty((MAX_IT, size)), sums, norms
-        numbers = np.zeros((MAX_IT, MAX_IT + 1)), np.zeros((MAX_IT, 2)), np.zeros(MAX_IT + 1)
-        return cls(vectors, numbers)
-
-
 class FlexibleGMRES:
     """Context of PETSc's Python Krylov method."""
-
-    def __init__(self) -> None:
-        self._size: int = None
-        self._basis: Basis = None
 
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve from zero."""
         operator, (*tolerances, max_it) = ksp.getOperators()[0].getPythonContext(), ksp.getTolerances()
-        factors, halo = operator.factors, operator.halo
-        if self._size != operator.size:
-            self._size, self._basis = operator.size, Basis.of(operator.size, len(halo.messages))
-        basis = self._basis
-        v, _, _, norms = basis.vectors
-        v[0] = 0.0
-        v[0, operator.active] = b.array_r
-        system = *operator.linearisation, *halo, *factors.lu.factors, factors.units
-        number = iterations(*basis, *system, min(max_it, MAX_IT), *tolerances)
-        for k, norm in enumerate(norms[: number + 1].tolist()):
+        lu, limits = operator.factors.lu, (min(max_it, MAX_IT), *tolerances)
+        solution = np.zeros(operator.size)
+        solution[operator.active] = b.array_r
+        norms = iterations(solution, *operator.linearisation, *operator.halo[1:], *lu.factors, limits)
+        for k, norm in enumerate(norms.tolist()):
             if not np.isfinite(norm):
                 norm, reason = np.inf, PETSc.KSP.ConvergedReason.DIVERGED_NANORINF  # PETSc refuses nan
             else:
                 reason = ksp.callConvergenceTest(k, norm)
             ksp.logConvergenceHistory(norm)
             ksp.monitor(k, norm)
-        ksp.setIterationNumber(number)
+        ksp.setIterationNumber(len(norms) - 1)
         ksp.setResidualNorm(norm)
         ksp.setConvergedReason(reason or PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
-        x.array[:] = v[0, operator.active]
+        x.array[:] = solution[operator.active]
 
 
 @compiled
 def iterations(
-    vectors: tuple,
-    numbers: tuple,
+    b: np.ndarray,
     state: tuple,
-    changes: tuple,
-    collective: tuple,
-    load_weights: np.ndarray,
-    messages: np.ndarray,
-    window: np.ndarray,
-    rank: int,
+    work: tuple,
+    buffers: tuple,
     matrices: tuple,
     pressures: tuple,
     place: tuple,
@@ -106,44 +65,43 @@ def iterations(
     cuts: tuple,
     border: tuple,
     room: tuple,
-    units: np.ndarray,
-    max_it: int,
-    rtol: float,
-    atol: float,
-    divtol: float,
-) -> int:
-    """Replace the right-hand side, the first v, by the solution to PETSc's tolerances; collective.
+    limits: tuple,
+) -> np.ndarray:
+    """Replace the right-hand side b by the solution to PETSc's tolerances; collective.
 
     Parameters
     ----------
-    vectors, numbers
-        Of a `Basis`.
-    state, changes
-        Of a `Linearisation`.
-    collective, load_weights, messages, window, rank, matrices, pressures
+    state, work
+        As of :func:`.jacobian.jacobian_product`.
+    buffers, matrices, pressures
         Of a `Halo`.
     place, lu, cuts, border, room
-        Of `RankFactors`.
-    units
-        As of :func:`.distributed_lu.solve`.
+        `factors` of a `DistributedLU`; one by one, see :func:`.ranks.collective`.
+    limits
+        Iterations, relative and absolute tolerance, divergence tolerance.
 
     Returns
     -------
-    int
-        Number of iterations.
+    ndarray
+        Norms of the residual, from the right-hand side's on.
     """
-    v, z, sums, norms = vectors
-    halo = collective, load_weights, messages, window, rank, matrices, pressures
+    (collective, rank, _), (max_it, rtol, atol, divtol) = place, limits
+    halo, factors = ((collective, rank), buffers, matrices, pressures), (place, lu, cuts, border, room)
+    v, z, norms = np.empty((max_it + 1, len(b))), np.empty((max_it, len(b))), np.zeros(max_it + 1)
+    sums = np.zeros((len(buffers[1]), MAX_IT + 2))  # products of the vectors, local parts of each rank
+    # columns of the triangular matrix; cosines and sines; rotated right-hand side, last number the residual
+    numbers = np.zeros((max_it, max_it + 1)), np.zeros((max_it, 2)), np.zeros(max_it + 1)
+    v[0] = b
     new = 0
     while True:
         if new > 0:
-            solve(place, lu, cuts, border, room, v[new - 1], units, z[new - 1])
-            jacobian_product(state, changes, halo, z[new - 1], v[new])
+            solve(factors, v[new - 1], z[new - 1])
+            jacobian_product(state, work, halo, z[new - 1], v[new])
         norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
         norms[new] = least_residual(numbers, new, norm)
         if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == max_it:
-            combine(vectors, numbers, new)
-            return new
+            combine(z, numbers, new, b)
+            return norms[: new + 1]
         new += 1
 
 
@@ -197,12 +155,12 @@ def least_residual(numbers: tuple, new: int, norm: float) -> float:
 
 
 @compiled
-def combine(vectors: tuple, numbers: tuple, number: int) -> None:
-    """Replace the first v by the sum of so many vectors z that leaves the least residual."""
-    (v, z, _, _), (hessenberg, _, right) = vectors, numbers
+def combine(z: np.ndarray, numbers: tuple, number: int, solution: np.ndarray) -> None:
+    """Fill in the sum of so many vectors z that leaves the least residual."""
+    hessenberg, _, right = numbers
     factors = right[:number].copy()
     for k in range(number - 1, -1, -1):
         factors[k] /= hessenberg[k, k]
         for i in range(k):
             factors[i] -= hessenberg[k, i] * factors[k]
-    np.dot(factors, z[:number], out=v[0])
+    np.dot(factors, z[:number], out=solution)

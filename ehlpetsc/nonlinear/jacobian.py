@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from copy import copy
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -17,9 +17,9 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
-from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation, jacobian_rows
-from ehlpetsc.discretisation.finite_volumes import STENCIL
+from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE, deflection_rows
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
+from ehlpetsc.discretisation.finite_volumes import STENCIL, reynolds_product
 from ehlpetsc.discretisation.unknowns import (
     n_dofs,
     nodes_of_w,
@@ -76,7 +76,7 @@ class JacobianOperator:
         self.state: Any = None
         self.reynolds_derivatives: np.ndarray = None
         self.size = n_dofs(problem.local) + problem.load_is_local
-        self._work = np.empty(problem.local), np.empty((3, len(halo.window)))
+        self._work = np.empty(problem.local), np.empty((3, len(halo.buffers[2])))
 
     def linearise(self, evaluation: Evaluation) -> None:
         """Set the point of linearisation."""
@@ -87,11 +87,9 @@ class JacobianOperator:
         self._derivatives = self.state.derivatives(), self.reynolds_derivatives
 
     @property
-    def linearisation(self) -> Linearisation:
-        """`Linearisation` of the unknowns in the system."""
-        return Linearisation(
-            (*self._derivatives, self.inactive_nodes, self.problem.deflection.form), self._work
-        )
+    def linearisation(self) -> tuple[tuple, tuple]:
+        """State and work arrays of :func:`jacobian_product`."""
+        return (*self._derivatives, self.inactive_nodes, self.problem.deflection.form), self._work
 
     def mult(self, mat: PETSc.Mat, v: PETSc.Vec, out: PETSc.Vec) -> None:
         """PETSc's product."""
@@ -214,10 +212,11 @@ def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> 
     return matrix
 
 
-class Linearisation(NamedTuple):
-    """Coefficients of the product with the Jacobian, and work arrays.
+@compiled
+def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out: np.ndarray) -> None:
+    """Fill in the local rows of the product with a vector, zero in inactive rows; collective.
 
-    Attributes
+    Parameters
     ----------
     state
         :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the Reynolds
@@ -225,26 +224,18 @@ class Linearisation(NamedTuple):
         :func:`.deflection.deflection_rows`.
     work
         Work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3, window).
-    """
-
-    state: tuple
-    work: tuple
-
-
-@compiled
-def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out: np.ndarray) -> None:
-    """Fill in the local rows of the product with a vector, zero in inactive rows; collective.
-
-    Parameters
-    ----------
-    state, work
-        Fields of a `Linearisation`.
     halo
-        Fields of a `ranks.Halo`.
+        A `ranks.Halo` as a plain tuple.
     """
     (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
-    directional_derivative(by[0], v[: 2 * len(pressure)].reshape(len(pressure), 2), form[0], pressure)
-    nodes, h00, curvature, load = exchange_unknowns(*halo, v, pressure, False)
-    jacobian_rows(by, derivatives, nodes, h00, curvature, load, *form, change, out)
+    local = 2 * len(derivatives)
+    directional_derivative(by[0], v[:local].reshape(len(pressure), 2), form[0], pressure)
+    nodes, h00, curvature, load = exchange_unknowns(*halo, (v, pressure, False))
+    for k in range(3):
+        directional_derivative(by[k + 1], nodes, 0, change[k])
+    deflection_rows(change[2], h00, curvature, load, form, out[0:local:2])
+    reynolds_product(derivatives, change[0], change[1], form[0], out[1:local:2])
+    if len(out) > local:
+        out[local] = load[2]
     for i in inactive_nodes:
         out[2 * i + 1] = 0.0

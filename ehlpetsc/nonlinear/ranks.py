@@ -30,22 +30,17 @@ class Halo(NamedTuple):
 
     Attributes
     ----------
-    collective
-        As of :func:`collective`.
-    load_weights : shape (3, local nodes)
-        As of `deflection.Deflection`.
-    messages : shape (ranks, size)
-    window : shape (window, 2)
-        Room for the unknowns of the window.
-    rank, matrices, room
+    place
+        :func:`collective` and the rank.
+    buffers
+        `load_weights` of `deflection.Deflection`; messages, shape (ranks, size); unknowns of the window,
+        (window, 2).
+    matrices, room
         Of a `curvature_product.Blocks`.
     """
 
-    collective: tuple
-    load_weights: np.ndarray
-    messages: np.ndarray
-    window: np.ndarray
-    rank: int
+    place: tuple
+    buffers: tuple
     matrices: tuple
     room: tuple
 
@@ -69,32 +64,21 @@ class Halo(NamedTuple):
         blocks = Blocks.of(problem.deflection.curvature, cuts, ranks.rank, tolerance)
         messages = np.zeros((ranks.size, BEHIND_LOAD + blocks.message_size))
         window = np.empty((problem.window.stop - problem.window.start, 2))
-        return cls(collective(ranks), problem.deflection.load_weights, messages, window, *blocks)
+        return cls(
+            (collective(ranks), ranks.rank), (problem.deflection.load_weights, messages, window), *blocks[1:]
+        )
 
 
 @compiled
-def exchange_unknowns(
-    collective: tuple,
-    load_weights: np.ndarray,
-    messages: np.ndarray,
-    window: np.ndarray,
-    rank: int,
-    matrices: tuple,
-    room: tuple,
-    vector: np.ndarray,
-    pressure: np.ndarray,
-    flag: bool,
-) -> tuple:
+def exchange_unknowns(place: tuple, buffers: tuple, matrices: tuple, room: tuple, local: tuple) -> tuple:
     """Unknowns at the nodes of the window, and sums over all pressures.
 
     Parameters
     ----------
-    collective, load_weights, messages, window, rank, matrices, room
+    place, buffers, matrices, room
         Of a `Halo`.
-    vector
-        Local unknowns, interleaved; h00 last on the last rank.
-    pressure
-        Of the local nodes.
+    local
+        Local unknowns, interleaved, h00 last on the last rank; pressures of the local nodes; flag.
 
     Returns
     -------
@@ -106,6 +90,7 @@ def exchange_unknowns(
     load : ndarray, shape (4,)
         As of `deflection.PressureSums`, and the number of ranks with the flag.
     """
+    (collective, rank), (load_weights, messages, window), (vector, pressure, flag) = place, buffers, local
     mine, last, local_unknowns = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)]
     np.dot(load_weights, pressure, out=mine[LOAD : LOAD + 3])
     mine[LOAD + 3] = flag

@@ -166,7 +166,7 @@ class TwoFields:
         with events.RESIDUAL:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
-            nodes, h00, curvature, load = exchange_unknowns(*self.halo, *local_data)
+            nodes, h00, curvature, load = exchange_unknowns(*self.halo, local_data)
             (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
             self._evaluation = self.problem.evaluate(
                 Unknowns(q, w, h00), self.inputs, sums, self.temperatures

@@ -30,15 +30,16 @@ class ContactModel:
         Whether a bounded system is solved without its bound first, where the guess is clear of it.
     bound_tolerance : float
         Tolerance of the active set: films this close to the bound count as on it, as SNES has it.
-    yield_pressure : float
-        In p0; inf for elastic solids.
+    yield_pressure, compliance : float
+        In p0, inf for elastic solids; depth over the excess in a^2/R per p0.
     """
 
     minimum_film = 0.0
-    lower_bound = None
+    lower_bound: float | None = None
     starts_unconstrained = False
     bound_tolerance = 0.0
     yield_pressure = np.inf
+    compliance = 0.0
 
     # --- unknowns -----------------------------------------------------------------------------------------
 

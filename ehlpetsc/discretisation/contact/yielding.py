@@ -34,7 +34,7 @@ ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method lo
 HARDENING = 1.0
 
 
-class Yielding:
+class Yielding(ContactModel):
     """State and linearisation of models whose nodes may yield, all at once too."""
 
     def at_yield_pressure(self, elastic: NodeState, plastic: PlasticState, solids: np.ndarray) -> NodeState:

@@ -84,7 +84,7 @@ class Heat(Effect):
         walls = [bulk * ones for bulk in steps.bulk]
         film = steps.inlet * ones
         state = film, *walls, zeros, zeros, film, zeros, film, *[zeros] * 4, np.zeros(n + 1), *[zeros] * 5
-        return HeatRecord(*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0)
+        return HeatRecord._make([*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0])
 
     def inputs(self, record: HeatRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Add the data of the film's temperature; the first steady solution is isothermal."""

@@ -56,7 +56,7 @@ class FilmHeat(NamedTuple):
     guess: np.ndarray
     walls: np.ndarray
     stored: np.ndarray
-    bodies: tuple[BodyStep, BodyStep] | None = None
+    bodies: tuple[BodyStep, ...] | None = None
 
     def with_rows(self, rows: Iterable[int], values: Iterable[np.ndarray]) -> FilmHeat:
         """Coefficients with other values in some rows of `of_nodes`."""

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -311,7 +311,7 @@ class Body:
         longest = min(length / speed + LONGEST * chi / speed**2, slow) if speed > 0.0 else slow
         self.rates, self.weights = map(np.array, exponentials(dt, max(longest, 2.0 * dt)))
         self.dt = dt
-        self._weights_of = None, None, None  # rates and step, and the weights of the step
+        self._weights_of: Any = None, None, None  # rates and step, and the weights of the step
         reach = PADDING * chi / speed / self.dx if speed > 0.0 else self.n
         self.padding = int(min(np.ceil(reach), self.n)) + 2
 

@@ -125,9 +125,8 @@ class HeatStep:
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            film = Film(
-                blank, thickness, np.ones(s.nx), record.film, *[blank] * 3, np.zeros(s.nx + 1), rubbing
-            )
+            carried = blank, blank, blank, np.zeros(s.nx + 1)
+            film = Film(blank, thickness, np.ones(s.nx), record.film, *carried, rubbing)
             source = spread = blank
         else:
             q = solution.nodes.reynolds_unknown
@@ -284,7 +283,9 @@ def mixing(function: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> n
     ndarray
         The last argument of the function.
     """
-    x, steps, residuals = start, [], []
+    x: np.ndarray = start
+    steps: list[np.ndarray] = []
+    residuals: list[np.ndarray] = []
     for _ in range(ITERATIONS):
         new = function(x)
         f = new - x

@@ -30,7 +30,6 @@ class Factors:
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm):
         self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh, self._owned = False, problem.owned
-        self.units = np.empty((2, problem.local, 2))
 
     def invalidate(self) -> None:
         """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
@@ -42,8 +41,8 @@ class Factors:
         entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
-        self.units[:] = UNITS
-        for unit in self.units:
+        self.lu.units[:] = UNITS
+        for unit in self.lu.units:
             operator.model.from_band(state, self._owned, unit)
 
 
@@ -62,5 +61,5 @@ class FarFieldBand:
         b, solution = np.zeros(operator.size), np.empty(operator.size)
         b[operator.active] = x.array_r
         with events.BACK_SOLVE:
-            solve(*operator.factors.lu.factors, b, operator.factors.units, solution)
+            solve(operator.factors.lu.factors, b, solution)
         y.array[:] = solution[operator.active]

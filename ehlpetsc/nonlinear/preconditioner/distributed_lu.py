@@ -16,8 +16,6 @@ exchange them with the values at the cuts: once a solve.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from mpi4py import MPI
 
@@ -57,8 +55,19 @@ class DistributedLU:
 
     Attributes
     ----------
-    factors : RankFactors
-        There from the first factorisation on.
+    factors : tuple
+        From the first factorisation on, for compiled solves:
+
+        * place: :func:`.ranks.collective`, the rank, and whether it is the first or the last one of several;
+        * factors of a `BlockLU`;
+        * cuts: numbers of the unknowns at the cuts that other ranks take; dense rows (BORDER, size); columns
+          G, or of an outer rank W, shape (unknowns taken of others, width), under the last `width` unknowns;
+          :meth:`.reduced_system.ReducedSystem.rows_of_inverse`;
+        * border: numbers of the unknowns of the local nodes; columns z, shape (2, size); inverse of the
+          system of three unknowns, (BORDER, BORDER);
+        * room: shape (size,); messages (ranks, CUT + BORDER); `units`.
+    units : ndarray, shape (2, nodes, 2)
+        Unknowns of the solution by each of both of the band, at each node.
     """
 
     def __init__(self, band: BandedJacobian, approach_coefficient: float, ranks: MPI.Comm):
@@ -75,10 +84,11 @@ class DistributedLU:
         self._reduced = ReducedSystem(LEFT, CUT - LEFT, ranks.rank, ranks.size)
         self._messages = np.zeros((ranks.size, CUT + 2, CUT + BORDER))
         self._place = collective(ranks), ranks.rank, self._is_outer
-        self._ends, self._border_inverse = np.zeros((2, band.size)), np.zeros((BORDER, BORDER))
+        self._ends = np.zeros((2, band.size))
         is_end = np.array([ranks.rank == 0, ranks.rank == ranks.size - 1])
         self._end_dofs = np.where(is_end, band.dofs[[0, -2]], -1)
-        self._room = np.zeros(band.size), np.zeros((ranks.size, CUT + BORDER))
+        self.units = np.empty((2, len(band.nodes), 2))
+        self._room = np.zeros(band.size), np.zeros((ranks.size, CUT + BORDER)), self.units
         self._inactive_nodes = None
 
     def factor(self, entries: BandEntries, inactive_nodes: np.ndarray, anew: bool = True) -> None:
@@ -96,12 +106,11 @@ class DistributedLU:
             dense = dense.copy()
             backward_transposed(self._lu.factors[2], dense)
         g = self._columns_at_cuts(columns[0, :LEFT], columns[-1, LEFT + SIZE :])
-        cuts, coupled = (self._interface, g, dense), (self._place, self._lu.factors)
-        begin_coupling(*coupled, *cuts, self._ends, self._end_dofs, self._messages)
-        cuts = (*cuts, self._reduced.rows_of_inverse(self._messages))
-        coefficient, inverse = self._approach_coefficient, self._border_inverse
-        finish_coupling(*coupled, cuts, self._ends, self._messages, coefficient, inverse)
-        self.factors = RankFactors(*coupled, cuts, (self.band.dofs, self._ends, inverse), self._room)
+        place, lu, begun = self._place, self._lu.factors, (self._interface, dense, g)
+        begin_coupling(place, lu, begun, self._ends, self._end_dofs, self._messages)
+        cuts = *begun, self._reduced.rows_of_inverse(self._messages)
+        inverse = finish_coupling(place, lu, cuts, self._ends, self._messages, self._approach_coefficient)
+        self.factors = place, lu, cuts, (self.band.dofs, self._ends, inverse), self._room
 
     def _columns_at_cuts(self, left: int, right: int) -> tuple:
         """G of an inner rank, W of the group at the cut of an outer one."""
@@ -146,47 +155,16 @@ def are_close(entries: np.ndarray, before: np.ndarray, tolerance: float) -> bool
     return True
 
 
-class RankFactors(NamedTuple):
-    """Factors on one rank, as compiled solves take them.
-
-    Attributes
-    ----------
-    place
-        :func:`.ranks.collective`, the rank, and whether it is the first or the last one of several.
-    lu
-        Factors of a `BlockLU`.
-    cuts
-        Numbers of the unknowns at the cuts that other ranks take; columns G, or of an outer rank W, shape
-        (unknowns taken of others, width), under the last `width` unknowns; dense rows (BORDER, size);
-        :meth:`.reduced_system.ReducedSystem.rows_of_inverse`.
-    border
-        Numbers of the unknowns of the local nodes; columns z, shape (2, size); inverse of the system of three
-        unknowns, (BORDER, BORDER).
-    room
-        Shape (size,), and messages (ranks, CUT + BORDER).
-    """
-
-    place: tuple
-    lu: tuple
-    cuts: tuple
-    border: tuple
-    room: tuple
-
-
 @compiled
-def begin(
-    is_outer: bool,
-    lu: tuple,
-    interface: np.ndarray,
-    dense: np.ndarray,
-    y: np.ndarray,
-    first: int,
-    message: np.ndarray,
-) -> None:
-    """Begin to solve in place for y, zero before group `first`, and fill in the message to the others."""
+def begin(is_outer: bool, lu: tuple, sent: tuple, y: np.ndarray, first: int, message: np.ndarray) -> None:
+    """Begin to solve in place for y, zero before group `first`, and fill in the message to the others.
+
+    `sent` are the first two of `cuts` of `DistributedLU.factors`.
+    """
     forward(lu, y, first)
     if not is_outer:
         backward(lu, y)
+    interface, dense = sent
     message[CUT:] = np.dot(dense, y)
     for i in range(len(interface)):
         message[i] = y[interface[i]]
@@ -201,7 +179,7 @@ def finish(is_outer: bool, lu: tuple, cuts: tuple, y: np.ndarray, everyone: np.n
     ndarray, shape (BORDER,)
         Products of the dense rows with the solution.
     """
-    _, g, _, rows = cuts
+    _, _, g, rows = cuts
     taken, width = g.shape
     w = np.dot(rows, everyone.ravel())
     if taken > 0:
@@ -213,27 +191,21 @@ def finish(is_outer: bool, lu: tuple, cuts: tuple, y: np.ndarray, everyone: np.n
 
 @compiled
 def begin_coupling(
-    place: tuple,
-    lu: tuple,
-    interface: np.ndarray,
-    g: np.ndarray,
-    dense: np.ndarray,
-    ends: np.ndarray,
-    end_dofs: np.ndarray,
-    messages: np.ndarray,
+    place: tuple, lu: tuple, cuts: tuple, ends: np.ndarray, end_dofs: np.ndarray, messages: np.ndarray
 ) -> None:
     """Begin to solve for the columns z and exchange the coefficients of the reduced system; collective.
 
     Parameters
     ----------
-    place, lu, interface, g, dense, ends
-        As of `RankFactors`, with the first `cuts` one by one, and the columns z.
+    place, lu, cuts, ends
+        As of `DistributedLU.factors`, without the rows of the inverse, and the columns z.
     end_dofs : shape (2,)
         Numbers of the unknowns at the end nodes of the mesh; -1: on another rank.
     messages : shape (ranks, CUT + 2, CUT + BORDER)
     """
-    (collective, rank, is_outer), (taken, width), (_, size) = place, g.shape, ends.shape
-    mine = messages[rank]
+    (collective, rank, is_outer), (_, size) = place, ends.shape
+    mine, (interface, dense, g) = messages[rank], cuts
+    taken, width = g.shape
     for k in range(taken):
         for i in range(len(interface)):
             mine[k, i] = g[k, interface[i] - size + width]
@@ -246,30 +218,24 @@ def begin_coupling(
         first = size // LINE
         if end_dofs[k] >= 0:
             ends[k, end_dofs[k]], first = 1.0, end_dofs[k] // LINE
-        begin(is_outer, lu, interface, dense, ends[k], first, mine[CUT + k])
+        begin(is_outer, lu, cuts[:2], ends[k], first, mine[CUT + k])
     exchange(collective, messages)
 
 
 @compiled
 def finish_coupling(
-    place: tuple,
-    lu: tuple,
-    cuts: tuple,
-    ends: np.ndarray,
-    messages: np.ndarray,
-    coefficient: float,
-    inverse: np.ndarray,
-) -> None:
-    """Finish the columns z, and fill in the inverse of the system of three unknowns.
+    place: tuple, lu: tuple, cuts: tuple, ends: np.ndarray, messages: np.ndarray, coefficient: float
+) -> np.ndarray:
+    """Finish the columns z; inverse of the system of three unknowns, shape (BORDER, BORDER).
 
     Parameters
     ----------
     place, lu, cuts, ends, messages
-        As of :func:`begin_coupling`.
+        As of :func:`begin_coupling`, with the rows of the inverse.
     coefficient
         Of h00 in the deflection rows of the end nodes.
-    inverse : shape (BORDER, BORDER)
     """
+    inverse = np.empty((BORDER, BORDER))
     matrix = np.array([[1.0, 0.0, -coefficient], [0.0, 1.0, -coefficient], [0.0, 0.0, 0.0]])
     for k in range(2):
         matrix[:, k] += finish(place[2], lu, cuts, ends[k], messages[:, CUT + k].copy())
@@ -280,35 +246,25 @@ def finish_coupling(
     determinant = np.dot(matrix[0], inverse[:, 0].copy())
     if determinant != 0.0:  # a preconditioner may be off where the operator is singular, but not infinite
         inverse /= determinant
+    return inverse
 
 
 @compiled
-def solve(
-    place: tuple,
-    lu: tuple,
-    cuts: tuple,
-    border: tuple,
-    room: tuple,
-    b: np.ndarray,
-    units: np.ndarray,
-    solution: np.ndarray,
-) -> None:
+def solve(factors: tuple, b: np.ndarray, solution: np.ndarray) -> None:
     """Fill in the solution of the local (q, h, q, h, ...), and h00 on the last rank; collective.
 
     Parameters
     ----------
-    place, lu, cuts, border, room
-        Of `RankFactors`.
+    factors
+        Of a `DistributedLU`.
     b
         Right-hand side, zero in the rows that are not in the system.
-    units : shape (2, nodes, 2)
-        Unknowns of the solution by each of both of the band, at each node.
     """
-    (collective, rank, is_outer), (dofs, ends, inverse), (y, everyone) = place, border, room
+    (collective, rank, is_outer), lu, cuts, (dofs, ends, inverse), (y, everyone, units) = factors
     y[:] = 0.0
     for i in range(len(dofs)):
         y[dofs[i]] = b[i]
-    begin(is_outer, lu, cuts[0], cuts[2], y, 0, everyone[rank])
+    begin(is_outer, lu, cuts[:2], y, 0, everyone[rank])
     if len(b) > len(dofs):
         everyone[rank, -1] -= b[-1]
     exchange(collective, everyone)
