@@ -92,5 +92,15 @@ def _copy_site_files(app, failure):
 
 def setup(app):
     """Connect the table of contents and further files of the site to Sphinx."""
+    from sphinx.search.en import SearchEnglish
+
+    class Words(SearchEnglish):
+        """Indexes also the parts of a key: "hardness" finds `asperity_hardness`."""
+
+        def split(self, input):
+            words = super().split(input)
+            return words + [part for word in words if "_" in word for part in word.split("_")]
+
+    app.add_search_language(Words)
     app.connect("source-read", _with_contents)
     app.connect("build-finished", _copy_site_files)
