@@ -1,26 +1,33 @@
-"""Gear run along the path of contact: scalars of the steps, friction and losses, damage of both flanks."""
+"""Gear runs along the path of contact: scalars of the steps, friction and losses, damage of both flanks."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.path import gear_loss_factor, loss, mean_friction, path_of_contact
+from ehlpetsc.gears.standards import STANDARDS, values_of
+from ehlpetsc.gears.table import hertz
+from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.reader import read_result
 
+if TYPE_CHECKING:
+    from ehlpetsc.gears.standards import Rating
+
 SCALARS = (  # scalar of the steps, factor, label
     ("p_max", 1e-9, "maximum pressure\n[GPa]"),
-    ("film_central", 1e6, "mean film of the\ncontact [µm]"),
-    ("h_min", 1e6, "minimum film [µm]"),
+    ("film_central", 1e6, "mean film of\nthe contact [µm]"),
+    ("h_min", 1e6, "minimum film\n[µm]"),
     ("lambda_ratio", 1.0, "lambda ratio"),
-    ("friction_coefficient", 1.0, "friction coefficient"),
-    ("contact_share", 1.0, "share of the load\non the solids"),
-    ("film_temperature_max", 1.0, "maximum temperature\nof the film [K]"),
-    ("temperature_1_max", 1.0, "maximum temperature\nof the pinion [K]"),
-    ("temperature_2_max", 1.0, "maximum temperature\nof the wheel [K]"),
+    ("friction_coefficient", 1.0, "friction\ncoefficient"),
+    ("contact_share", 1.0, "share of load\non the solids"),
+    ("film_temperature_max", 1.0, "maximum of\nthe film [K]"),
+    ("temperature_1_max", 1.0, "maximum of\nthe pinion [K]"),
+    ("temperature_2_max", 1.0, "maximum of\nthe wheel [K]"),
 )
 AVERAGING_LENGTH = 0.02  # of the path
 FLANKS = ("pinion", "wheel")  # surfaces 1 and 2
@@ -38,18 +45,27 @@ class GearRun:
         Friction coefficient of each step.
     scalars
         Those of `SCALARS` in the result.
+    rating
+        Of the standards; None without oil or profiles.
+    damage
+        Of its post-processing, None without.
     """
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, rating: Rating | None = None) -> None:
         with read_result(file) as result:
-            gears = result.case.gears
+            gears, heat, contact = result.case.gears, result.case.heat, result.case.contact
             if gears is None:
                 raise CaseError([f"{file}: its case has no [gears] table; allowed: a gear run"])
             self.path, self.title = path_of_contact(gears.pair), result.attrs["title"]
             self.rho = result.steps("speed_1") / self.path.pair.angular_speeds[0]
             self.scalars = {name: result.steps(name) for name, _, _ in SCALARS if name in result.scalars}
             self.friction = result.steps("friction_coefficient")
+        self.modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
         self.position = self.rho - self.path.pair.points["C"]
+        self.rating, self.bulk = rating, min(heat.bulk_temperature) if heat else np.nan
+        self.standards = values_of(rating) if rating else {}
+        post = Path(file).with_suffix(".post.h5")
+        self.damage = FlankDamage(post, self.profile_offsets) if post.exists() else None
 
     @property
     def profile_offsets(self) -> tuple[float, float]:
@@ -61,20 +77,33 @@ class GearRun:
         """Friction coefficient at the samples of the path; constant beyond the ends of the run."""
         return np.interp(self.path.rho, self.rho, self.friction)
 
-    def lines(self) -> list[str]:
-        """Lines of text: extremes and losses."""
-        friction = self.friction_on_path()
-        lines = [
-            f"gear loss factor H_V {gear_loss_factor(self.path):.4f} of the load sharing",
-            f"mean friction coefficient {mean_friction(self.path, friction):.4f}",
-            f"power lost over power transmitted {1e2 * loss(self.path, friction):.3f} %",
-        ]
-        for name, factor, label in SCALARS:
-            values = self.scalars.get(name)
-            if values is not None and np.isfinite(values).any():
-                low, high = (factor * f(values) for f in (np.nanmin, np.nanmax))
-                lines.append(f"{' '.join(label.split())}: {low:.4g} to {high:.4g}")
-        return lines
+    def mean(self, name: str) -> float:
+        """Mean of a scalar along the path, nan without."""
+        values = self.scalars.get(name, np.full_like(self.rho, np.nan))
+        return float(0.5 * (values[1:] + values[:-1]) @ np.diff(self.rho) / np.ptp(self.rho))
+
+    def figures(self) -> dict[str, float]:
+        """Figures of the run by name and unit, those of standards under their names; nan without."""
+        friction, nothing = self.friction_on_path(), np.full(len(self.rho), np.nan)
+        pressure, film = (self.scalars.get(name, nothing) for name in ("p_max", "film_central"))
+        hottest = [self.scalars.get(f"temperature_{side}_max", nothing).max() for side in "12"]
+        roughness = self.rating.roughness if self.rating and self.rating.roughness else np.nan
+        figures = {
+            "mean film": 1e6 * self.mean("film_central"),
+            "minimum lambda_GF": float(self.averaged(film).min() / roughness),
+            "maximum flash temperature": max(hottest) - self.bulk,
+            "mean friction coefficient": mean_friction(self.path, friction),
+            "loss factor H_V": gear_loss_factor(self.path),
+            "power lost": 1e2 * loss(self.path, friction),
+            "bulk temperature": self.bulk,
+            "Hertz pressure at A [GPa]": 1e-9 * hertz(self.path, self.modulus)[1][0],
+            "maximum pressure at A, mean over 1 % of the path [GPa]": 1e-9 * self.averaged(pressure)[0],
+            "maximum pressure [GPa]": 1e-9 * pressure.max(),
+            "minimum film [µm]": 1e6 * float(self.scalars["h_min"].min()),
+            "mean share of the load on the solids": self.mean("contact_share"),
+        }
+        maxima = self.damage.maxima() if self.damage else {}
+        return figures | {f"maximum damage of the {flank}": value for flank, (value, *_) in maxima.items()}
 
     def averaged(self, values: np.ndarray) -> np.ndarray:
         """Means over `AVERAGING_LENGTH` of the path around each step."""
@@ -83,6 +112,24 @@ class GearRun:
         first = np.searchsorted(self.rho, self.rho - reach)
         last = np.searchsorted(self.rho, self.rho + reach, side="right")
         return (total[last] - total[first]) / (last - first)
+
+
+def lines(runs: list[GearRun]) -> list[str]:
+    """Lines of text: figures of all runs, and of the standards beside them."""
+    texts = [f"{run.title}: {run.path.pair.torque:g} N m, {run.path.pair.rule}" for run in runs]
+    all_figures = [run.figures() for run in runs]
+    for name in dict.fromkeys(name for figures in all_figures for name in figures):
+        values = [figures.get(name, np.nan) for figures in all_figures]
+        if not np.isfinite(values).any():
+            continue
+        text = f"{name} {', '.join(f'{value:.4g}' for value in values)}"
+        if name in STANDARDS:
+            entry = STANDARDS[name]
+            beside = [entry.reduction(run.standards[name]) for run in runs if name in run.standards]
+            text += f" {entry.unit}" if entry.unit else ""
+            text += f"; {', '.join(f'{value:.4g}' for value in beside)} by {entry.source}" if beside else ""
+        texts.append(text)
+    return texts + [line for run in runs if run.damage for line in run.damage.lines()]
 
 
 class FlankDamage:
@@ -106,15 +153,19 @@ class FlankDamage:
         self.arcs = [begin - post.s[::-1] for begin in profile_offsets]
         self.damage = [post.damage[side][:, ::-1] if side in post.damage else None for side in ("1", "2")]
 
+    def maxima(self) -> dict[str, tuple[float, float, float]]:
+        """Maximum damage of each flank, its arc length and depth [m]."""
+        found = {}
+        for flank, damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
+            if damage is not None and np.isfinite(damage).any():
+                depth, point = np.unravel_index(np.nanargmax(damage), damage.shape)
+                found[flank] = float(damage[depth, point]), float(arc[point]), float(self.depths[depth])
+        return found
+
     def lines(self) -> list[str]:
         """Lines of text: maximum damage of each flank with its position and depth."""
-        lines = []
-        for flank, damage, arc in zip(FLANKS, self.damage, self.arcs, strict=True):
-            if damage is None or not np.isfinite(damage).any():
-                continue
-            depth, point = np.unravel_index(np.nanargmax(damage), damage.shape)
-            lines.append(
-                f"largest damage of the {flank}: {damage[depth, point]:.3g} at an arc length of "
-                f"{1e3 * arc[point]:.3f} mm from A, {1e6 * self.depths[depth]:.1f} um deep"
-            )
-        return lines
+        return [
+            f"maximum damage of the {flank}: {damage:.3g} at an arc length of {1e3 * arc:.3f} mm from A, "
+            f"{1e6 * depth:.1f} µm deep"
+            for flank, (damage, arc, depth) in self.maxima().items()
+        ]

@@ -6,32 +6,32 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.declarations import KeyTable
+from ehlpetsc.base.units import UnitFault, factor
 from ehlpetsc.case.checking import Tables, check, is_number
 from ehlpetsc.case.tables import Case
-from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION
+from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.physics.conditions_table import ConditionsTable
 
-from ehlpetsc.base.units import UnitFault, factor
-
-SI = {key: OPERATION.keys[key].unit for key in COLUMNS}
+Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 
 class TableFault(Exception):
     """A table of conditions cannot be used; the message names the reason and the line."""
 
 
-def read_table(path: Path) -> tuple[dict[str, list[float]], list[int]]:
-    """Columns of a CSV file in SI units, by key of `COLUMNS`, and the line number of each row.
+def read_table(path: Path, table: KeyTable, names: Columns) -> tuple[dict[str, list[float]], list[int]]:
+    """Columns of a CSV file in SI units, by key of a table, and the line number of each row.
 
     Raises `TableFault`.
     """
@@ -42,16 +42,16 @@ def read_table(path: Path) -> tuple[dict[str, list[float]], list[int]]:
     separator = next((sign for sign in ";,\t" if sign in rows[0][1]), None)
     head, keys, factors = rows[0], None, {}
     if not _numbers(head[1], separator):
-        factors, rows = _factors(*head, separator), rows[1:]
+        factors, rows = _factors(*head, separator, table, names), rows[1:]
         keys = list(factors)
     columns, lines = [], []
     for number, line in rows:
         values = _numbers(line, separator)
-        if keys is None and len(values) == len(COLUMNS):
-            keys = list(COLUMNS)
+        if keys is None and len(values) == len(names):
+            keys = list(names)
         if keys is None:
-            names = ", ".join(names[0] for names in COLUMNS.values())
-            raise TableFault(f"line {number}: no column names; allowed: a first line with some of {names}")
+            allowed = ", ".join(spellings[0] for spellings in names.values())
+            raise TableFault(f"line {number}: no column names; allowed: a first line with some of {allowed}")
         if len(values) != len(keys):
             raise TableFault(f"line {number}: {shown(line)}: allowed: {len(keys)} numbers")
         columns.append(values)
@@ -88,21 +88,23 @@ def _numbers(line: str, separator: str | None) -> list[float]:
         return []
 
 
-def _factors(number: int, line: str, separator: str | None) -> dict[str, float]:
+def _factors(
+    number: int, line: str, separator: str | None, table: KeyTable, names: Columns
+) -> dict[str, float]:
     """Factor to SI units of each column named in a line, by key; units are in brackets: ``time [us]``."""
-    key_by_name = {name: key for key, names in COLUMNS.items() for name in names}
+    key_by_name = {name: key for key, spellings in names.items() for name in spellings}
     factors = {}
     for word in line.split(separator):
         name, _, unit = word.strip(" \"'").replace("(", "[").partition("[")
         unit = unit.rstrip(")] ")
         key = key_by_name.get(" ".join(name.lower().replace("_", " ").split()))
         if key is None:
-            allowed = ", ".join(names[0] for names in COLUMNS.values())
+            allowed = ", ".join(spellings[0] for spellings in names.values())
             raise TableFault(f"line {number}: column {shown(name.strip())!r}: allowed: {allowed}")
         if key in factors:
             raise TableFault(f"line {number}: a column twice")
         try:
-            factors[key] = factor(unit or SI[key], SI[key])
+            factors[key] = factor(unit or table.keys[key].unit, table.keys[key].unit)
         except UnitFault as fault:
             raise TableFault(f"line {number}: column {shown(word.strip())!r}: {fault}") from None
     return factors
@@ -128,20 +130,24 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
     if values is None:
         return None
     if values.file is not None:
-        columns, lines = read_table(folder / values.file)
+        columns, lines = read_table(folder / values.file, OPERATION, COLUMNS)
         return _table(columns, "line", lines, tables, values.repeat)
     columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
     entries = range(1, len(columns.get("time", ())) + 1)
     return _table(columns, "entry", entries, tables, values.repeat)
 
 
-def with_columns(tables: Tables, folder: Path) -> Tables:
-    """Tables of a case with the columns of the file of `[operation]` in place of its name, as in results."""
-    operation = tables.get("operation", {})
-    if "file" not in operation:
-        return tables
-    columns = read_table(folder / operation["file"])[0]
-    return tables | {"operation": {k: v for k, v in operation.items() if k != "file"} | columns}
+FILES = {"operation": ("file", OPERATION, COLUMNS), "gears": ("load_file", GEARS, PATH_COLUMNS)}
+
+
+def with_columns(tables: Tables, folder: Path, of: Sequence[str] = tuple(FILES)) -> Tables:
+    """Tables of a case with the columns of files of conditions in place of their names, as in results."""
+    for name in of:
+        (key, table, names), given = FILES[name], tables.get(name)
+        if isinstance(given, dict) and isinstance(given.get(key), str):
+            columns = read_table(folder / given[key], table, names)[0]
+            tables = tables | {name: {k: v for k, v in given.items() if k != key} | columns}
+    return tables
 
 
 def of_gears(path: ContactPath) -> ConditionsTable:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
@@ -21,6 +24,9 @@ from ehlpetsc.physics.laws import (
     walther_constants,
 )
 from ehlpetsc.physics.oils import OILS
+
+if TYPE_CHECKING:
+    from ehlpetsc.gears.standards import Rating
 
 BY_MATERIAL = "material"
 ELASTIC = ("youngs_modulus", "poisson_ratio")
@@ -164,6 +170,55 @@ def with_layer_stiffness(case: Values) -> Values:
     longest = max(cutoffs, default=None) or LAYER_NODES * Scales.of(case).dx
     stiffness = asperity_stiffness(contact.asperity_height, longest)
     return case.copy({"contact": contact.copy({"asperity_stiffness": stiffness})})
+
+
+def has_bulk_of_losses(tables: Tables) -> bool:
+    """Whether bulk temperatures are to follow from the losses of a gear pair."""
+    heat = tables.get("heat")
+    return isinstance(heat, dict) and heat.get("bulk_temperature") == "losses"
+
+
+def rating_of(case: Values, folder: Path) -> Rating | None:
+    """Gear pair with its contact, oil and temperatures, as standards need them; None without a pair or oil.
+
+    Isothermal oils thin by their grade, or as `[heat]` takes by default; the pressure-viscosity coefficient
+    depends on temperature as in ISO/TS 6336-22.
+    """
+    from ehlpetsc.gears.path import path_of_contact
+    from ehlpetsc.gears.standards import Rating
+    from ehlpetsc.physics.flash_temperature import STEEL, Solid
+    from ehlpetsc.physics.laws import reference_temperature, viscosity
+    from ehlpetsc.physics.scales import reduced_modulus
+    from ehlpetsc.surfaces.samples import samples
+
+    if case.gears is None or case.fluid is None:
+        return None
+    fluid, heat, contact = case.fluid, case.heat, case.contact
+    reference = reference_temperature(fluid, heat)
+    solids = [STEEL, STEEL]
+    if heat is not None:
+        properties = zip(heat.conductivity, heat.density, heat.heat_capacity, strict=True)
+        solids = [Solid(*of_body) for of_body in properties]
+    bulk = 0.5 * sum(heat.bulk_temperature) if heat else reference
+    missing = dict.fromkeys(("roelands_s0", "viscosity_temperature", "reference_temperature"))
+    thermal = heat or Values(missing | {"oil_inlet_temperature": reference})
+    profiles = [case.surface.side(side) for side in ("1", "2")]
+    deviations = [samples(folder, profile).z for profile in profiles if profile]
+    roughness = sum(float(np.abs(z - z.mean()).mean()) for z in deviations) / 2.0
+
+    def relative(temperature: np.ndarray) -> np.ndarray:
+        return 1.0 + 516.0 * (1.0 / temperature - 1.0 / 311.0)
+
+    return Rating(
+        path_of_contact(case.gears.pair),
+        reduced_modulus(contact.youngs_modulus, contact.poisson_ratio),
+        roughness,
+        lambda T: fluid.viscosity * np.exp(viscosity(0.0 * T, fluid, thermal, T)[0]),
+        lambda T: fluid.pressure_viscosity * relative(T) / relative(reference),
+        bulk,
+        (heat.inlet_temperature if heat else None) or reference,
+        (solids[0].effusivity, solids[1].effusivity),
+    )
 
 
 def _removed(folder: Path, profile: Values) -> float:

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import parse_toml, plain, read_text
-from ehlpetsc.case.checking import Fault, Tables, check, in_si
+from ehlpetsc.case.checking import Fault, Tables, check, in_si, is_number
 from ehlpetsc.case.combinations import member_tables, parsed, put, series_faults, settings_of
 from ehlpetsc.case.conditions import (
     TableFault,
@@ -20,7 +20,13 @@ from ehlpetsc.case.conditions import (
     with_columns,
     with_reference_state,
 )
-from ehlpetsc.case.derived import resolve_measured_layer, with_derived, with_layer_stiffness
+from ehlpetsc.case.derived import (
+    has_bulk_of_losses,
+    rating_of,
+    resolve_measured_layer,
+    with_derived,
+    with_layer_stiffness,
+)
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, GEARS, Case
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
@@ -59,7 +65,8 @@ def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> 
     faults = _override(data, overrides)
     faults += in_si(data)
     faults += resolve_measured_layer(folder, data)
-    checked, found = _checked(folder, data, {fault.place for fault in faults})
+    base = copy.deepcopy(data) if "series" in data else data  # each member has bulk temperatures of its own
+    checked, found = _checked(folder, base, {fault.place for fault in faults})
     found += [Fault("", line) for line in profile_faults(folder, data.get("surface"), checked)]
     lines = _lines(path, faults + found)
     if checked and not lines and "series" in data:
@@ -81,16 +88,27 @@ def stored_case(text: str, overrides: Overrides = None) -> Case:
     return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
 
 
-def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[GearPair, Tables]:
-    """Gear pair of a case file, and its tables, of which only `[gears]` is checked; raises `CaseError`."""
+def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[GearPair, Tables, Case | None]:
+    """Gear pair of a case file, its tables, of which only `[gears]` is checked, and the case, None if faulty.
+
+    Raises `CaseError`.
+    """
     data = parse_toml(path, read_text(path))
     faults = _override(data, overrides) + in_si(data)
     if not isinstance(data.get("gears"), dict):
         raise CaseError([f"{path}: no [gears] table; allowed: a case with one"])
+    try:
+        data = with_columns(data, Path(path).parent, ("gears",))
+    except TableFault as error:
+        raise CaseError([f"{path}: {_file_fault(data, error).text}"]) from None
     gears, found = check(GEARS, data["gears"], "gears.", data, {fault.place for fault in faults})
     if faults + found:
         raise CaseError(_lines(path, faults + found))
-    return gears.pair, with_derived(data)
+    try:
+        case = load(path, overrides)
+    except CaseError:  # of other tables, which the path does not need
+        case = None
+    return gears.pair, with_derived(data), case
 
 
 def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Case]]:
@@ -128,14 +146,15 @@ def _checked(
     folder: Path, data: Tables, known: Collection[str] = (), is_stored: bool = False
 ) -> tuple[Any, list[Fault]]:
     """The case with its conditions over time, None with faults, and the faults of its tables."""
+    if has_bulk_of_losses(data):
+        return _checked_with_losses(folder, data, known)
     faults, conditions = [], None
     data = with_derived(data)
     try:
+        data = with_columns(data, folder, ("gears",))
         conditions = conditions_of(data, folder)
     except TableFault as error:
-        file = data["operation"].get("file")
-        place = f"operation{f'.file = {show(file)}' if file else ''}"
-        faults = [] if is_stored else [Fault("operation", f"{place}: {error}")]
+        faults = [] if is_stored else [_file_fault(data, error)]
     data = with_reference_state(data, conditions)
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append(Fault("motion", SPEEDS, "gears" in data or "operation" in data))
@@ -148,6 +167,31 @@ def _checked(
             else []
         )
     return (case if case and not faults else None), faults + found
+
+
+def _file_fault(data: Tables, error: TableFault) -> Fault:
+    name, key = ("gears", "load_file") if "gears" in data else ("operation", "file")
+    file = data[name].get(key)
+    return Fault(name, f"{name}{f'.{key} = {show(file)}' if file else ''}: {error}")
+
+
+def _checked_with_losses(folder: Path, data: Tables, known: Collection[str]) -> tuple[Any, list[Fault]]:
+    """As :func:`_checked`, with bulk temperatures from the losses of the gears, which are put into `data`."""
+    fluid, heat = data.get("fluid"), data["heat"]
+    graded = fluid.get("temperature") if isinstance(fluid, dict) else None
+    oil = heat.get("inlet_temperature") or graded or heat.get("reference_temperature")
+    if not isinstance(data.get("gears"), dict) or not is_number(oil):
+        text = 'heat.bulk_temperature = "losses": needs [gears] and the temperature of the oil, '
+        text += "heat.inlet_temperature, fluid.temperature or heat.reference_temperature"
+        return None, [Fault("heat.bulk_temperature", text)]
+    case, faults = _checked(folder, data | {"heat": heat | {"bulk_temperature": oil}}, known)
+    if case is None:
+        return None, faults
+    from ehlpetsc.gears.standards import bulk_temperatures
+
+    bulk = bulk_temperatures(rating_of(case, folder), heat_transfer=case.gears.heat_transfer)
+    heat["bulk_temperature"] = [round(value, 1) for value in bulk]
+    return _checked(folder, data, known)
 
 
 def _member_faults(path: str | PathLike, data: Tables) -> list[str]:

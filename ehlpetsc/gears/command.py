@@ -1,28 +1,40 @@
-"""Path of contact of a spur gear pair: ``ehlpetsc gears CASE.toml`` or ``ehlpetsc gears RESULT.h5``.
+"""Path of contact of a gear pair and runs along it, beside standards: ``ehlpetsc gears CASE.toml``.
 
-With a case, prints radius, load, speeds and slide/roll ratio at the points A to E of the ``[gears]`` table
-and draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. With a result,
-prints friction and losses of the mesh and draws pressure, films and friction along the path and, if
-RESULT.post.h5 exists, the damage along both flanks.
+With a case, prints radius, load, speeds, film and flash temperature at the points A to E of the ``[gears]``
+table and draws them along the path. ``--csv FILE`` writes the path as a table for ``[operation]``. With
+results, prints friction and losses of the mesh beside the standards and draws pressure, films and friction
+along the path and, if RESULT.post.h5 exists, the damage along both flanks. With the index of a series,
+draws them over the torque. ``--run RESULT.h5`` runs a case with ``bulk_temperature = "losses"`` until the
+bulk temperatures are those of its own losses.
 """
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, ProfileError
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
+
+if TYPE_CHECKING:
+    from ehlpetsc.analysis.gear_run import GearRun
+
+MAX_RUNS = 6
+MAX_CHANGE = 1.0  # K, of the bulk temperatures by the last run
 
 
 def arguments() -> CommandParser:
     """Parse the command line."""
     parser = CommandParser("gears", __doc__)
-    parser.add_argument("case", help="case file with a [gears] table, or a result of one")
+    parser.add_argument(
+        "files", nargs="+", help="case file with a [gears] table; results of one; their index"
+    )
     parser.add_argument("-o", "--output", help="picture [CASE.path.png, RESULT.gears.png]")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="the path as a table for [operation]")
+    parser.add_argument("--run", metavar="RESULT.h5", help="run the case until bulk temperatures suit losses")
     return parser
 
 
@@ -34,63 +46,99 @@ def main(words: list[str]) -> int:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the table, write picture and CSV file."""
+    from ehlpetsc.case.derived import rating_of
     from ehlpetsc.case.loading import gear_tables
     from ehlpetsc.gears.path import path_of_contact
-    from ehlpetsc.gears.table import COLUMNS, csv, hertz, rows
+    from ehlpetsc.gears.table import COLUMNS, csv, modulus_of, rows
 
-    if Path(chosen.case).suffix == ".h5":
-        return _run_of(chosen)
-    pair, case = gear_tables(chosen.case, chosen.set)
-    path = path_of_contact(pair)
-    contact = case.get("contact")
-    stresses = hertz(path, contact if isinstance(contact, dict) else {})
-    target = _picture(chosen)
+    file = Path(chosen.files[0])
+    if file.suffix in (".h5", ".json"):
+        return _compare(chosen)
+    if chosen.run:
+        return _iterate(chosen, file)
+    pair, tables, case = gear_tables(file, chosen.set)
+    path, contact = path_of_contact(pair), tables.get("contact")
+    modulus = modulus_of(contact if isinstance(contact, dict) else {})
+    rating = rating_of(case, file.parent) if case else None
+    target = _picture(chosen, "path")
     if chosen.csv is not None:
-        check_derived(
-            Path(chosen.csv), [Path(chosen.case)], (".csv", ".txt"), "--csv", ", ".join(COLUMNS).encode()
-        )
-    print("\n".join(rows(path, stresses)))
+        check_derived(Path(chosen.csv), [file], (".csv", ".txt"), "--csv", ", ".join(COLUMNS).encode())
+    print("\n".join(rows(path, modulus, rating)))
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(path).encode())
         print(chosen.csv)
     if target:
         from ehlpetsc.pictures.gears import draw
 
-        draw(path, stresses, target, str(case.get("title", chosen.case)))
+        draw(path, modulus, rating, target, str(tables.get("title", file)))
         print(target)
 
 
-def _run_of(chosen: argparse.Namespace) -> None:
-    """Print and draw a result along its path of contact."""
-    from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
-    from ehlpetsc.pictures.gears import draw_damage, draw_run
+def _compare(chosen: argparse.Namespace) -> None:
+    """Print and draw results along their paths of contact, those of an index over the torque."""
+    from ehlpetsc.analysis.gear_run import lines
+    from ehlpetsc.pictures.gears import draw_damage, draw_runs, draw_stages
+    from ehlpetsc.results.index import files_of
 
     if chosen.csv is not None:
-        raise OutputError(f"{chosen.case}: a result; allowed for --csv: a case with a [gears] table")
-    gear_run = GearRun(chosen.case)
-    post = Path(chosen.case).with_suffix(".post.h5")
-    target = _picture(chosen)
-    flanks = target and target.with_suffix(".flanks.png")
-    if flanks and post.exists():
-        check_derived(flanks, [Path(chosen.case), post], PICTURES)
-    print("\n".join(gear_run.lines()))
-    if target:
-        draw_run(gear_run, target)
-        print(target)
-    if post.exists():
-        damage = FlankDamage(post, gear_run.profile_offsets)
-        print("\n".join(damage.lines()))
-        if flanks:
-            draw_damage(damage, gear_run.path.pair, flanks, gear_run.title)
-            print(flanks)
+        raise OutputError(f"{chosen.files[0]}: a result; allowed for --csv: a case with a [gears] table")
+    files = [file for given in chosen.files for file in files_of(Path(given))]
+    runs = [_run_of(file) for file in files]
+    print("\n".join(lines(runs)))
+    is_series = any(str(given).endswith(".json") for given in chosen.files)
+    target = _picture(chosen, "stages" if is_series else "gears")
+    if target is None:
+        return
+    (draw_stages if is_series else draw_runs)(runs, target)
+    print(target)
+    if not is_series and any(run.damage for run in runs):
+        flanks = target.with_suffix(".flanks.png")
+        check_derived(flanks, files, PICTURES)
+        draw_damage([run for run in runs if run.damage], flanks)
+        print(flanks)
 
 
-def _picture(chosen: argparse.Namespace) -> Path | None:
+def _run_of(file: Path) -> GearRun:
+    from ehlpetsc.analysis.gear_run import GearRun
+    from ehlpetsc.case.derived import rating_of
+    from ehlpetsc.results.reader import read_result
+
+    with read_result(file) as result:
+        try:
+            rating = rating_of(result.case, file.parent)
+        except ProfileError:  # a profile file that is no longer beside the result
+            rating = None
+    return GearRun(file, rating)
+
+
+def _iterate(chosen: argparse.Namespace, file: Path) -> None:
+    """Run a case until the bulk temperatures are those of its computed friction."""
+    from ehlpetsc.api import solve
+    from ehlpetsc.case.loading import load
+    from ehlpetsc.gears.standards import bulk_temperatures
+
+    case = load(file, chosen.set)
+    if case.gears is None or case.heat is None:
+        raise OutputError(f"{file}: allowed for --run: a case with [gears] and [heat]")
+    bulk = case.heat.bulk_temperature
+    for number in range(1, MAX_RUNS + 1):
+        case = load(file, [*chosen.set, f"heat.bulk_temperature={[round(value, 1) for value in bulk]}"])
+        solve(case, chosen.run, overwrite=chosen.overwrite or number > 1).close()
+        run = _run_of(Path(chosen.run))
+        found = bulk_temperatures(run.rating, run.friction_on_path(), case.gears.heat_transfer)
+        used = ", ".join(f"{value:.1f}" for value in bulk)
+        print(f"run {number}: bulk temperatures {used} K; by its losses {found[0]:.1f}, {found[1]:.1f} K")
+        if max(abs(new - old) for new, old in zip(found, bulk, strict=True)) < MAX_CHANGE:
+            break
+        bulk = found
+    print(chosen.run)
+
+
+def _picture(chosen: argparse.Namespace, kind: str) -> Path | None:
     """Checked path of the picture; None: no picture."""
     if chosen.no_picture:
         return None
-    given = Path(chosen.case)
-    kind = "gears" if given.suffix == ".h5" else "path"
-    target = Path(f"{given.stem}.{kind}.png" if chosen.output is None else chosen.output)
-    check_derived(target, [Path(chosen.case)], PICTURES)
+    stem = Path(chosen.files[0]).stem.removesuffix(".series")
+    target = Path(f"{stem}.{kind}.png" if chosen.output is None else chosen.output)
+    check_derived(target, [Path(given) for given in chosen.files], PICTURES)
     return target

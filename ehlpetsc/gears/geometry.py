@@ -1,68 +1,170 @@
-r"""Involute geometry of an external spur gear pair (Niemann & Winter, Maschinenelemente 2; ISO 21771).
+r"""Involute geometry of an external cylindrical gear pair (Niemann & Winter, Maschinenelemente 2; DIN 3960).
 
-Positions on the line of action are measured from the base circle of the pinion: :math:`\rho_1`, which is the
-radius of curvature of its flank. Flank 1 belongs to the pinion, flank 2 to the wheel; the pinion drives.
+Positions on the line of action are measured in the transverse section from the base circle of the pinion:
+:math:`\rho_1`, the radius of curvature of its profile. Flank 1 belongs to the pinion, flank 2 to the wheel;
+the pinion drives.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+
+import numpy as np
 
 POINTS = ("A", "B", "C", "D", "E")
-MESH_STIFFNESS = 14e9  # Pa: single stiffness c' of steel teeth, 14 N/(mm um) of ISO 6336-1
+TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
+EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
+# compliance q' of ISO 6336-1, method B: 1, 1/z1, 1/z2, x1, x1/z1, x2, x2/z2, x1^2, x2^2 [mm um/N]
+COMPLIANCE = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
+
+
+def involute(angle: float) -> float:
+    """tan(angle) - angle [rad]."""
+    return math.tan(angle) - angle
+
+
+def angle_of(value: float) -> float:
+    """Angle [rad] whose involute function has a positive value, by Newton's method."""
+    angle = min((3.0 * value) ** (1.0 / 3.0), 1.2)
+    for _ in range(30):
+        angle -= (involute(angle) - value) / math.tan(angle) ** 2
+    return angle
 
 
 @dataclass(frozen=True)
 class GearPair:
-    """Dimensions and running conditions of a spur gear pair; pairs of values are those of pinion and wheel.
+    """Dimensions and running conditions of a gear pair; pairs of values are those of pinion and wheel.
 
     Attributes
     ----------
-    module, centre_distance, face_width
-        [m].
-    pressure_angle
-        Pressure angle of the basic rack [degrees].
-    tip_diameter
-        [m].
+    module, pressure_angle
+        Of the basic rack, in the normal section [m], [degrees].
+    centre_distance, tip_diameter
+        [m]; left out: of the play-free pair with `profile_shift`.
     torque, speed
         Torque [N m] and speed [1/min] of the pinion.
+    helix_angle
+        At the reference circle [degrees].
+    addendum, tip_clearance
+        Of the basic rack, over the module.
+    tip_radius
+        Radius of the tip edges [m].
     tip_relief
         Depth of the relief at both tips, falling linearly to none at B and D [m].
     load_sharing
-        "thirds" or "tip-relief", see :mod:`ehlpetsc.gears.load_sharing`; by default by the relief.
+        See :mod:`ehlpetsc.gears.load_sharing`; by default by relief and helix.
     mesh_stiffness
-        Single stiffness c' of a tooth pair per face width [Pa].
+        Single stiffness c' of a tooth pair per face width [Pa]; by default that of ISO 6336-1.
+    path, load
+        Positions from the pitch point [m] and load of a pair there [N/m], of a tooth contact analysis.
     """
 
     module: float
     teeth: tuple
-    centre_distance: float
-    tip_diameter: tuple
     face_width: float
     torque: float
     speed: float
+    centre_distance: float | None = None
+    tip_diameter: tuple | None = None
     pressure_angle: float = 20.0
+    helix_angle: float = 0.0
+    profile_shift: tuple | None = None
+    addendum: float = 1.0
+    tip_clearance: float = 0.25
+    tip_radius: float | None = None
     tip_relief: float = 0.0
     load_sharing: str | None = None
-    mesh_stiffness: float = MESH_STIFFNESS
+    mesh_stiffness: float | None = None
+    path: tuple | None = None
+    load: tuple | None = None
+    given: dict = field(default_factory=dict, init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        if self.profile_shift is None or not 0.0 < self.pressure_angle < 45.0:
+            return
+        names = ("centre_distance", "tip_diameter")
+        self.given.update({name: getattr(self, name) for name in names if getattr(self, name) is not None})
+        for name in names:
+            if name not in self.given:
+                object.__setattr__(self, name, getattr(self, f"play_free_{name}"))
+
+    @property
+    def play_free_centre_distance(self) -> float:
+        r"""Of the profile shift [m]: :math:`inv\,\alpha_w=inv\,\alpha_t+2\tan\alpha_n(x_1+x_2)/(z_1+z_2)`."""
+        tangent = math.tan(math.radians(self.pressure_angle))
+        value = involute(self.transverse_angle) + 2.0 * tangent * sum(self.profile_shift) / sum(self.teeth)
+        return sum(self.base_radii) / math.cos(angle_of(value)) if value > 0.0 else math.nan
+
+    @property
+    def play_free_tip_diameter(self) -> tuple[float, float]:
+        """Tips that leave the tip clearance to the root of the other gear [m]."""
+        clearance = self.tip_clearance * self.module
+        first, second = (2.0 * (self.centre_distance - clearance) - d for d in reversed(self.root_diameters))
+        return first, second
+
+    @property
+    def root_diameters(self) -> tuple[float, float]:
+        """By profile shift and basic rack [m]."""
+        dedendum = self.addendum + self.tip_clearance
+        first, second = (
+            self.transverse_module * z + 2.0 * self.module * (x - dedendum)
+            for z, x in zip(self.teeth, self.shifts, strict=True)
+        )
+        return first, second
+
+    @property
+    def shifts(self) -> tuple[float, float]:
+        """Profile shift coefficients: given, or of the play-free pair with this centre distance and tips."""
+        if self.profile_shift is not None:
+            return self.profile_shift
+        tangent = math.tan(math.radians(self.pressure_angle))
+        rise = involute(self.working_angle) - involute(self.transverse_angle)
+        both = 0.5 * rise * sum(self.teeth) / tangent
+        tips = [d - self.transverse_module * z for d, z in zip(self.tip_diameter, self.teeth, strict=True)]
+        difference = 0.5 * (tips[0] - tips[1]) / self.module
+        return 0.5 * (both + difference), 0.5 * (both - difference)
 
     @property
     def rule(self) -> str:
-        """Load sharing rule: `load_sharing`, by default according to the tip relief."""
-        return self.load_sharing or ("tip-relief" if self.tip_relief > 0.0 else "thirds")
+        """Load sharing rule: `load_sharing`, by default according to load, helix and tip relief."""
+        if self.load is not None:
+            return "load_file"
+        default = "tip-relief" if self.tip_relief > 0.0 else "stiffness" if self.helix_angle else "thirds"
+        return self.load_sharing or default
+
+    @property
+    def transverse_module(self) -> float:
+        """[m]."""
+        return self.module / math.cos(math.radians(self.helix_angle))
+
+    @property
+    def transverse_angle(self) -> float:
+        """Pressure angle in the transverse section [rad]."""
+        alpha, beta = math.radians(self.pressure_angle), math.radians(self.helix_angle)
+        return math.atan(math.tan(alpha) / math.cos(beta)) if beta else alpha
+
+    @property
+    def base_helix_angle(self) -> float:
+        r"""[rad], :math:`\sin\beta_b=\sin\beta\cos\alpha_n`."""
+        alpha, beta = math.radians(self.pressure_angle), math.radians(self.helix_angle)
+        return math.asin(math.sin(beta) * math.cos(alpha))
+
+    @property
+    def overlap_ratio(self) -> float:
+        r""":math:`\varepsilon_\beta=b\sin\beta/(\pi m_n)`."""
+        return self.face_width * math.sin(math.radians(self.helix_angle)) / (math.pi * self.module)
 
     @property
     def base_radii(self) -> tuple[float, float]:
-        r"""Base circles [m], :math:`r_b=\frac12 mz\cos\alpha`."""
-        cosine = math.cos(math.radians(self.pressure_angle))
-        return tuple(0.5 * self.module * z * cosine for z in self.teeth)
+        r"""Base circles [m], :math:`r_b=\frac12 m_tz\cos\alpha_t`."""
+        cosine = math.cos(self.transverse_angle)
+        return tuple(0.5 * self.transverse_module * z * cosine for z in self.teeth)
 
     @property
     def base_pitch(self) -> float:
-        r"""Distance of neighbouring flanks on the line of action [m], :math:`p_b=\pi m\cos\alpha`."""
-        return math.pi * self.module * math.cos(math.radians(self.pressure_angle))
+        r"""Distance of neighbouring flanks on the line of action [m], :math:`p_b=\pi m_t\cos\alpha_t`."""
+        return math.pi * self.transverse_module * math.cos(self.transverse_angle)
 
     @property
     def working_angle(self) -> float:
@@ -86,9 +188,34 @@ class GearPair:
         return omega, omega * self.teeth[0] / self.teeth[1]
 
     @property
+    def power(self) -> float:
+        """Transmitted power [W]."""
+        return self.torque * self.angular_speeds[0]
+
+    @property
     def normal_load(self) -> float:
-        r"""Load on the flanks per face width [N/m], :math:`T_1/(r_{b1}b)`."""
+        r"""Load of the mesh per length of contact across the face [N/m], :math:`T_1/(r_{b1}b)`.
+
+        Of helical gears too: both the normal load and the line are longer by :math:`1/\cos\beta_b`.
+        """
         return self.torque / self.face_width / self.base_radii[0]
+
+    @property
+    def single_stiffness(self) -> float:
+        r"""Maximum stiffness c' of a tooth pair per face width [Pa] of ISO 6336-1: steel discs.
+
+        :math:`c'=0.8\,C_B\cos\beta/q'` with the virtual tooth numbers in q', and less below 100 N/mm.
+        """
+        if self.mesh_stiffness is not None:
+            return self.mesh_stiffness
+        beta, (x1, x2) = math.radians(self.helix_angle), self.shifts
+        n1, n2 = (z / (math.cos(self.base_helix_angle) ** 2 * math.cos(beta)) for z in self.teeth)
+        terms = (1.0, 1.0 / n1, 1.0 / n2, x1, x1 / n1, x2, x2 / n2, x1 * x1, x2 * x2)
+        q = sum(c * term for c, term in zip(COMPLIANCE, terms, strict=True))
+        rack = 1.0 + 0.5 * (1.2 - self.addendum - self.tip_clearance)
+        rack *= 1.0 - 0.02 * (20.0 - self.pressure_angle)
+        tangential = 2.0 * self.torque / (self.transverse_module * self.teeth[0] * self.face_width)
+        return 0.8e9 * rack * math.cos(beta) / q * min(1.0, tangential / 100e3) ** 0.25
 
     @property
     def points(self) -> dict[str, float]:
@@ -113,22 +240,46 @@ class GearPair:
         ]
         return self.line_of_action - rho[1], rho[0]
 
-    def radius(self, rho: Any) -> Any:
-        r"""Radius of relative curvature [m], :math:`\rho_1(L-\rho_1)/L`."""
-        return rho * (self.line_of_action - rho) / self.line_of_action
+    def radius(self, rho: np.ndarray | float) -> np.ndarray | float:
+        r"""Radius of relative curvature [m], :math:`\rho_1(L-\rho_1)/(L\cos\beta_b)`, in a normal section."""
+        return rho * (self.line_of_action - rho) / (self.line_of_action * math.cos(self.base_helix_angle))
 
-    def speeds(self, rho: Any) -> tuple[Any, Any]:
-        r"""Rolling speeds of flanks 1 and 2 [m/s], :math:`\omega_i\rho_i`."""
+    def speeds(self, rho: np.ndarray | float) -> tuple[np.ndarray | float, np.ndarray | float]:
+        r"""Speeds of flanks 1 and 2 [m/s], :math:`\omega_i\rho_i`, across the line of contact."""
         omega = self.angular_speeds
         return omega[0] * rho, omega[1] * (self.line_of_action - rho)
 
-    def flank_arcs(self, rho: Any) -> tuple[Any, Any]:
+    def flank_arcs(self, rho: np.ndarray | float) -> tuple[np.ndarray | float, np.ndarray | float]:
         r"""Arc lengths on flanks 1 and 2 from A [m], :math:`|\rho_i^2-\rho_{i,A}^2|/(2r_{b,i})`.
 
         The integrals of both speeds over time.
         """
         a, (r_1, r_2), length = self.points["A"], self.base_radii, self.line_of_action
         return (rho**2 - a**2) / (2.0 * r_1), ((length - a) ** 2 - (length - rho) ** 2) / (2.0 * r_2)
+
+    def corner_gap(self, rho: np.ndarray) -> np.ndarray:
+        r"""Gap of unloaded flanks along the line of action [m]: 0 from A to E, inf where there is no flank.
+
+        Beyond, a sharp tip of one gear is at :math:`(s,\gamma)` about the centre of the other, whose flank
+        there is an involute of base radius r at :math:`\psi`: the gap is :math:`r(\gamma-\psi)`.
+        """
+        points, length, angle = self.points, self.line_of_action, self.working_angle
+        (r1, r2), gap = self.base_radii, np.zeros_like(rho)
+        ends = ((points["A"], rho, r1, r2, 1), (length - points["E"], length - rho, r2, r1, 0))
+        for end, here, flank, base, side in ends:
+            beyond, tip = np.maximum(end - here, 0.0), 0.5 * self.tip_diameter[side]
+            turned = angle - math.acos(base / tip) - beyond / base
+            x, y = self.centre_distance - tip * np.cos(turned), tip * np.sin(turned)
+            with np.errstate(invalid="ignore"):
+                roll = np.sqrt((x * x + y * y) / flank**2 - 1.0)
+            psi = (end - beyond) / flank - angle - roll + np.arctan(roll)
+            gap += np.where(beyond > 0.0, np.nan_to_num(flank * (np.arctan2(y, x) - psi), nan=np.inf), 0.0)
+        return gap
+
+    @property
+    def edge_radius(self) -> float:
+        """Radius of the tip edges [m]."""
+        return self.tip_radius or EDGE_RADIUS * self.module
 
     @property
     def partners(self) -> int:
@@ -147,24 +298,43 @@ class GearPair:
 
     def faults(self) -> list[str]:
         """Faults of the geometry, one message each, with the key."""
-        r_b = self.base_radii
-        faults = []
         if not 0.0 < self.pressure_angle < 45.0:
             return [f"gears.pressure_angle = {self.pressure_angle:g}: allowed: > 0 and < 45 degrees"]
-        if self.load_sharing == "tip-relief" and self.tip_relief == 0.0:
-            faults.append('tip_relief is missing; load_sharing = "tip-relief" needs its depth')
-        if self.centre_distance <= sum(r_b):
+        missing = [name for name in ("centre_distance", "tip_diameter") if getattr(self, name) is None]
+        if missing:
+            return [f"gears.{' and '.join(missing)} missing; allowed: a length, or profile_shift for both"]
+        faults = self._faults_of_the_rule()
+        r_b = self.base_radii
+        if not self.centre_distance > sum(r_b):
             faults.append(
                 f"centre_distance = {self.centre_distance:g}: the base circles overlap; allowed: above "
                 f"{sum(r_b):.5g} m, the sum of their radii"
             )
         for name, d, r in zip(("pinion", "wheel"), self.tip_diameter, r_b, strict=True):
-            if d <= 2.0 * r:
+            if not d > 2.0 * r:
                 faults.append(
                     f"tip_diameter = {d:g} of the {name}: no involute flank below its base circle; allowed: "
                     f"above {2.0 * r:.5g} m"
                 )
-        return [f"gears.{fault}" for fault in (faults or self._faults_of_the_path())]
+        faults = faults or self._faults_of_the_path() or self._faults_of_the_shift()
+        return [f"gears.{fault}" for fault in faults]
+
+    def _faults_of_the_rule(self) -> list[str]:
+        if self.load_sharing == "tip-relief" and self.tip_relief == 0.0:
+            return ['tip_relief is missing; load_sharing = "tip-relief" needs its depth']
+        if self.load_sharing == "thirds" and self.helix_angle:
+            return ['load_sharing = "thirds": of spur gears; allowed with helix_angle: "stiffness"']
+        return []
+
+    def _faults_of_the_shift(self) -> list[str]:
+        """The first given length that is not that of the profile shift."""
+        for name in self.given:
+            given, free = (np.atleast_1d(getattr(self, key)) for key in (name, f"play_free_{name}"))
+            if not np.abs(given - free).max() <= TOLERANCE * self.module:
+                own, lengths = (", ".join(f"{value:.5g}" for value in of) for of in (given, free))
+                reason = f"the play-free pair of this profile_shift has {lengths} m"
+                return [f"{name} = {own}: {reason}; allowed: within {TOLERANCE:g} modules, or left out"]
+        return []
 
     def _faults_of_the_path(self) -> list[str]:
         (a, e), length, r_b = self._a_and_e(), self.line_of_action, self.base_radii

@@ -1,23 +1,26 @@
 r"""Load of one tooth pair over the load of the mesh.
 
-A single pair carries the load between B and D. Between A and B it shares the load with the pair one base
-pitch ahead, between D and E with the pair one base pitch behind. With :math:`s=(\rho-\rho_A)/(\rho_B-\rho_A)`
-from A to B, and mirrored from E to D:
+The flanks of loaded teeth meet before A and part after E, as the other pair bends: a tip edge touches there
+off the line of action (`GearPair.corner_gap`). All pairs that may touch, with stiffness k and gap g along the
+line of action, approach each other by :math:`\delta` and carry :math:`k\max(\delta-g,0)`, in sum the load.
 
-``thirds``
-    :math:`(1+s)/3`: from a third to two thirds, for teeth without relief (ISO/TR 13989-1). The load rises
-    from two thirds to one over `JUMP_LENGTH` of the path outside B and D, because teeth bend.
+``stiffness``
+    k is c' of ISO 6336-1 times the parabola :math:`0.55+1.8\xi(1-\xi)`, :math:`\xi` from A to E (Cai &
+    Hayashi, J. Mech. Des. 116 (1994) 558, a fit to Weber & Banaschek's compliance; from memory).
 ``tip-relief``
-    Two pairs of equal stiffness c' in parallel, separated by the linear relief :math:`C_a(1-s)` of the pair
-    that comes into contact and :math:`C_as` of the pair that leaves, share the load by
-    :math:`\frac12[1+\kappa(2s-1)]`, :math:`\kappa=c'C_a/w'`. With :math:`\kappa\ge1` the load begins at
-    zero. A smaller relief would leave a load at the edge A; the load then increases from zero along the line
-    :math:`s/\kappa`, and near B along its mirror image.
+    k is c'. Both with the linear relief :math:`C_a(1-s)` from A to B and from E to D; where
+    :math:`\kappa=c'C_a/w'<1`, a load :math:`\frac12(1-\kappa)` is left at A.
+``thirds``
+    From a third at A to two thirds at B, linear, for teeth without relief (ISO/TR 13989-1); beyond A and E
+    the third falls to zero as the load of an edge does with c'.
+
+A helical pair is cut into slices across the face, each a spur pair ahead of or behind the one in the middle,
+which is the pair of the path; all slices approach by the same :math:`\delta`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,69 +28,88 @@ import numpy as np
 if TYPE_CHECKING:
     from ehlpetsc.gears.geometry import GearPair
 
-RULES = ("thirds", "tip-relief")
-JUMP_LENGTH = 0.005  # of the path: rise from two thirds to the total load
-MIN_RELIEF_RATIO = 0.05  # kappa: below it the load would rise within less than a twentieth of A to B
-
-
-def thirds(s: np.ndarray, edge: float) -> np.ndarray:
-    """Load fraction between A and B without tip relief.
-
-    Parameters
-    ----------
-    s
-        0 at A, 1 at B.
-    edge
-        Length of the rise to the total load, in s.
-    """
-    shared = (1.0 + s) / 3.0
-    at_edge = (2.0 - edge) / 3.0
-    return np.where(s <= 1.0 - edge, shared, at_edge + (1.0 - at_edge) * (s - 1.0 + edge) / edge)
-
-
-def tip_relief(s: np.ndarray, ratio: float) -> np.ndarray:
-    """Load fraction between A and B with tip relief; `ratio` is c' C_a / w'."""
-    elastic = np.clip(0.5 * (1.0 + ratio * (2.0 * s - 1.0)), 0.0, 1.0)
-    if ratio >= 1.0:
-        return elastic
-    return np.maximum(np.minimum(elastic, s / ratio), 1.0 - (1.0 - s) / ratio)
-
-
-def relief_ratio(pair: GearPair) -> float:
-    r""":math:`c'C_a/w'`: depth of relief over the deflection of one pair under the total load."""
-    return pair.mesh_stiffness * pair.tip_relief / pair.normal_load
-
-
-def _rule(pair: GearPair) -> tuple[Callable[[np.ndarray], np.ndarray], tuple[float, ...]]:
-    """Load fraction as a function of s, and the values of s with a kink."""
-    if pair.rule == "thirds":
-        edge = min(JUMP_LENGTH * pair.contact_ratio / (pair.contact_ratio - 1.0), 0.5)
-        return lambda s: thirds(s, edge), (1.0 - edge,)
-    ratio = max(relief_ratio(pair), MIN_RELIEF_RATIO)
-    # onset of the load, or intersection of s/ratio with the elastic line
-    kink = 0.5 - 0.5 / ratio if ratio >= 1.0 else 0.5 * ratio / (1.0 + ratio)
-    return lambda s: tip_relief(s, ratio), (kink, 1.0 - kink)
-
-
-def kinks(pair: GearPair) -> list[float]:
-    """Positions of kinks of the load of a pair other than A, B, D and E [m]."""
-    points = pair.points
-    return [
-        end + s * (inner - end)
-        for end, inner in ((points["A"], points["B"]), (points["E"], points["D"]))
-        for s in _rule(pair)[1]
-    ]
+RULES = ("thirds", "tip-relief", "stiffness")
+SLICES = 41  # of a helical pair
+EDGE_SAMPLES = 2001
+NEVER = 1.0  # m: gap of flanks that do not touch
+END_STIFFNESS = 0.55  # of a pair at A and E, over that in the middle
 
 
 def share(pair: GearPair, rho: np.ndarray) -> np.ndarray:
-    """Load of a tooth pair over that of the mesh, 0 to 1.
+    """Load of a tooth pair over that of the mesh, 0 to 1, at positions on the line of action [m]."""
+    if pair.load is not None:
+        at = np.asarray(pair.path) + pair.points["C"]
+        return np.interp(rho, at, pair.load, left=0.0, right=0.0) / pair.normal_load
+    return _thirds(pair, rho) if pair.rule == "thirds" else _equilibrium(pair, rho)
 
-    Parameters
-    ----------
-    rho
-        Positions between A and E [m].
-    """
+
+def gap(pair: GearPair, rho: np.ndarray) -> np.ndarray:
+    """Gap of unloaded flanks [m]: tip relief, and beyond A and E the way of an edge."""
+    return pair.corner_gap(rho) + pair.tip_relief * (1.0 - np.minimum(*_inwards(pair, rho)))
+
+
+def stiffness(pair: GearPair, rho: np.ndarray) -> np.ndarray:
+    """Stiffness of a tooth pair per face width [Pa]."""
+    if pair.rule == "tip-relief":
+        return np.full_like(rho, pair.single_stiffness)
+    points = pair.points
+    xi = np.clip((rho - points["A"]) / (points["E"] - points["A"]), 0.0, 1.0)
+    return pair.single_stiffness * (END_STIFFNESS + 4.0 * (1.0 - END_STIFFNESS) * xi * (1.0 - xi))
+
+
+def _inwards(pair: GearPair, rho: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """s from A to B and from E to D, 0 to 1."""
     points = pair.points
     incoming = (rho - points["A"]) / (points["B"] - points["A"])
     leaving = (points["E"] - rho) / (points["E"] - points["D"])
-    return _rule(pair)[0](np.clip(np.minimum(incoming, leaving), 0.0, 1.0))
+    return np.clip(incoming, 0.0, 1.0), np.clip(leaving, 0.0, 1.0)
+
+
+def pair_loads(pair: GearPair, rho: np.ndarray) -> tuple[np.ndarray, int]:
+    """Loads of all pairs and slices over that of the mesh, shape (n, m), sum 1; column of the pair at rho."""
+    slices = SLICES if pair.helix_angle else 1
+    across = (np.arange(slices) - (slices - 1) // 2) / slices * pair.face_width
+    reach = math.ceil(pair.contact_ratio + pair.overlap_ratio)
+    behind = pair.base_pitch * np.arange(-reach, reach + 1)
+    offsets = (across[:, None] * math.tan(pair.base_helix_angle) + behind).ravel()
+    at = np.asarray(rho, dtype=float)[:, None] + offsets
+    k, g = stiffness(pair, at) / slices, np.minimum(gap(pair, at), NEVER)
+    order = np.argsort(g, axis=1)
+    ranked_k, ranked_g = (np.take_along_axis(values, order, axis=1) for values in (k, g))
+    # the approach is that of the first n in contact: of fewer or of more it is larger
+    approach = (pair.normal_load + np.cumsum(ranked_k * ranked_g, axis=1)) / np.cumsum(ranked_k, axis=1)
+    loads = k * np.maximum(approach.min(axis=1)[:, None] - g, 0.0)
+    return loads / pair.normal_load, int(np.flatnonzero(offsets == 0.0)[0])
+
+
+def _equilibrium(pair: GearPair, rho: np.ndarray) -> np.ndarray:
+    loads, own = pair_loads(pair, rho)
+    return loads[:, own] * (SLICES if pair.helix_angle else 1)
+
+
+def _thirds(pair: GearPair, rho: np.ndarray) -> np.ndarray:
+    rho = np.asarray(rho, dtype=float)
+    points = pair.points
+
+    def beyond(at: np.ndarray) -> np.ndarray:
+        loaded = 1.0 - pair.corner_gap(at) * pair.single_stiffness / pair.normal_load
+        return np.where((at < points["A"]) | (at > points["E"]), np.maximum(loaded, 0.0) / 3.0, 0.0)
+
+    alone = (rho > points["B"]) & (rho < points["D"])
+    both = (1.0 + np.minimum(*_inwards(pair, rho))) / 3.0
+    others = beyond(rho - pair.base_pitch) + beyond(rho + pair.base_pitch)
+    inside = np.where(alone, 1.0 - others, both)
+    return np.where((rho < points["A"]) | (rho > points["E"]), beyond(rho), inside)
+
+
+def edge_contact(pair: GearPair) -> dict[str, tuple[float, float]]:
+    """Contact of the tip edges before A and after E: length along the path [m], and share of the load there.
+
+    Beyond the path the load falls from that share to zero, on a contact that is no longer than the edge.
+    """
+    found, points = {}, pair.points
+    for name, outwards in (("A", -1.0), ("E", 1.0)):
+        way = np.linspace(0.0, 0.5 * pair.base_pitch, EDGE_SAMPLES)
+        load = share(pair, points[name] + outwards * way)
+        found[name] = float(way[load > 0.0].max(initial=0.0)), float(load[0])
+    return found

@@ -1,4 +1,4 @@
-"""Path of contact of a spur gear pair: load, radius and speeds over time."""
+"""Path of contact of a gear pair: load, radius and speeds over time, of helical pairs in a normal section."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
-from ehlpetsc.gears.load_sharing import kinks, relief_ratio, share
+from ehlpetsc.gears.load_sharing import edge_contact, share
 
-PATH_INTERVALS = 400  # equal intervals of the path, in addition to its points and kinks
+PATH_INTERVALS = 2000  # equal intervals of the path, in addition to its points
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
         raise CaseError(faults)
     points = pair.points
     rho = np.linspace(points["A"], points["E"], PATH_INTERVALS + 1)
-    rho = np.unique(np.concatenate([rho, list(points.values()), kinks(pair)]))
+    rho = np.unique(np.concatenate([rho, list(points.values())]))
     # positions that differ by rounding would be equal times
     rho = rho[np.append(True, np.diff(rho) > 1e-9 * pair.base_pitch)]
     speed_1, speed_2 = pair.speeds(rho)
@@ -102,21 +102,33 @@ def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
 
 
 def describe(path: Path) -> list[str]:
-    """Lines of text about a path: ratio, angle, sharing, hunting."""
+    """Lines of text about a path: angle, ratios, lengths, sharing, edges, hunting."""
     pair = path.pair
-    ratio = relief_ratio(pair)
+    overlap = f", overlap ratio {pair.overlap_ratio:.3f}" if pair.helix_angle else ""
+    tips = " and ".join(f"{1e3 * d:.3f}" for d in pair.tip_diameter)
+    x1, x2 = pair.shifts
     lines = [
-        f"working pressure angle {path.pressure_angle:.3f} degrees, contact ratio {path.contact_ratio:.3f}",
-        f"load {1e-3 * pair.normal_load:.1f} kN/m between B and D, load sharing: {pair.rule}",
+        f"working pressure angle {path.pressure_angle:.3f} degrees, "
+        f"contact ratio {path.contact_ratio:.3f}{overlap}",
+        f"centre distance {1e3 * pair.centre_distance:.3f} mm, tip diameters {tips} mm, "
+        f"profile shift {x1:.4f} and {x2:.4f}",
+        f"load {1e-3 * pair.normal_load:.1f} kN/m of the mesh, load sharing: {pair.rule}",
+        f"c' {1e-9 * pair.single_stiffness:.2f} N/(mm µm): one pair bends by "
+        f"{1e6 * pair.normal_load / pair.single_stiffness:.1f} µm",
         f"a pinion tooth meets {pair.partners} of {pair.teeth[1]} wheel teeth; "
         f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
     ]
-    if pair.rule == "tip-relief":
-        full = 1e6 * pair.normal_load / pair.mesh_stiffness
-        lines.append(
-            f"tip relief {1e6 * pair.tip_relief:.1f} um, c' C_a/w' = {ratio:.2f}; "
-            f"{full:.1f} um suit this load"
-        )
+    if pair.tip_relief > 0.0:
+        kappa = pair.single_stiffness * pair.tip_relief / pair.normal_load
+        lines.append(f"tip relief {1e6 * pair.tip_relief:.1f} µm, c' C_a/w' = {kappa:.2f}")
+    for (name, (way, carried)), where, gear in zip(
+        edge_contact(pair).items(), ("before", "after"), ("wheel", "pinion"), strict=True
+    ):
+        if way > 0.0:
+            lines.append(
+                f"contact {1e3 * way:.2f} mm {where} {name}, on the tip edge of the {gear}, with up to "
+                f"{1e-3 * carried * pair.normal_load:.1f} kN/m"
+            )
     return lines
 
 
@@ -147,17 +159,3 @@ def loss(path: Path, friction: float | np.ndarray) -> float:
 def mean_friction(path: Path, friction: float | np.ndarray) -> float:
     """Mean coefficient of friction of the mesh: the loss over H_V."""
     return loss(path, friction) / gear_loss_factor(path)
-
-
-def ohlendorf_loss_factor(pair: GearPair) -> float:
-    r"""Loss factor H_V from tooth numbers and contact ratios, Ohlendorf (1958).
-
-    .. math:: H_V=\frac{\pi(i+1)}{z_1i}(1-\varepsilon_\alpha+\varepsilon_1^2+\varepsilon_2^2)
-
-    with the gear ratio i and the contact ratios :math:`\varepsilon_{1,2}` from C to E and from A to C.
-    """
-    points, i = pair.points, pair.teeth[1] / pair.teeth[0]
-    e_1 = (points["E"] - points["C"]) / pair.base_pitch
-    e_2 = (points["C"] - points["A"]) / pair.base_pitch
-    factor = np.pi * (i + 1.0) / (pair.teeth[0] * i)
-    return float(factor * (1.0 - pair.contact_ratio + e_1**2 + e_2**2))

@@ -9,73 +9,91 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.materials import elastic_constants
-from ehlpetsc.gears.path import describe, gear_loss_factor, ohlendorf_loss_factor
+from ehlpetsc.gears.load_sharing import edge_contact
+from ehlpetsc.gears.path import describe, gear_loss_factor
+from ehlpetsc.gears.standards import STANDARDS, loss_factor, values_of
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path
+    from ehlpetsc.gears.standards import Rating
 
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 
 
-def hertz(path: Path, contact: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray] | None:
-    """Half width [m] and Hertz pressure [Pa] along a path; None without both moduli.
-
-    Parameters
-    ----------
-    contact
-        `youngs_modulus` and `poisson_ratio` of the solids, or their `material`.
-    """
+def modulus_of(contact: Mapping[str, Any]) -> float | None:
+    """Reduced modulus E' [Pa] of the unchecked table `[contact]`; None without both moduli or materials."""
     try:
-        modulus = reduced_modulus(*elastic_constants(contact))
-        pairs = zip(path.load, path.radius, strict=True)
-        stresses = [hertz_line(w, r, modulus) if w > 0 else (0.0, 0.0) for w, r in pairs]
+        return reduced_modulus(*elastic_constants(contact))
     except (KeyError, TypeError, ValueError, ZeroDivisionError):
         return None
-    values = np.array(stresses).T
-    return (values[0], values[1]) if np.isfinite(values).all() else None
 
 
-def rows(path: Path, stresses: tuple[np.ndarray, np.ndarray] | None = None) -> list[str]:
-    """Lines of text: data of the pair, and a table of A to E.
+def hertz(path: Path, modulus: float) -> tuple[np.ndarray, np.ndarray]:
+    """Half width [m] and Hertz pressure [Pa] along a path."""
+    a = np.sqrt(8.0 * path.load * path.radius / (np.pi * modulus))
+    return a, 0.25 * modulus * a / path.radius
 
-    Parameters
-    ----------
-    stresses
-        See :func:`hertz`.
-    """
+
+def rows(path: Path, modulus: float | None, rating: Rating | None) -> list[str]:
+    """Lines of text: data of the pair, a table of A to E, mean values of the standards."""
     pair = path.pair
-    names = list(pair.points)
-    where = [path.index(name) for name in names]
-    sliding = path.speed_1 - path.speed_2
+    where = [path.index(name) for name in pair.points]
     arcs = pair.flank_arcs(path.rho)
     quantities = [
-        ("time, us", 1e6 * path.time),
+        ("time, µs", 1e6 * path.time),
         ("rho 1, mm", 1e3 * path.rho),
         ("R, mm", 1e3 * path.radius),
         ("load, kN/m", 1e-3 * path.load),
         ("u1, m/s", path.speed_1),
         ("u2, m/s", path.speed_2),
         ("u, m/s", path.entrainment),
-        ("u1 - u2, m/s", sliding),
+        ("u1 - u2, m/s", path.speed_1 - path.speed_2),
         ("slide/roll", path.slide_roll_ratio),
         ("arc 1, mm", 1e3 * arcs[0]),
         ("arc 2, mm", 1e3 * arcs[1]),
     ]
-    if stresses is not None:
-        quantities += [("a, mm", 1e3 * stresses[0]), ("p0, GPa", 1e-9 * stresses[1])]
-    lines = [
-        *describe(path),
-        f"gear loss factor H_V {gear_loss_factor(path):.4f} of this load sharing, "
-        f"{ohlendorf_loss_factor(pair):.4f} of Ohlendorf",
-    ]
-    lines += ["", f"{'':14}" + "".join(f"{name:>11}" for name in names)]
+    if modulus is not None:
+        a, p0 = hertz(path, modulus)
+        quantities += [("a, mm", 1e3 * a), ("p0, GPa", 1e-9 * p0)]
+    lines = [*describe(path), *(edge_pressures(path, modulus) if modulus is not None else ())]
+    own, standard = gear_loss_factor(path), loss_factor(pair)
+    lines.append(f"loss factor H_V {own:.4f} of this load sharing, {standard:.4f} of Niemann and Winter")
+    names, values = {}, values_of(rating) if rating is not None else {}
+    for name, value in values.items():
+        entry = STANDARDS[name]
+        if np.ndim(value):
+            label = f"{name.split(' ', 1)[1]}{', ' if entry.unit else ''}{entry.unit}"
+            quantities.append((label, value))
+            names[label] = entry.source
+        elif name != "loss factor H_V":
+            lines.append(f"{name} {value:.4g} {entry.unit}{' ' if entry.unit else ''}by {entry.source}")
+    width = max(len(name) for name, _ in quantities)
+    lines += ["", " " * width + "".join(f"{name:>11}" for name in pair.points)]
     for name, values in quantities:
-        lines.append(f"{name:14}" + "".join(f"{_shown(values[i]):>11}" for i in where))
+        source = f"  {names[name]}" if name in names else ""
+        lines.append(f"{name:{width}}" + "".join(f"{_shown(values[i]):>11}" for i in where) + source)
+    return lines
+
+
+def edge_pressures(path: Path, modulus: float) -> list[str]:
+    """Bound of the pressure of the tip edges before A and after E, elastic and as round as `tip_radius`."""
+    pair, lines = path.pair, []
+    flanks = {"A": pair.points["A"], "E": pair.line_of_action - pair.points["E"]}
+    for name, (way, carried) in edge_contact(pair).items():
+        if way > 0.0:
+            radius = 1.0 / (1.0 / pair.edge_radius + 1.0 / flanks[name])
+            pressure = hertz_line(carried * pair.normal_load, radius, modulus)[1]
+            lines.append(
+                f"Hertz pressure of an edge of radius {1e3 * pair.edge_radius:.3g} mm with the load at "
+                f"{name}: {1e-9 * pressure:.2f} GPa"
+            )
     return lines
 
 
 def _shown(value: float) -> str:
+    if not math.isfinite(value):
+        return "-"
     digits = 3 - (math.floor(math.log10(abs(value))) if abs(value) > 1e-9 else 0)
     return f"{0.0 if abs(value) <= 1e-9 else value:.{min(max(digits, 0), 4)}f}"
 

@@ -44,18 +44,19 @@ class Solid(NamedTuple):
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 MAX_ISOTHERMAL_FLASH = 20.0  # K: above it a case should not be isothermal
+TINY = 1e-300  # surfaces at rest do not slide
 MAX_FRICTION = 0.1  # coefficient: isothermal Newtonian estimates have no bound
 
 
 def blok_flash_temperature(
-    friction: float,
-    load: float,
-    sliding: float,
-    u1: float,
-    u2: float,
-    a: float,
+    friction: float | np.ndarray,
+    load: float | np.ndarray,
+    sliding: float | np.ndarray,
+    u1: float | np.ndarray,
+    u2: float | np.ndarray,
+    a: float | np.ndarray,
     effusivities: Sequence[float],
-) -> float:
+) -> float | np.ndarray:
     r"""Largest flash temperature of a line contact [K] by Blok's formula.
 
     :math:`T=1.11\,\frac{\mu w'|u_1-u_2|}{(e_1\sqrt{|u_1|}+e_2\sqrt{|u_2|})\sqrt{2a}}` (Blok 1937, as in
@@ -75,9 +76,7 @@ def blok_flash_temperature(
         [W s^(1/2)/(m^2 K)]
     """
     carried = sum(e * abs(u) ** 0.5 for e, u in zip(effusivities, (u1, u2), strict=True))
-    if sliding == 0.0 or carried == 0.0:
-        return 0.0
-    return 1.11 * friction * load * abs(sliding) / (carried * (2.0 * a) ** 0.5)
+    return 1.11 * friction * load * abs(sliding) / (np.maximum(carried, TINY) * (2.0 * a) ** 0.5)
 
 
 def expected_friction(fluid: Any, boundary_friction: float, scales: Scales, film: float) -> float:

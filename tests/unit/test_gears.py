@@ -6,15 +6,17 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from support import is_line_with
+from support import CASES, is_line_with
 
 from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
 from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.case.derived import rating_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.command import main
-from ehlpetsc.gears.load_sharing import relief_ratio
-from ehlpetsc.gears.path import gear_loss_factor, loss, mean_friction, ohlendorf_loss_factor
+from ehlpetsc.gears.load_sharing import edge_contact, pair_loads, share
+from ehlpetsc.gears.path import gear_loss_factor, loss, mean_friction
+from ehlpetsc.gears.standards import bulk_temperatures, loss_factor, values_of
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.pictures.gears import draw_damage
 from ehlpetsc.post.stresses.body_points import body_points, passage
@@ -129,48 +131,173 @@ def test_no_sliding_at_the_pitch_point():
     assert u_1 == pytest.approx(omega_1 * pitch_radius * math.sin(pair.working_angle), rel=1e-14)
 
 
-def test_without_relief_the_shared_load_rises_from_one_third_to_two_thirds():
-    path = path_of_contact(FZG)
-    load = path.load / path.pair.normal_load
-    assert load[0] == pytest.approx(1 / 3) and load[-1] == pytest.approx(1 / 3)
-    points = path.pair.points
-    alone = (path.rho >= points["B"]) & (path.rho <= points["D"])
-    assert (load[alone] == 1.0).all() and (load[~alone] < 1.0).all()
-    middle = 0.5 * (path.time_at("A") + path.time_at("B"))
-    assert np.interp(middle, path.time, load) == pytest.approx(0.5, rel=1e-12)
+RULES = {
+    "thirds": {"load_sharing": "thirds"},
+    "stiffness": {"load_sharing": "stiffness"},
+    "stiffness with relief": {"load_sharing": "stiffness", "tip_relief": 20e-6},
+    "tip-relief": {"tip_relief": 20e-6},
+    "long relief": {"tip_relief": 80e-6},
+}
 
 
-@pytest.mark.parametrize("relief", [1e-6, 20e-6, 45.5e-6, 80e-6])
-def test_tip_relief_starts_the_load_at_zero(relief):
-    path = path_of_contact(FZG | {"tip_relief": relief})
-    pair = path.pair
-    load = path.load / pair.normal_load
-    assert load[0] == load[-1] == 0.0 and load.max() == 1.0
-    both = path.rho <= pair.points["B"]
-    behind = np.interp(path.rho[both] + pair.base_pitch, path.rho, load)
-    np.testing.assert_allclose(load[both] + behind, 1.0, atol=1e-12)
-    steepest = np.abs(np.diff(load) / np.diff(path.rho)).max() * (pair.points["B"] - pair.points["A"])
-    ratio = max(relief_ratio(pair), 0.05)
-    assert steepest == pytest.approx(max(ratio, 1.0 / ratio), rel=1e-6)
+@pytest.mark.parametrize("rule", RULES)
+def test_loads_of_all_pairs_are_the_total_at_every_position(rule):
+    pair = GearPair(**(FZG | RULES[rule]))
+    rho = np.linspace(pair.points["A"] - 3e-3, pair.points["E"] + 3e-3, 5001)
+    total = sum(share(pair, rho + k * pair.base_pitch) for k in range(-3, 4))
+    np.testing.assert_allclose(total, 1.0, atol=1e-12)
+    load = share(pair, rho)
+    assert np.abs(np.diff(load)).max() < 0.01  # continuous, also where pairs come and go
+    assert load[0] == load[-1] == 0.0 and load.max() == pytest.approx(1.0, abs=1e-12)
 
 
-def test_relief_of_a_third_of_the_deflection_shares_in_thirds():
-    """c' C_a/w' = 1/3 is the elastic line from one third to two thirds."""
-    pair = path_of_contact(FZG).pair
-    relieved = path_of_contact(FZG | {"tip_relief": pair.normal_load / pair.mesh_stiffness / 3.0})
-    plain = path_of_contact(FZG)
-    for share in (0.3, 0.5, 0.7):
-        rho = (1 - share) * pair.points["A"] + share * pair.points["B"]
-        assert np.interp(rho, relieved.rho, relieved.load) == pytest.approx(
-            np.interp(rho, plain.rho, plain.load), rel=1e-12
-        )
+@pytest.mark.parametrize(
+    ("rule", "at_a"),
+    [("thirds", 1 / 3), ("stiffness", 0.3709), ("stiffness with relief", 0.2373), ("tip-relief", 0.3070)]
+    + [("long relief", 0.0)],
+)
+def test_load_that_equilibrium_leaves_at_a(rule, at_a):
+    """By hand: k_A/(k_A + k_D) = 0.55/(0.55 + 0.933), and (1 - c' C_a/w')/2 of two equal pairs."""
+    pair = GearPair(**(FZG | RULES[rule]))
+    assert share(pair, np.array([pair.points["A"]]))[0] == pytest.approx(at_a, abs=1e-4)
+    assert path_of_contact(pair).load[0] == pytest.approx(
+        at_a * pair.normal_load, abs=1e-4 * pair.normal_load
+    )
+
+
+def test_tip_edge_touches_before_a_where_the_bent_pair_lets_it():
+    """The flank turned until it meets the tip, point by point, has the gap of the closed form."""
+    pair = GearPair(**(FZG | {"load_sharing": "stiffness"}))
+    (r1, r2), points = pair.base_radii, pair.points
+    before, tip = 0.8e-3, 0.5 * pair.tip_diameter[1]
+    turned = pair.working_angle - math.acos(r2 / tip) - before / r2
+    x, y = pair.centre_distance - tip * math.cos(turned), tip * math.sin(turned)
+    roll = np.linspace(0.0, 1.0, 200_001)  # the involute of the pinion in the position before A
+    angle = (points["A"] - before) / r1 - pair.working_angle - roll + np.arctan(roll)
+    radii = r1 * np.hypot(1.0, roll)
+    gap = r1 * (math.atan2(y, x) - np.interp(math.hypot(x, y), radii, angle))
+    assert pair.corner_gap(np.array([points["A"] - before]))[0] == pytest.approx(gap, rel=1e-6)
+    assert gap == pytest.approx(28.7e-6, rel=0.02)
+    way, carried = edge_contact(pair)["A"]
+    alone = pair.normal_load / pair.single_stiffness / 0.967  # the other pair, near D, carries all
+    assert pair.corner_gap(np.array([points["A"] - way]))[0] == pytest.approx(alone, rel=0.02)
+    assert carried == pytest.approx(0.3709, abs=1e-4) and way == pytest.approx(1.09e-3, rel=0.01)
+
+
+def test_single_stiffness_of_iso_6336():
+    """By hand: q' = 0.06339 mm um/N for 16 and 24 teeth with 0.1817 and 0.1715, times 0.8 and 0.975."""
+    pair = GearPair(**(FZG | {"profile_shift": (0.1817, 0.1715)}))
+    assert pair.single_stiffness == pytest.approx(0.8 * 0.975 / 0.06339 * 1e9, rel=1e-3)
+    assert GearPair(**FZG).single_stiffness == pytest.approx(pair.single_stiffness, rel=1e-4)
+    assert GearPair(**(FZG | {"mesh_stiffness": 14e9})).single_stiffness == 14e9
+
+
+OWN = {key: FZG[key] for key in ("module", "teeth", "face_width", "torque", "speed")}
+
+
+def test_profile_shift_gives_the_play_free_pair():
+    """FZG C-GF: 91.5 mm, tips of 82.46 and 118.36 mm; a pair of one's own by DIN 3960, by hand."""
+    pair = GearPair(**OWN, profile_shift=(0.1817, 0.1715))
+    assert pair.centre_distance == pytest.approx(91.5e-3, abs=1e-6)
+    assert pair.tip_diameter == pytest.approx((82.46e-3, 118.36e-3), abs=0.01e-3)
+    own = OWN | {"module": 3e-3, "teeth": (19, 47)}
+    pair = GearPair(**own, profile_shift=(0.5, 0.3))
+    # inv aw = inv 20 + 2 tan 20 0.8/66 = 0.023728, aw = 23.2136 degrees
+    assert math.degrees(pair.working_angle) == pytest.approx(23.2136, abs=1e-4)
+    assert pair.centre_distance == pytest.approx(99e-3 * 0.939693 / 0.919042, rel=1e-5)
+    shortening = 99e-3 + 0.8 * 3e-3 - pair.centre_distance
+    expected = [57e-3 + 6e-3 * 1.5, 141e-3 + 6e-3 * 1.3]
+    assert pair.tip_diameter == pytest.approx([d - 2.0 * shortening for d in expected], rel=1e-12)
+    clearance = pair.centre_distance - 0.5 * (pair.tip_diameter[0] + pair.root_diameters[1])
+    assert clearance == pytest.approx(0.25 * 3e-3, rel=1e-9)
+    assert pair.faults() == []
+    unshifted = GearPair(**OWN, profile_shift=(0.2, -0.2))
+    assert unshifted.centre_distance == pytest.approx(90e-3, rel=1e-12)
+    assert unshifted.tip_diameter == pytest.approx((82.8e-3, 115.2e-3), rel=1e-12)
+
+
+def test_helical_slice():
+    """Without helix the spur pair; of all slices the loads are the total; radius and overlap by hand."""
+    spur, narrow = (
+        GearPair(**OWN, profile_shift=(0.0, 0.0), load_sharing="stiffness", helix_angle=b) for b in (0, 1e-6)
+    )
+    rho = np.linspace(spur.points["A"], spur.points["E"], 301)
+    np.testing.assert_allclose(share(narrow, rho), share(spur, rho), atol=1e-4)
+    pair = GearPair(**OWN, profile_shift=(0.0, 0.0), helix_angle=20.0)
+    assert pair.rule == "stiffness" and pair.faults() == []
+    np.testing.assert_allclose(pair_loads(pair, rho)[0].sum(axis=1), 1.0, atol=1e-12)
+    assert pair.centre_distance == pytest.approx(90e-3 / math.cos(math.radians(20.0)), rel=1e-12)
+    assert pair.overlap_ratio == pytest.approx(
+        14.0 * math.sin(math.radians(20.0)) / (math.pi * 4.5), rel=1e-12
+    )
+    helix = math.asin(math.sin(math.radians(20.0)) * math.cos(math.radians(20.0)))
+    at_c, (r1, r2) = pair.points["C"], [r * math.tan(pair.working_angle) for r in pair.base_radii]
+    assert pair.radius(at_c) == pytest.approx(r1 * r2 / (r1 + r2) / math.cos(helix), rel=1e-12)
+    first, second = pair.speeds(at_c)
+    assert first == pytest.approx(second, rel=1e-12)
+
+
+def test_load_over_the_path_of_a_file(case, tmp_path):
+    (tmp_path / "tca.csv").write_text("path [mm], load [N/mm]\n-8, 0\n-4, 300\n4, 600\n9, 0\n")
+    loaded = load(case(load_file="tca.csv"))
+    pair = loaded.gears.pair
+    assert np.interp(
+        [-2e-3, 9.5e-3], path_of_contact(pair).rho - pair.points["C"], path_of_contact(pair).load
+    ) == (pytest.approx([375e3, 0.0], rel=1e-3))
+    assert loaded.conditions.load.max() == pytest.approx(600e3, rel=1e-3)
+    assert load(case(path=[-8e-3, -4e-3, 4e-3, 9e-3], load=[0.0, 3e5, 6e5, 0.0])).conditions.load.max() == (
+        pytest.approx(600e3, rel=1e-3)
+    )
+    (tmp_path / "tca.csv").write_text("path [mm], load [N/mm]\n4, 300\n-4, 300\n")
+    with pytest.raises(CaseError, match="increases"):
+        load(case(load_file="tca.csv"))
+
+
+def rated(*keys):
+    return rating_of(load(CASES / "fzg.toml", list(keys)), CASES)
+
+
+def test_standards_for_fzg_c_at_stage_9():
+    """302 N m, 2250 1/min, VG 100 at 90 degrees: each number by hand, at C where it is one of the path."""
+    rating = rated()
+    at, path, found = rating.path.index("C"), rating.path, values_of(rating)
+    assert rating.roughness == pytest.approx(0.25e-6, rel=1e-6)
+    # 0.048 (637.7/(6.584 8.382))^0.2 11.2^-0.05 0.25^0.25
+    assert found["mean friction coefficient"] == pytest.approx(0.04907, rel=1e-3)
+    assert found["loss factor H_V"] == pytest.approx(0.1958, abs=5e-5)
+    assert found["power lost"] == pytest.approx(100 * 0.04907 * 0.1958, rel=1e-3)
+    # 1.6 8.382e-3 (15e-9 226.4e9)^0.6 (0.0112 3.292/1.8976e9)^0.7 (637.7e3/1.8976e9)^-0.13 m
+    assert found["mean film"][at] == pytest.approx(0.158, abs=0.001)
+    assert found["minimum lambda_GF"][at] == pytest.approx(found["mean film"][at] / 0.25, rel=1e-9)
+    assert found["maximum flash temperature"][at] == pytest.approx(0.0, abs=0.1)
+    # at E: 1.11 0.04907 w 3.783/(13028 (5.562^0.5 + 1.778^0.5) (2a)^0.5)
+    load, a = path.load[-1], rating.half_width[-1]
+    by_hand = 1.11 * 0.04907 * load * 3.783 / (13027.6 * (5.562**0.5 + 1.778**0.5) * (2 * a) ** 0.5)
+    assert found["maximum flash temperature"][-1] == pytest.approx(by_hand, rel=1e-3)
+    rise = found["bulk temperature"] - 363.0
+    flash = found["maximum flash temperature"]
+    assert rise == pytest.approx(
+        0.47 * np.interp(np.linspace(*path.rho[[0, -1]], 4001), path.rho, flash).mean(), rel=1e-3
+    )
+
+
+def test_bulk_temperature_of_the_losses():
+    keys = ("heat.bulk_temperature=losses", "heat.reference_temperature=363.0")
+    assert rated(*keys).bulk == pytest.approx(bulk_temperatures(rated())[0], abs=0.1)
+    # 71.16 kW, 0.96 %, half of it from 2 pi d^2/4 + pi d b
+    rating = rated(*keys, "gears.heat_transfer=500.0")
+    heat = 0.5 * 71157.0 * 0.04907 * gear_loss_factor(rating.path)
+    rises = [heat / 500.0 / (math.pi * d * (d / 2 + 14e-3)) for d in (82.5e-3, 118.4e-3)]
+    assert rating.bulk == pytest.approx(363.0 + sum(rises) / 2, abs=0.1)
+    with pytest.raises(CaseError, match="temperature of the oil"):
+        load(CASES / "fzg.toml", ["heat.bulk_temperature=losses"])
 
 
 def test_loss_factors():
     plain = path_of_contact(FZG)
-    assert ohlendorf_loss_factor(plain.pair) == pytest.approx(0.1958, abs=5e-5)
+    assert loss_factor(plain.pair) == pytest.approx(0.1958, abs=5e-5)
     # relief equal to the deflection: the share is linear from A to B, and sliding from C on
-    path = path_of_contact(FZG | {"tip_relief": plain.pair.normal_load / plain.pair.mesh_stiffness})
+    path = path_of_contact(FZG | {"tip_relief": plain.pair.normal_load / plain.pair.single_stiffness})
     points = path.pair.points
     rho = np.linspace(points["A"], points["E"], 200_001)
     incoming = (rho - points["A"]) / (points["B"] - points["A"])
@@ -206,11 +333,14 @@ def test_hunting_teeth(teeth, partners):
         ({"tip_diameter": [82.5e-3, 130e-3]}, ["tip_diameter: ", "(interference)", " wheel: below 0.1232 m"]),
         ({"centre_distance": 80e-3}, ["centre_distance = 0.08: ", " 0.084572 m"]),
         ({"load_sharing": "tip-relief"}, ["tip_relief ", "missing"]),
+        ({"load_sharing": "thirds", "helix_angle": 10.0}, ['"thirds"', '"stiffness"']),
+        ({"centre_distance": None}, ["centre_distance missing", "profile_shift"]),
+        ({"profile_shift": [0.3, 0.1715]}, ["centre_distance = 0.0915", " 0.09197 m", "0.02 modules"]),
     ],
 )
 def test_impossible_geometry_is_refused_in_one_line(change, parts, case, capsys):
     with pytest.raises(CaseError) as error:
-        path_of_contact(FZG | change)
+        path_of_contact({key: value for key, value in (FZG | change).items() if value is not None})
     assert len(error.value.faults) == 1 and is_line_with(error.value.faults[0], *parts)
     assert main([str(case(**change))]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -259,9 +389,10 @@ def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
     found = FlankDamage(tmp_path / "run.post.h5", (1e-5, 5e-5))
     assert found.arcs[0][0] == pytest.approx(1e-5) and (np.diff(found.arcs[1]) > 0).all()
     pinion, wheel = found.lines()
-    assert is_line_with(pinion, "pinion: 0.002 ", " 6.010 mm from A, 25.0 um ")
-    assert is_line_with(wheel, "wheel: 0.001 ", " 6.050 mm from A, 25.0 um ")
-    draw_damage(found, path.pair, tmp_path / "flanks.png", "made")
+    assert is_line_with(pinion, "pinion: 0.002 ", " 6.010 mm from A, 25.0 µm ")
+    assert is_line_with(wheel, "wheel: 0.001 ", " 6.050 mm from A, 25.0 µm ")
+    run = SimpleNamespace(damage=found, path=path, title="made")
+    draw_damage([run], tmp_path / "flanks.png")
     assert (tmp_path / "flanks.png").stat().st_size > 10_000
     (tmp_path / "bad.post.h5").write_bytes(b"no HDF5")
     with pytest.raises(OutputError, match="bad.post.h5"):

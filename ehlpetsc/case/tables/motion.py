@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.gears.geometry import MESH_STIFFNESS, GearPair
+from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES
 
 CONDITIONS = ("[gears]", "[operation]")
@@ -58,38 +59,70 @@ OPERATION = KeyTable(
 
 
 class Gears(Values):
-    """`[gears]`: geometry and running conditions of a spur gear pair."""
+    """`[gears]`: geometry and running conditions of a gear pair."""
 
     @property
     def pair(self) -> GearPair:
-        return GearPair(**self.as_dict())
+        return GearPair(**{key: value for key, value in self.as_dict().items() if key not in NOT_GEOMETRY})
 
 
 def _check_geometry(gears: Gears) -> dict[str, Any]:
+    if (gears.path is None) != (gears.load is None):
+        raise Refused("path and load need each other")
+    if gears.load is not None and len(gears.path) != len(gears.load):
+        raise Refused(f"load has {len(gears.load)} values, path {len(gears.path)}; allowed: as many")
+    if gears.load is not None and (
+        max(gears.load) <= 0.0 or any(later <= sooner for sooner, later in pairwise(gears.path))
+    ):
+        raise Refused("allowed: a path that increases and a load above 0 somewhere", "path")
     faults = gears.pair.faults()
     if faults:
         raise Refused("; ".join(fault.removeprefix("gears.") for fault in faults))
     return {}
 
 
+NOT_GEOMETRY = ("load_file", "heat_transfer")
+PATH_COLUMNS = {"path": ("path", "position"), "load": ("load", "w")}  # of gears.load_file
 GEARS_KEYS = {
     "module": Required("normal module", "m", 1e-5, 1),
     "teeth": Required("of pinion and wheel", "", 5, 10_000, kind=int, many="two"),
     "pressure_angle": Key("of the basic rack", "degrees", 5, 40, default=20.0),
-    "centre_distance": Required("above the sum of base radii", "m", 1e-4, 100),
-    "tip_diameter": Required("of pinion and wheel", "m", 1e-4, 100, many="two"),
+    "helix_angle": Key(
+        "at the reference circle; solved is the slice in the middle", "degrees", 0, 45, default=0.0
+    ),
+    "profile_shift": Key("x1 and x2, of the play-free pair (DIN 3960)", "", -2, 4, many="two"),
+    "addendum": Key("of the basic rack, over the module", "", 0.1, 2, default=1.0),
+    "tip_clearance": Key("to the root of the other gear, over the module", "", 0, 1, default=0.25),
+    "centre_distance": Key("left out: by profile_shift", "m", 1e-4, 100),
+    "tip_diameter": Key("of pinion and wheel; left out: by profile_shift", "m", 1e-4, 100, many="two"),
     "face_width": Required("common to both", "m", 1e-5, 10),
     "torque": Required("on the pinion", "N m", 1e-6, 1e9),
     "speed": Required("rotational speed of the pinion", "1/min", 1e-3, 1e6),
     "tip_relief": Key("depth at both tips, linear from B and D on", "m", 0, 1e-3, default=0.0),
-    "load_sharing": Key("left out: tip-relief where there is one, else thirds", choices=tuple(RULES)),
+    "tip_radius": Key("of the tip edges; left out: 0.05 module", "m", 1e-7, 0.1),
+    "load_sharing": Key(
+        "left out: tip-relief with a relief, stiffness with helix_angle, else thirds",
+        choices=tuple(RULES),
+    ),
     "mesh_stiffness": Key(
-        "of one tooth pair per face width, c' of ISO 6336", "Pa", 1e6, 1e12, default=MESH_STIFFNESS
+        "c' of one tooth pair per face width; left out: by ISO 6336-1, steel", "Pa", 1e6, 1e12
+    ),
+    "load_file": Key(
+        "CSV table beside the case file: load of a pair over the path, from a tooth contact analysis, "
+        "path [m] from the pitch point, load [N/m]; instead of load_sharing",
+        kind=str,
+    ),
+    "path": Key("increasing, here instead of in a file", "m", -10, 10, many="list", min_items=2),
+    "load": Key("at path", "N/m", 0, 1e12, many="list", min_items=2),
+    "heat_transfer": Key(
+        'of the gears\' sides and tips, for heat.bulk_temperature = "losses"; left out: ISO/TS 6336-20',
+        *("W/(m^2 K)", 1e-3, 1e6),
+        many="both",
     ),
 }
 GEARS = KeyTable(
     "gears",
-    "spur gear pair through its mesh, surface 1 the flank of the pinion; left out: constant conditions",
+    "gear pair through its mesh, surface 1 the flank of the pinion; left out: constant conditions",
     GEARS_KEYS,
     values=Gears,
     complete=_check_geometry,
