@@ -116,7 +116,8 @@ class EHLProblem:
         if self.fluid is None:
             self.reynolds: NoOil | Reynolds = NoOil(first, last, self.window.start)
         else:
-            self.reynolds = Reynolds(scales, film_scale, first, last, self.window.start)
+            layer = case.contact.asperity_height or 0.0
+            self.reynolds = Reynolds(scales, film_scale, first, last, self.window.start, layer)
             if self.fluid.inlet_film is not None:
                 self.inlet_film = self.fluid.inlet_film / scales.h
         self.reynolds_columns = self.reynolds.columns

@@ -18,6 +18,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
+from ehlpetsc.physics.asperities import flow_factor
 from ehlpetsc.physics.laws import relative_density
 from ehlpetsc.physics.rheology import mobilities, tabulated_mobilities
 
@@ -85,6 +86,37 @@ def fluidities(at: np.ndarray, left: int, right: int) -> tuple:
 
 
 @compiled
+def face_mobilities(
+    at: np.ndarray,
+    left: int,
+    right: int,
+    film: float,
+    gradient: float,
+    table: np.ndarray,
+    stress: float,
+    stress_rise: float,
+    sliding: float,
+    layer: float,
+) -> tuple[tuple, tuple]:
+    """Mobilities of both nodes of a face and their derivatives, with the factor of the layer."""
+    if stress_rise != 0.0:
+        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
+    state = film, gradient, *fluidities(at, left, right), stress, sliding / stress
+    mobility_l, mobility_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
+    if layer == 0.0:
+        return mobility_l, mobility_r
+    factor, by_film = flow_factor(film, layer)
+    return scaled(mobility_l, factor, by_film), scaled(mobility_r, factor, by_film)
+
+
+@compiled
+def scaled(mobility: tuple, factor: float, by_film: float) -> tuple:
+    """A mobility and its derivatives times a factor of the film."""
+    value, by_h, by_gradient, by_ln_eta = mobility
+    return factor * value, factor * by_h + by_film * value, factor * by_gradient, factor * by_ln_eta
+
+
+@compiled
 def flux_through(
     at: np.ndarray,
     left: int,
@@ -95,6 +127,7 @@ def flux_through(
     stress_rise: float,
     sliding: float,
     entrainment: float,
+    layer: float,
 ) -> tuple:
     """Mass flux through the face right of node `left`, and its derivatives.
 
@@ -111,15 +144,16 @@ def flux_through(
         Stress of the shear law without pressure, infinite: Newtonian, its rise over p0 [Pa]; |u1 - u2| [m/s].
     entrainment
         Entrainment speed over that of the scales.
+    layer
+        Rms height of the compliant layer [m], 0 without one.
     """
     right, behind = left + ONE, left - ONE if left > 0 else left
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
-    if stress_rise != 0.0:
-        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
-    state = film, gradient, *fluidities(at, left, right), stress, sliding / stress
-    mobility_l, mobility_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
+    mobility_l, mobility_r = face_mobilities(
+        at, left, right, film, gradient, table, stress, stress_rise, sliding, layer
+    )
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
     by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
@@ -175,7 +209,7 @@ def balance(
     first
         Index of the first cell's node.
     law
-        `per_length` to `entrainment` of :func:`flux_through`.
+        `per_length` to `layer` of :func:`flux_through`.
     table
         See there.
     m_old, extrapolated : shape (cells,)

@@ -51,6 +51,8 @@ class Reynolds:
         Range of the evaluated rows.
     start
         First node of the arrays that are passed in.
+    layer
+        Rms height of the compliant layer [m], 0 without one.
 
     Attributes
     ----------
@@ -58,8 +60,10 @@ class Reynolds:
         Indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown.
     """
 
-    def __init__(self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0):
-        self.scales, self.film_scale = scales, film_scale
+    def __init__(
+        self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0, layer: float = 0.0
+    ):
+        self.scales, self.film_scale, self.layer = scales, film_scale, layer
         n = scales.nx
         self.local = slice(first, last)
         self.rows = slice(max(first, 1), last)
@@ -104,7 +108,7 @@ class Reynolds:
         stress = np.inf if flow.kind == NEWTON else flow.stress
         rise = s.p0 * stress_pressure(inputs.fluid)
         stresses = stress, stress * rise if rise else 0.0
-        return s.p0 / (s.a * self.dx), s.h, *stresses, abs(now.sliding), now.entrainment / s.u
+        return s.p0 / (s.a * self.dx), s.h, *stresses, abs(now.sliding), now.entrainment / s.u, self.layer
 
     def flow_table(self, inputs: StepInputs) -> np.ndarray:
         """Table of the pressure flow, empty where the shear law has a closed form."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
+from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
@@ -34,8 +34,7 @@ def film_at_contact(result: Result) -> float:
 def layer_film(contact: Contact) -> float:
     """Film [m] at which a compliant layer carries `CONTACT_PRESSURE`; `contact`: table of a case."""
     modulus = 0.5 * reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
-    prefactor = contact.asperity_stiffness * modulus
-    return asperity_separation(CONTACT_PRESSURE, GAMMA * contact.asperity_height, prefactor)
+    return asperity_separation(CONTACT_PRESSURE, *layer_law(contact, modulus))
 
 
 def in_contact(result: Result, frames: int | slice, nodes: int | slice = slice(None)) -> np.ndarray:

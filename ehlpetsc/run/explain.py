@@ -12,7 +12,7 @@ from ehlpetsc.base.command_parser import CommandParser, exit_status, put
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.asperities import CONTACT_PRESSURE, GAMMA, asperity_separation
+from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import (
@@ -79,7 +79,7 @@ def _layer(contact: Any, s: Scales) -> list[str]:
     """Films at which a compliant layer carries load; [] without a layer."""
     if contact.asperity_height is None:
         return []
-    law = GAMMA * contact.asperity_height, contact.asperity_stiffness * 0.5 * s.E
+    law = layer_law(contact, 0.5 * s.E)
     films = [1e9 * asperity_separation(pressure, *law) for pressure in (CONTACT_PRESSURE, s.p0)]
     return [
         f"Layer: rms height {1e9 * contact.asperity_height:.3g} nm; its asperities carry "

@@ -35,6 +35,16 @@ SCENES = {
         "table1_smooth.toml",
         ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"],
     ),
+    "compliant, hard, adsorbed film": (
+        "table1_smooth.toml",
+        [
+            "contact.model='mixed'",
+            "contact.asperity_height=2e-9",
+            "contact.asperity_stiffness=1.0",
+            "contact.asperity_hardness=2e11",
+            "contact.adsorbed_film=1e-9",
+        ],
+    ),
     "dry, compliant": (
         "dry_hertz.toml",
         ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"],

@@ -8,9 +8,11 @@ from scipy.special import erf
 from ehlpetsc.physics.asperities import (
     EXPONENTIAL,
     GAMMA,
+    LayerLaw,
     asperity_pressures,
     asperity_separations,
     asperity_stiffness,
+    flow_factor,
     real_area_fraction,
 )
 
@@ -56,27 +58,66 @@ def test_decay_and_prefactor_are_within_the_stated_range(hurst, decades):
     assert 0.98 < np.exp(ln_beta) < 1.7
 
 
-def test_pressure_and_separation_are_inverse_and_smooth():
-    decay, prefactor = 1e-3, 100.0
-    pressure = np.geomspace(1e-6, 1e4, 200)
-    h = asperity_separations(pressure, decay, prefactor)
-    assert (h > 0.0).all()
-    found, slope = asperity_pressures(h, decay, prefactor)
-    np.testing.assert_allclose(found, pressure, rtol=1e-12)
-    step = 1e-6 * h
-    forward, backward = (asperity_pressures(h + k * step, decay, prefactor)[0] for k in (1, -1))
+LAWS = {
+    "elastic": LayerLaw(1e-3, 100.0),
+    "adsorbed film": LayerLaw(1e-3, 100.0, 0.0, 2e-3),
+    "hard": LayerLaw(1e-3, 100.0, 1e-3, 2e-3),  # hardness 1000
+    "soft": LayerLaw(1e-3, 100.0, 125.0),  # hardness 20
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_pressure_and_separation_are_inverse_and_smooth(name):
+    law = LAWS[name]
+    pressure = np.geomspace(1e-9, 0.99 * hardness(law), 200)
+    h = asperity_separations(pressure, law)
+    assert (h > law.adsorbed).all()
+    found, slope = asperity_pressures(h, law)
+    np.testing.assert_allclose(found, pressure, rtol=1e-11)
+    step = 1e-6 * (h - law.adsorbed)
+    forward, backward = (asperity_pressures(h + k * step, law)[0] for k in (1, -1))
     np.testing.assert_allclose(slope, (forward - backward) / (2.0 * step), rtol=1e-4)
-    thick = h >= 12.0 * decay
-    np.testing.assert_allclose(found[thick], prefactor * np.exp(-h[thick] / decay), rtol=1e-14)
-    edge = asperity_pressures(decay * EXPONENTIAL * np.array([1.0 - 1e-9, 1.0 + 1e-9]), decay, prefactor)
-    for value in edge:
-        assert abs(value[1] / value[0] - 1.0) < 1e-7
+
+
+def hardness(law):
+    return law.prefactor * law.closed ** (-1.0 / 3.0) if law.closed else 10.0 * law.prefactor
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_law_is_exponential_far_out(name):
+    law = LAWS[name]
+    h = law.adsorbed + law.decay * np.array([14.0, EXPONENTIAL * (1 - 1e-9), EXPONENTIAL * (1 + 1e-9), 200.0])
+    found, slope = asperity_pressures(h, law)
+    expected = law.prefactor * np.exp(-(h - law.adsorbed) / law.decay)
+    np.testing.assert_allclose(found, expected, rtol=1e-13)
+    np.testing.assert_allclose(slope, -expected / law.decay, rtol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["hard", "soft"])
+def test_contact_is_full_at_the_hardness(name):
+    """No gap but the adsorbed film, all of the area in contact; the pressure is bounded until then."""
+    law = LAWS[name]
+    limit = hardness(law)
+    assert asperity_separations(np.array([limit]), law)[0] == pytest.approx(law.adsorbed, abs=1e-15)
+    assert real_area_fraction(np.array([limit]), 1e4, limit)[0] == 1.0
+    open_gaps = law.adsorbed + law.decay * np.geomspace(1e-9, 100.0, 200)
+    assert (asperity_pressures(open_gaps, law)[0] <= limit).all()
+    beyond = np.array([1.1, 2.0]) * limit  # without oil the solids carry this at next to no deformation
+    h = asperity_separations(beyond, law)
+    np.testing.assert_allclose(asperity_pressures(h, law)[0], beyond, rtol=1e-12)
+    elastic = law._replace(closed=0.0)
+    light = np.array([1e-3]) * limit
+    np.testing.assert_allclose(
+        asperity_separations(light, law), asperity_separations(light, elastic), rtol=1e-9
+    )
 
 
 def test_slope_of_the_law_equals_its_complex_step():
     h = np.geomspace(1e-4, 12.0, 60)
-    complex_step = np.imag((np.exp(3.0 * (h + 1e-30j)) - 1.0) ** (-1.0 / 3.0)) / 1e-30
-    np.testing.assert_allclose(asperity_pressures(h, 1.0, 1.0)[1], complex_step, rtol=1e-10)
+    for closed in (0.0, 1e-3):
+        complex_step = np.imag((np.exp(3.0 * (h + 1e-30j)) - 1.0 + closed) ** (-1.0 / 3.0)) / 1e-30
+        law = LayerLaw(1.0, 1.0, closed)
+        np.testing.assert_allclose(asperity_pressures(h, law)[1], complex_step, rtol=1e-10)
 
 
 @pytest.mark.parametrize(
@@ -87,9 +128,16 @@ def test_law_with_the_default_stiffness_is_that_of_the_theory(hurst, decades):
     pressure = np.geomspace(3e-3, 30.0, 40)
     beta = asperity_stiffness(1.0, 2.0 * np.pi)  # wavenumbers in 1/h_rms, q_0 = 1
     expected = separations(pressure, hurst, decades)
-    found = asperity_separations(pressure, GAMMA, beta)
+    found = asperity_separations(pressure, LayerLaw(GAMMA, beta))
     assert np.abs(found - expected).max() < 0.3
     assert found[-1] < 1e-4 and expected[-1] < 1e-4  # flattened
+
+
+def test_flow_factor_is_that_of_patir_and_cheng():
+    found = [flow_factor(h, 2.0)[0] for h in (0.0, 2.0, 6.0, 100.0)]
+    assert found == pytest.approx([0.1, 1.0 - 0.9 * np.exp(-0.56), 1.0 - 0.9 * np.exp(-1.68), 1.0], rel=1e-12)
+    forward, backward = (flow_factor(h, 2.0)[0] for h in (3.0 + 1e-5, 3.0 - 1e-5))
+    assert flow_factor(3.0, 2.0)[1] == pytest.approx((forward - backward) / 2e-5, rel=1e-8)
 
 
 def test_real_area_is_complete_at_the_hardness_and_bounds_the_pressure():

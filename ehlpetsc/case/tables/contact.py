@@ -72,8 +72,8 @@ KEYS = {
         'rms height of the roughness finer than the mesh; "measured": that which short_cutoff removes',
         *("m", 1e-11, 1e-6),
         needs=(MIXED,),
-        equation="p_c = beta E* (exp(3 h/(0.5 sigma)) - 1)^(-1/3), E* = E'/2, sigma = asperity_height; "
-        "about beta E* exp(-h/(0.5 sigma))",
+        equation="p_c = beta E* (exp(3 (h - h_a)/(0.5 sigma)) - 1 + (beta E*/H)^3)^(-1/3), E* = E'/2, "
+        "sigma = asperity_height, h_a = adsorbed_film, H = asperity_hardness",
     ),
     "asperity_stiffness": Key(
         "beta of that law [2 pi sigma/L, L = short_cutoff, or eight nodes without one]",
@@ -86,8 +86,14 @@ KEYS = {
         needs=(LAYER,),
     ),
     "asperity_hardness": Key(
-        "hardness of the asperities, which bounds their pressure: more real area; left out: elastic",
+        "hardness H of the asperities, their pressure in full contact; left out: elastic",
         *("Pa", 1e6, 1e18),
+        needs=(LAYER,),
+    ),
+    "adsorbed_film": Key(
+        "film between asperities in full contact, by which the law of the layer is shifted",
+        *("m", 0, 1e-7),
+        default=0.0,
         needs=(LAYER,),
     ),
     "boundary_film": Key(

@@ -17,9 +17,8 @@ def smallest_film(contact: Any, scales: Scales) -> float:
     """Film in a^2/R that solids in contact leave: boundary film, or that of the layer under p0; 0: none."""
     if contact.asperity_height is not None:
         from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-        from ehlpetsc.physics.asperities import GAMMA
 
-        return CompliantContact(Layer.of(contact, scales, GAMMA)).minimum_film
+        return CompliantContact(Layer.of(contact, scales)).minimum_film
     return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
 
 
@@ -43,9 +42,8 @@ def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance:
     if contact.asperity_height is not None:
         from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
         from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
-        from ehlpetsc.physics.asperities import GAMMA
 
-        layer = Layer.of(contact, scales, GAMMA)
+        layer = Layer.of(contact, scales)
         if contact.yield_pressure is None:
             return CompliantContact(layer)
         return CompliantYieldingContact(layer, min(contact.yield_pressure) / scales.p0, film_scale)

@@ -1,10 +1,10 @@
 r"""Mixed contact through a compliant layer: roughness finer than the mesh carries before the film closes.
 
-.. math:: p=\max(q,0)+p_c(h),\qquad p_c(h)=\beta E^*\big(e^{3h/(\gamma\sigma)}-1\big)^{-1/3},
+.. math:: p=\max(q,0)+p_c(h),
 
-see :mod:`ehlpetsc.physics.asperities`. The unknowns are (q, h): nothing is bounded or semismooth but
-cavitation, and the Reynolds equation holds at every node with the film h. Flow factors of the layer are
-neglected: the oil between its asperities flows as in a smooth gap of the mean separation.
+the law :math:`p_c(h)` of :mod:`ehlpetsc.physics.asperities`. The unknowns are (q, h): nothing is bounded or
+semismooth but cavitation, and the Reynolds equation holds at every node with the film h, its pressure flow
+reduced by the layer (:func:`ehlpetsc.physics.asperities.flow_factor`).
 
 A Newton step may at most double p_c at a node, from `FREE_RISE` p0 on: the linearised law does not contain
 the rise of an exponential.
@@ -29,10 +29,12 @@ from ehlpetsc.discretisation.contact.node_state import (
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import (
     CONTACT_PRESSURE,
+    LayerLaw,
     asperity_pressure,
     asperity_pressures,
     asperity_separation,
     asperity_separations,
+    layer_law,
     real_area_fraction,
 )
 from ehlpetsc.physics.scales import Scales
@@ -50,30 +52,26 @@ class Layer:
 
     Attributes
     ----------
-    decay
-        gamma sigma.
-    prefactor
-        beta E*.
+    law
+        See :class:`ehlpetsc.physics.asperities.LayerLaw`.
     slope_modulus, hardness
         E* h'_rms; infinite for elastic asperities.
     contact_pressure, high_pressure
         Thresholds of the lengths in contact.
     """
 
-    decay: float
-    prefactor: float
+    law: LayerLaw
     slope_modulus: float
     hardness: float
     contact_pressure: float
     high_pressure: float
 
     @classmethod
-    def of(cls, contact: Any, scales: Scales, gamma: float) -> Layer:
+    def of(cls, contact: Any, scales: Scales) -> Layer:
         """Layer of the table [contact], its rms height `asperity_height` a number."""
         modulus = 0.5 * scales.E / scales.p0
         return cls(
-            gamma * contact.asperity_height / scales.h,
-            contact.asperity_stiffness * modulus,
+            layer_law(contact, 0.5 * scales.E, scales.p0, scales.h),
             contact.asperity_slope * modulus,
             (contact.asperity_hardness or np.inf) / scales.p0,
             CONTACT_PRESSURE / scales.p0,
@@ -86,19 +84,19 @@ class CompliantContact(SeparatedContact):
 
     def __init__(self, layer: Layer):
         self.layer = layer
-        self.law = layer.decay, layer.prefactor
+        self.law = tuple(layer.law)
         self.minimum_film = asperity_separation(1.0, *self.law)
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
-        solids, slope = asperity_pressures(w, *self.law)
+        solids, slope = asperity_pressures(w, self.law)
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
         mask = solids > self.layer.contact_pressure
         return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones, mask)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
-        return asperity_pressures(w, *self.law)[0]
+        return asperity_pressures(w, self.law)[0]
 
     def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """Nodes whose asperities carry more than `CONTACT_PRESSURE`."""
@@ -106,7 +104,7 @@ class CompliantContact(SeparatedContact):
 
     def w_from_film(self, h: np.ndarray) -> np.ndarray:
         """The film itself."""
-        return np.maximum(h, 1e-3 * self.layer.decay)
+        return np.maximum(h, self.layer.law.adsorbed + 1e-3 * self.layer.law.decay)
 
     def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
         """The film; without one that at which asperities carry the pressure."""
@@ -114,7 +112,7 @@ class CompliantContact(SeparatedContact):
         return np.where(closed, self._separation(contact_pressure), self.w_from_film(h))
 
     def _separation(self, pressure: np.ndarray) -> np.ndarray:
-        return asperity_separations(np.maximum(pressure, DRY_START_EDGE_PRESSURE), *self.law)
+        return asperity_separations(np.maximum(pressure, DRY_START_EDGE_PRESSURE), self.law)
 
     def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`."""
@@ -137,11 +135,11 @@ class CompliantContact(SeparatedContact):
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`; linear in h."""
-        return pressure_change(now, step, *self.law)
+        return pressure_change(now, step, self.law)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
-        limit_rise(now, step, *self.law)
+        limit_rise(now, step, self.law)
 
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """Pairs (p, h) at nodes full of oil; (q, h) or, where asperities are stiff, (p, q) under a void."""
@@ -185,21 +183,21 @@ class CompliantContact(SeparatedContact):
 
 
 @compiled
-def pressure_change(now: np.ndarray, step: np.ndarray, decay: float, prefactor: float) -> float:
+def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple) -> float:
     """Largest change of total pressure, that of the asperities linearised."""
     largest = 0.0
     for i in range(len(now)):
         q, new_q = now[i, 0], now[i, 0] - step[i, 0]
-        slope = asperity_pressure(now[i, 1], decay, prefactor)[1]
+        slope = asperity_pressure(now[i, 1], *law)[1]
         largest = max(largest, abs(max(new_q, 0.0) - max(q, 0.0) - slope * step[i, 1]))
     return largest
 
 
 @compiled
-def limit_rise(now: np.ndarray, step: np.ndarray, decay: float, prefactor: float) -> None:
+def limit_rise(now: np.ndarray, step: np.ndarray, law: tuple) -> None:
     """Limit steps in place where a cavity fills or empties, or where p_c would more than double."""
     for i in range(len(now)):
         h = now[i, 1]
         step[i, 0] = limit_cavitation(now[i, 0], step[i, 0])
-        highest = max(2.0 * asperity_pressure(h, decay, prefactor)[0], FREE_RISE)
-        step[i, 1] = min(step[i, 1], h - asperity_separation(highest, decay, prefactor))
+        highest = max(2.0 * asperity_pressure(h, *law)[0], FREE_RISE)
+        step[i, 1] = min(step[i, 1], h - asperity_separation(highest, *law))

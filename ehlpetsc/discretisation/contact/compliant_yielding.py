@@ -139,7 +139,7 @@ def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float,
     largest = 0.0
     for i in range(len(now)):
         q, w, new_q = now[i, 0], now[i, 1], now[i, 0] - step[i, 0]
-        solids, slope = asperity_pressure(max(w, smallest), law[0], law[1])
+        solids, slope = asperity_pressure(max(w, smallest), *law)
         rise = 0.0 if w < smallest else -slope * step[i, 1]
         total = min(max(q, 0.0) + solids, limit)
         new_total = min(max(new_q, 0.0) + solids + rise, limit)
@@ -162,18 +162,18 @@ def limit_steps(
     for i in range(len(now)):
         q, w = now[i, 0], now[i, 1]
         closed = w < smallest
-        solids, slope = asperity_pressure(max(w, smallest), law[0], law[1])
+        solids, slope = asperity_pressure(max(w, smallest), *law)
         by_oil = not closed and q > AMBIENT_TOLERANCE and q + solids > limit
         new_q, new_w = q - limit_cavitation(q, step[i, 0]), w - step[i, 1]
         if not closed:
-            new_w = max(new_w, asperity_separation(max(2.0 * solids, FREE_RISE), law[0], law[1]))
-        new_solids = asperity_pressure(max(new_w, smallest), law[0], law[1])[0]
-        edge = asperity_separation(limit - 2.0 * tiny, law[0], law[1])
+            new_w = max(new_w, asperity_separation(max(2.0 * solids, FREE_RISE), *law))
+        new_solids = asperity_pressure(max(new_w, smallest), *law)[0]
+        edge = asperity_separation(limit - 2.0 * tiny, *law)
         if by_oil:
             excess = q + solids - limit - step[i, 0] + slope * (new_w - w)
             if excess <= 0.0:
                 new_w = max(new_w, edge)
-                new_solids = asperity_pressure(new_w, law[0], law[1])[0]
+                new_solids = asperity_pressure(new_w, *law)[0]
                 new_q = limit - tiny - new_solids
             elif new_solids < limit - tiny:
                 new_q = limit + excess - new_solids

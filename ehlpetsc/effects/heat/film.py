@@ -21,14 +21,14 @@ from ehlpetsc.discretisation.finite_volumes import (
     H,
     M,
     P,
+    face_mobilities,
     fill_mass,
-    fluidities,
     positive_extrapolation,
 )
 from ehlpetsc.effects.heat.film_law import A, B, FilmLaw, film_temperature, fixed_at
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.physics.laws import ln_viscosity
-from ehlpetsc.physics.rheology import MIN_RATE, mobilities, stress_spread, tabulated_mobilities
+from ehlpetsc.physics.rheology import MIN_RATE, stress_spread
 
 
 class FilmHeat(NamedTuple):
@@ -182,7 +182,7 @@ def faces(
         Filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
-    per_length, _, no_pressure, stress_rise, sliding, entrainment = law
+    per_length, _, no_pressure, stress_rise, sliding, entrainment, layer = law
     pressure_heat[:] = 0.0
     slope = 0.0
     for i in range(nodes):
@@ -190,11 +190,9 @@ def faces(
         drawn = positive_extrapolation(at[M, i], at[M, behind], 0.5 if i > 0 else 0.0)[0]
         before, slope = slope, per_length * (at[P, i + 1] - at[P, i])
         film = 0.5 * (at[H, i] + at[H, i + 1])
-        stress = no_pressure
-        if stress_rise != 0.0:
-            stress += 0.5 * stress_rise * (at[P, i] + at[P, i + 1])
-        state = film, slope, *fluidities(at, i, i + 1), stress, sliding / stress
-        left, right = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
+        left, right = face_mobilities(
+            at, i, i + 1, film, slope, table, no_pressure, stress_rise, sliding, layer
+        )
         couette[i + 1] = entrainment * drawn
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0

@@ -66,7 +66,8 @@ class HeatStep:
         self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
         # of films that close the shear would heat without limit, and not at all once they are closed
         self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
-        self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx)
+        layer = case.contact.asperity_height or 0.0
+        self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx, layer=layer)
         self.coldest = min(self.inlet, *self.bulk)
 
     def film_heat(self, record: HeatRecord, inputs: StepInputs, step: Step) -> FilmHeat:
