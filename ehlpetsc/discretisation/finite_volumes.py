@@ -94,13 +94,10 @@ def face_mobilities(
     gradient: float,
     table: np.ndarray,
     stress: float,
-    stress_rise: float,
     sliding: float,
     layer: float,
 ) -> tuple[tuple, tuple]:
     """Mobilities of both nodes of a face and their derivatives, with the factor of the layer."""
-    if stress_rise != 0.0:
-        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
     state = film, gradient, *fluidities(at, left, right), stress, sliding / stress
     mobility_l, mobility_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
     if layer == 0.0:
@@ -151,9 +148,10 @@ def flux_through(
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
-    mobility_l, mobility_r = face_mobilities(
-        at, left, right, film, gradient, table, stress, stress_rise, sliding, layer
-    )
+    if stress_rise != 0.0:
+        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
+    gap = film, gradient, table, stress, sliding, layer
+    mobility_l, mobility_r = face_mobilities(at, left, right, *gap)
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
     by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])

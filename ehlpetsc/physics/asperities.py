@@ -40,8 +40,8 @@ longest wave of the roughness. One law holds from the first touch to flattened a
   wave, 0.008 for 10 nm below 8 um.
 - At the hardness H the contact is full: in Persson's theory all stress is absorbed at H
   (:func:`real_area_fraction`), so that area and separation at :math:`p_c=H` are those of complete contact,
-  and :math:`p_c\le H` at any gap. H is left out for elastic asperities. That the cubes subtract is a choice: it
-  keeps the law explicit both ways, smooth, and elastic where :math:`p_c\ll H`.
+  and :math:`p_c\le H` at any gap. H is left out for elastic asperities. That the cubes subtract is a choice:
+  it keeps the law explicit both ways, smooth, and elastic where :math:`p_c\ll H`.
 - Between solids with an adsorbed film each, h counts both films, :math:`h_a=` `adsorbed_film` together: the
   asperities touch as bare ones would at :math:`h-h_a`, and the film does not fall below :math:`h_a`. A larger
   :math:`\beta` has the same effect at light load, as a film of :math:`\gamma\sigma\ln(\beta/\beta_{theory})`.

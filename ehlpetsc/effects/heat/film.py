@@ -190,9 +190,10 @@ def faces(
         drawn = positive_extrapolation(at[M, i], at[M, behind], 0.5 if i > 0 else 0.0)[0]
         before, slope = slope, per_length * (at[P, i + 1] - at[P, i])
         film = 0.5 * (at[H, i] + at[H, i + 1])
-        left, right = face_mobilities(
-            at, i, i + 1, film, slope, table, no_pressure, stress_rise, sliding, layer
-        )
+        stress = no_pressure
+        if stress_rise != 0.0:
+            stress += 0.5 * stress_rise * (at[P, i] + at[P, i + 1])
+        left, right = face_mobilities(at, i, i + 1, film, slope, table, stress, sliding, layer)
         couette[i + 1] = entrainment * drawn
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
