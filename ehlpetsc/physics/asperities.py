@@ -62,6 +62,7 @@ from ehlpetsc.base.compiled import compiled
 
 EXPONENTIAL = 30.0  # separation over the decay length beyond which the law is an exponential in all digits
 MAX_RATIO = 1e10  # of prefactor to pressure up to which the law differs from it
+FULL_CONTACT = 1e-3  # film of full contact at the hardness over the decay length: 5 pm, as films are positive
 STIFFNESS = 1.0  # beta over the slope 2 pi sigma/L of the longest wave of the layer
 GAMMA = 0.5  # decay length of the pressure over the rms height
 CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
@@ -75,7 +76,7 @@ class LayerLaw(NamedTuple):
     decay: float  # gamma sigma
     prefactor: float  # beta E*
     closed: float = 0.0  # (beta E*/H)^3, 0 for elastic asperities
-    adsorbed: float = 0.0  # film between the solids in full contact
+    full_contact: float = 0.0  # film in full contact
 
 
 def layer_law(contact: Any, modulus: float, pressure: float = 1.0, film: float = 1.0) -> LayerLaw:
@@ -83,24 +84,26 @@ def layer_law(contact: Any, modulus: float, pressure: float = 1.0, film: float =
     prefactor, hardness = contact.asperity_stiffness * modulus, contact.asperity_hardness
     closed = 0.0 if hardness is None else (prefactor / hardness) ** 3
     decay = GAMMA * contact.asperity_height / film
-    return LayerLaw(decay, prefactor / pressure, closed, contact.adsorbed_film / film)
+    rest = 0.0 if hardness is None else FULL_CONTACT * decay
+    return LayerLaw(decay, prefactor / pressure, closed, contact.adsorbed_film / film + rest)
 
 
 @compiled
 def asperity_pressure(
-    h: float, decay: float, prefactor: float, closed: float, adsorbed: float
+    h: float, decay: float, prefactor: float, closed: float, full_contact: float
 ) -> tuple[float, float]:
     """Pressure of the asperities at a film h, and its derivative; arguments as in :class:`LayerLaw`.
 
-    Beyond full contact, at the hardness, the pressure rises steeply and linearly.
+    Beyond full contact, at the hardness, the pressure rises steeply with what is left of `FULL_CONTACT`.
     """
-    ratio = (h - adsorbed) / decay
+    ratio = (h - full_contact) / decay
     if ratio > EXPONENTIAL:
         pressure = prefactor * math.exp(-ratio)
         return pressure, -pressure / decay
     if ratio <= 0.0 and closed > 0.0:
-        hardness, slope = _full_contact(decay, prefactor, closed)
-        return hardness + slope * (h - adsorbed), slope
+        power, rest = _beyond_full_contact(closed), 1.0 + ratio / FULL_CONTACT
+        pressure = prefactor * closed ** (-1.0 / 3.0) * rest**-power
+        return pressure, -power * pressure / (rest * FULL_CONTACT * decay)
     flattened = math.expm1(3.0 * ratio)
     rest = flattened + closed
     pressure = prefactor * rest ** (-1.0 / 3.0)
@@ -119,25 +122,25 @@ def flow_factor(h: float, height: float) -> tuple[float, float]:
 
 
 @compiled
-def _full_contact(decay: float, prefactor: float, closed: float) -> tuple[float, float]:
-    """Hardness, and slope of the pressure from there on; at least beta E* over the decay length."""
-    hardness = prefactor * closed ** (-1.0 / 3.0)
-    return hardness, -max(hardness / closed, prefactor) / decay
+def _beyond_full_contact(closed: float) -> float:
+    """Exponent of the pressure over the rest of the film: slope of the law, or at least a tenth."""
+    return max(FULL_CONTACT / closed, 0.1)
 
 
 @compiled
 def asperity_separation(
-    pressure: float, decay: float, prefactor: float, closed: float, adsorbed: float
+    pressure: float, decay: float, prefactor: float, closed: float, full_contact: float
 ) -> float:
     """Film at which asperities carry a positive pressure: the inverse of :func:`asperity_pressure`."""
     ratio = prefactor / pressure
     if ratio > MAX_RATIO:
-        return adsorbed + decay * math.log(ratio)
+        return full_contact + decay * math.log(ratio)
     cube = ratio * ratio * ratio
     if cube < closed:
-        hardness, slope = _full_contact(decay, prefactor, closed)
-        return adsorbed + (pressure - hardness) / slope
-    return adsorbed + decay / 3.0 * math.log1p(cube - closed)
+        hardness = prefactor * closed ** (-1.0 / 3.0)
+        rest = (hardness / pressure) ** (1.0 / _beyond_full_contact(closed))
+        return full_contact + decay * FULL_CONTACT * (rest - 1.0)
+    return full_contact + decay / 3.0 * math.log1p(cube - closed)
 
 
 def asperity_pressures(h: np.ndarray, law: tuple) -> tuple[np.ndarray, np.ndarray]:
@@ -148,11 +151,11 @@ def asperity_pressures(h: np.ndarray, law: tuple) -> tuple[np.ndarray, np.ndarra
 
 @compiled
 def _pressures(
-    h: np.ndarray, decay: float, prefactor: float, closed: float, adsorbed: float
+    h: np.ndarray, decay: float, prefactor: float, closed: float, full_contact: float
 ) -> tuple[np.ndarray, np.ndarray]:
     pressure, derivative = np.empty(len(h)), np.empty(len(h))
     for i in range(len(h)):
-        pressure[i], derivative[i] = asperity_pressure(h[i], decay, prefactor, closed, adsorbed)
+        pressure[i], derivative[i] = asperity_pressure(h[i], decay, prefactor, closed, full_contact)
     return pressure, derivative
 
 
@@ -163,11 +166,11 @@ def asperity_separations(pressure: np.ndarray, law: tuple) -> np.ndarray:
 
 @compiled
 def _separations(
-    pressure: np.ndarray, decay: float, prefactor: float, closed: float, adsorbed: float
+    pressure: np.ndarray, decay: float, prefactor: float, closed: float, full_contact: float
 ) -> np.ndarray:
     h = np.empty(len(pressure))
     for i in range(len(h)):
-        h[i] = asperity_separation(pressure[i], decay, prefactor, closed, adsorbed)
+        h[i] = asperity_separation(pressure[i], decay, prefactor, closed, full_contact)
     return h
 
 

@@ -104,7 +104,7 @@ class CompliantContact(SeparatedContact):
 
     def w_from_film(self, h: np.ndarray) -> np.ndarray:
         """The film itself."""
-        return np.maximum(h, self.layer.law.adsorbed + 1e-3 * self.layer.law.decay)
+        return np.maximum(h, self.layer.law.full_contact + 1e-3 * self.layer.law.decay)
 
     def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
         """The film; without one that at which asperities carry the pressure."""
