@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, OutputError, PostError, Stopped
-from ehlpetsc.post.fatigue.accumulate import Counter
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
-from ehlpetsc.post.run import Job, Task, solve
+from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.outputs.recorder import Recorder
@@ -152,9 +151,7 @@ def _means(file: Path) -> dict[str, float]:
 def _damage(file: Path) -> list[tuple]:
     """Points s, depths [m] and damage of both surfaces, of the points that passed the whole contact."""
     with Loads(file) as loads:
-        job = Job(str(file), "").of_case(loads.case)
-        column = len(Counter.columns) if job.criteria else 0
-        prepared = prepare(loads, SIDES, lambda text: None)
+        job, prepared = Job(str(file), "").of_case(loads.case), prepare(loads, SIDES, lambda text: None)
         damages = []
         for side in SIDES:
             motion, depths = prepared.motions[side], prepared.settings.depths
@@ -163,6 +160,7 @@ def _damage(file: Path) -> list[tuple]:
                 raise PostError(
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
-            values = solve(job, prepared, Task(side, depths))[..., column]
-            damages.append((prepared.s[passed], loads.a * np.array(depths), values[:, passed]))
+            values = solve(prepared, side, job.counting, job.criteria)
+            criterion = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
+            damages.append((prepared.s[passed], loads.a * depths, criterion[:, passed]))
     return damages

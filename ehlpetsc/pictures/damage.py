@@ -1,4 +1,4 @@
-"""Pictures of post-processing as PNG and SVG: maps of damage, its distribution over asperities, passes."""
+"""Pictures of post-processing as PNG and SVG: maps of damage, its distribution over asperities."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from ehlpetsc.base.errors import PostError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.stresses import along_body, field_picture, history_picture
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
-from ehlpetsc.post.passes import pass_statistics, same_points
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 
@@ -29,8 +28,6 @@ LAYER_DEPTH = 0.2  # half-widths in a comparison of results: damage below asperi
 MIN_TICK_DISTANCE = 0.09  # of the depth axis
 CRITERIA = {
     "fatemi-socie": "Fatemi-Socie",
-    "shear": "shear strain",
-    "swt": "Smith-Watson-Topper",
     "dang-van": "Dang Van: share of the fatigue limit; line: 1",
 }
 
@@ -50,12 +47,11 @@ def draw(
     folder: str,
     point: tuple[float, float] | None = None,
     frame: int | None = None,
-    passes: str | None = None,
 ) -> list[str]:
     """Draw all pictures of result files and their post-processing results; returns the names of the files.
 
     `folder` is "" for that of each result, `point` the s/a and z/a of the stress history, `frame` the stored
-    frame of the stresses, `passes` the surface of which the results are passes.
+    frame of the stresses.
     """
     names = []
     if folder:
@@ -65,9 +61,7 @@ def draw(
         stem = Path(folder or Path(output).parent) / Path(path).stem
         names += _of_one(path, result, stem, point, frame)
     common = Path(folder or Path(outputs[0]).parent)
-    if passes:
-        names += _save(passes_picture(results, passes), common / f"passes.damage_{passes}")
-    elif len(results) > 1:
+    if len(results) > 1:
         names += _compared(sorted(results, key=lambda r: r.ratio), common)
     return names
 
@@ -284,24 +278,6 @@ def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: 
     axes.grid(color="0.92")
     style.legend_beside(axes, title="dots: asperities\nlines: Weibull fit")
     style.set_title(figure, title)
-    return figure
-
-
-def passes_picture(results: list[PostResult], surface: str) -> Figure:
-    """Damage of each pass along the surface, at the depth of the maximum mean."""
-    s, damages = same_points(results, surface)
-    statistics = pass_statistics(damages)
-    worst = int(statistics.mean.max(axis=1).argmax())
-    x = along_body(results[0], surface, s)
-    figure, axes = style.new_figure(1, 1, (8.0, 3.6))
-    ends = damages[:, worst].min(axis=0), statistics.largest[worst]
-    axes.fill_between(x, *ends, color=style.FAINT, lw=0, label="minimum to maximum\nof the passes")
-    axes.plot(x, statistics.mean[worst], color=style.DARK, lw=0.8, label="mean of the passes")
-    axes.set(yscale="log", xlabel=f"along surface {surface} [mm]", ylabel="damage D of a pass")
-    style.legend_beside(axes)
-    of_what = f"surface {surface}, z/a = {results[0].z[worst]:g}, {len(results)} passes"
-    first = f"Miner's sum 1 from {statistics.life[worst].min():.3g} passes on"
-    style.set_title(figure, f"{of_what}, {_strain_rule(results[0])}: {first}")
     return figure
 
 

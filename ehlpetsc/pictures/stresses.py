@@ -50,7 +50,7 @@ def field_picture(path: str, result: PostResult, frame: int | None) -> Figure:
         if not 0 <= frame < loads.time.size:
             raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
         p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = read_settings(loads.case).material(surface).poisson_ratio
+        nu = read_settings(loads.case).materials[surface].poisson_ratio
         z = FIELD_DEPTH * np.linspace(0.0, 1.0, 121) ** 2
         stresses = stress(loads.x, z * loads.a, p, q, nu)
         x, time, a = loads.x / loads.a, loads.time[frame], loads.a
@@ -98,9 +98,9 @@ def history_picture(path: str, result: PostResult, point: tuple[float, float] | 
     s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
     check_passed(result, surface, s)
     with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
-        material = read_settings(loads.case).material(surface)
+        material = read_settings(loads.case).materials[surface]
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
-        heat = temperature_history(loads, surface, s) if loads.heated([surface]) else None
+        heat = temperature_history(loads, surface, s) if loads.is_heated(surface) else None
     channel = counted_channel(result.attrs["count"], values, material)
     cycles = rainflow(1e-9 * values[channel])
     i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import sys
@@ -10,21 +11,18 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ehlpetsc.base.command_parser import CommandParser
-from ehlpetsc.base.compiled import COMPILED
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, PostError, UsageError, not_written
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import CHANNELS, MEAN_STRESSES, Counting
-from ehlpetsc.post.fatigue.cycles import RESIDUES
-from ehlpetsc.post.passes import note_damage, store_passes
+from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES, Counting
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.results.index import files_of
-from ehlpetsc.results.output_guard import check_output_path
-from ehlpetsc.results.post_result import SURFACES, PointTemperatures, PostResult, WeibullFit, post_path
+from ehlpetsc.results.index import files_of, read_index
+from ehlpetsc.results.output_guard import Lock, atomic_write, check_output_path
+from ehlpetsc.results.post_result import SURFACES, PointTemperatures, PostResult, damage_beside, post_path
+from ehlpetsc.results.reader import read_result
 
 DESCRIPTION = (
     "Stress histories of body points, rainflow cycles, fatigue damage and its statistics from result files. "
@@ -34,46 +32,31 @@ SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.ST
 PASSES_INDEX = ".passes.json"
 
 
-HELP = {  # by destination
-    "results": "several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
-    "OUTPUT.passes.json: its passes, whose damage is then added to it",
-    "output": "result, of a single input (default: RESULT.post.h5 beside it)",
-    "surface": "processed surface (default both)",
-    "depths": "instead of those of [post]",
-    "set": "a key of [post], or contact.material, instead of that of the case; may be repeated",
-    "count": "counted scalar; max3: largest damage among counting sx, sz and txz (default)",
-    "residue": "history repeated (default), or half cycles",
-    "mean_stress": "morrow: with a floor to compression",
-    "criterion": "also compute, beside the paper's damage: " + ", ".join(CRITERIA),
-    "jobs": "threads (default 1)",
-    "pictures": "also draw PNG and SVG, in FOLDER or beside the result",
-    "passes": "the results are passes of this surface against other parts or alignments of the other one: "
-    "also write passes_SURFACE.post.h5: damage a pass with its scatter, Miner's sum to failure",
-    "point": "body point of the history picture (default: that of the largest damage)",
-    "frame": "stored frame of the stress picture (default: the middle one)",
-}
-
-
 def _parser() -> CommandParser:
     parser = CommandParser("post", DESCRIPTION)
-
-    def add(*names: str, **options: Any) -> None:
-        parser.add_argument(*names, **options, help=HELP[names[-1].lstrip("-").replace("-", "_")])
-
-    add("results", nargs="+", metavar="RESULT.h5")
-    add("-o", "--output", metavar="FILE")
-    add("--surface", choices=("both", *SURFACES), default="both")
-    add("--depths", nargs="+", type=float, metavar="Z/A")
-    add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE")
-    add("--count", choices=CHANNELS, default="max3")
-    add("--residue", choices=RESIDUES, default="closed")
-    add("--mean-stress", choices=MEAN_STRESSES, default="none")
-    add("--criterion", nargs="+", choices=CRITERIA, default=(), metavar="NAME")
-    add("--jobs", type=int, default=1, metavar="N")
-    add("--pictures", nargs="?", const="", metavar="FOLDER")
-    add("--passes", choices=SURFACES)
-    add("--point", nargs=2, type=float, metavar=("S/A", "Z/A"))
-    add("--frame", type=int, metavar="K")
+    add = parser.add_argument
+    several = (
+        "several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
+        "OUTPUT.passes.json: its passes, whose damage is then added to it"
+    )
+    add("results", nargs="+", metavar="RESULT.h5", help=several)
+    output = "result, of a single input (default: RESULT.post.h5 beside it)"
+    add("-o", "--output", metavar="FILE", help=output)
+    add("--surface", choices=("both", *SURFACES), default="both", help="processed surface (default both)")
+    add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
+    key = "a key of [post], or contact.material, instead of that of the case; may be repeated"
+    add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
+    morrow = "morrow: with a floor to compression"
+    add("--mean-stress", choices=MEAN_STRESSES, default="none", help=morrow)
+    also = "also compute, beside the paper's damage: " + ", ".join(CRITERIA)
+    add("--criterion", nargs="+", choices=CRITERIA, default=(), metavar="NAME", help=also)
+    add("--jobs", type=int, default=1, metavar="N", help="threads (default 1)")
+    pictures = "also draw PNG and SVG, in FOLDER or beside the result"
+    add("--pictures", nargs="?", const="", metavar="FOLDER", help=pictures)
+    point = "body point of the history picture (default: that of the largest damage)"
+    add("--point", nargs=2, type=float, metavar=("S/A", "Z/A"), help=point)
+    frame = "stored frame of the stress picture (default: the middle one)"
+    add("--frame", type=int, metavar="K", help=frame)
     return parser
 
 
@@ -89,27 +72,18 @@ def main(words: Sequence[str]) -> int:
         return ExitStatus.BAD_INPUT
     except UsageError as fault:
         parser.error(str(fault))
-    if not COMPILED:
-        _say("numba is not installed: the same results, a hundred times slower")
     statuses, done = [], []
     for path in files:
-        status = _status(partial(_process, path, arguments, files), path, _output(path, arguments))
-        if status == ExitStatus.STOPPED:
-            return status
-        statuses.append(status)
-        if status == ExitStatus.DONE:
-            done.append(path)
-    indexes = [path for path in arguments.results if path.endswith(PASSES_INDEX)]
-    for index in indexes if done else ():
-        statuses.append(_status(partial(_note_damage, index), index, index))
-    if arguments.passes:
-        output = _passes_file(files[0], arguments)
-        work = partial(_store_passes, [_output(path, arguments) for path in files], output, arguments)
-        statuses.append(_status(work if done == files else _not_all, "--passes", output))
-    if arguments.pictures is not None and done and not (arguments.passes and statuses[-1]):
-        statuses.append(
-            _status(partial(_draw, done, arguments), "pictures", arguments.pictures or "pictures")
-        )
+        statuses.append(_status(partial(_process, path, arguments, files), path, _output(path, arguments)))
+        if statuses[-1] == ExitStatus.STOPPED:
+            break
+        done += [path] if statuses[-1] == ExitStatus.DONE else []
+    else:
+        for index in [path for path in arguments.results if done and path.endswith(PASSES_INDEX)]:
+            statuses.append(_status(partial(_print_passes, index), index, index))
+        if arguments.pictures is not None and done:
+            work = partial(_draw, done, arguments)
+            statuses.append(_status(work, "pictures", arguments.pictures or "pictures"))
     return max(statuses, key=SEVERITY.index)
 
 
@@ -122,8 +96,6 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
     for setting in chosen.set:
         if not setting.startswith(("post.", "contact.material=")):
             raise UsageError(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")
-    if chosen.passes and len(files) < 2:
-        raise UsageError("--passes: give the results of two passes or more")
     if chosen.jobs < 1:
         raise UsageError(f"--jobs {chosen.jobs}: must be 1 or more")
 
@@ -154,20 +126,10 @@ def _status(work: Callable[[], None], path: str, output: str) -> int:
     return ExitStatus.DONE
 
 
-class Progress:
-    """Progress in percent, rewritten in place; on terminals only."""
-
-    def __init__(self, name: str) -> None:
-        self.name, self.last, self.shown = name, 0.0, sys.stderr.isatty()
-
-    def __call__(self, done: float, total: int) -> None:
-        """Show the finished fraction of the work, at most five times a second."""
-        now = time.monotonic()
-        if self.shown and (now - self.last > 0.2 or done >= total):
-            self.last = now
-            end = "\n" if done >= total else ""
-            text = f"\r{self.name}: {100 * done / total:5.1f} % of {total} depths"
-            print(text, end=end, file=sys.stderr, flush=True)
+def _progress(done: int, total: int) -> None:
+    """Rewrite the progress in place, on terminals only."""
+    if sys.stderr.isatty():
+        print(f"\r{done} of {total} depths", end="\n" * (done >= total), file=sys.stderr, flush=True)
 
 
 def _output(path: str, chosen: argparse.Namespace) -> str:
@@ -181,7 +143,7 @@ def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> No
         output,
         SURFACES if chosen.surface == "both" else (chosen.surface,),
         None if chosen.depths is None else tuple(chosen.depths),
-        Counting(chosen.count, chosen.residue, chosen.mean_stress),
+        Counting(mean_stress=chosen.mean_stress),
         chosen.jobs,
         tuple(name for name in CRITERIA if name in chosen.criterion),
         tuple(chosen.set),
@@ -191,7 +153,7 @@ def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> No
         _say(f"{output}: already there, of the same file and options")
     else:
         _check_output(Path(output), inputs, chosen.overwrite)
-        run(job, lambda text: _say(f"{path}: {text}"), Progress(path))
+        run(job, lambda text: _say(f"{path}: {text}"), _progress)
     _summary(output, time.perf_counter() - start)
 
 
@@ -213,7 +175,9 @@ def _summary(output: str, wall: float) -> None:
         for surface in surfaces:
             words.append(f"{surface}: D_max={result.largest(surface, k):.3e}")
             words += [f"{name}={_largest(result, name, surface, k):.3g}" for name in result.criteria]
-        print(" ".join([*words, *_weibull(result.fits[k])]))
+        if (fit := result.fits[k]).beta > 0:
+            words.append(f"weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
+        print(" ".join(words))
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():
             print(_temperatures(surface, result.temperatures[surface]))
@@ -239,35 +203,25 @@ def _temperatures(surface: str, temperatures: PointTemperatures) -> str:
     )
 
 
-def _weibull(fit: WeibullFit) -> Iterator[str]:
-    """Words of the Weibull distribution over asperities; none if they are too few."""
-    if fit.beta > 0:
-        yield f"weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}"
+def note_damage(index: str | Path) -> list[tuple[int, dict]]:
+    """Add the damage of every pass to an index of passes, under "damage"; the number and damage of each pass.
+
+    The damage is that of `ehlpetsc.results.post_result.PostResult.summary`.
+    """
+    index = Path(index)
+    with Lock(index, "wait for it"):
+        content, damages = read_index(index), []
+        for row in content["passes"]:
+            with read_result(index.with_name(row["file"])) as result:
+                damage = damage_beside(result)
+            if damage is not None:
+                row["damage"] = damage.summary()
+                damages.append((row["pass"], row["damage"]))
+        atomic_write(index, json.dumps(content, indent=1).encode())
+    return damages
 
 
-def _passes_file(first: str, chosen: argparse.Namespace) -> str:
-    return str(post_path(first).with_name(f"passes_{chosen.passes}.post.h5"))
-
-
-def _not_all() -> None:
-    raise PostError("not all of the passes could be processed")
-
-
-def _store_passes(outputs: Sequence[str], file: str, chosen: argparse.Namespace) -> None:
-    """Store mean and scatter over passes in a separate file, and print one line for each depth."""
-    results = [PostResult(output) for output in outputs]
-    passes = store_passes(file, results, chosen.passes)
-    for k, z in enumerate(results[0].z):
-        worst = passes.mean[k].argmax()
-        print(
-            f"z/a={z:<6g} {chosen.passes}: mean D_max={passes.mean[k, worst]:.3e} "
-            f"deviation={passes.deviation[k, worst]:.3e} largest={passes.largest[k].max():.3e} "
-            f"first failure after {passes.life[k, worst]:.4g} passes"
-        )
-    print(f"ehlpetsc post: done {file} passes={len(results)} points={passes.mean.shape[1]}")
-
-
-def _note_damage(index: str) -> None:
+def _print_passes(index: str) -> None:
     """Add the damage of every pass to the index of a run, and print one line for each pass."""
     passes = note_damage(index)
     for number, damage in passes:
@@ -288,5 +242,5 @@ def _draw(paths: Sequence[str], chosen: argparse.Namespace) -> None:
     from ehlpetsc.pictures.damage import draw
 
     outputs = [_output(path, chosen) for path in paths]
-    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame, chosen.passes):
+    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame):
         print(name)

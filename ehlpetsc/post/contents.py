@@ -3,81 +3,36 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
-from ehlpetsc.post.fatigue.statistics import (
-    CONFIDENCE,
-    asperities,
-    log_life,
-    rank_correlation,
-    weibull_bounds,
-    weibull_fit,
-)
+from ehlpetsc.base.materials import DEFAULT
+from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.prepare import Prepared
 from ehlpetsc.post.temperatures import point_temperatures
 from ehlpetsc.results.output_guard import atomic_write
-from ehlpetsc.results.post_result import CRITERIA, SURFACES, WeibullFit, stored_names
+from ehlpetsc.results.post_result import SURFACES, WeibullFit, stored_names
 
 FORMAT_VERSION = 1
 MIN_ASPERITIES = 10  # for a distribution
-UNDEFINED = WeibullFit(np.nan, np.nan, np.nan)
 SCALES = {"s": "damage/s", "z": "damage/z_over_a"}
 
 
-def main_surface(prepared: Prepared) -> str:
-    """Surface of the summary: 2, whose asperities have more contacts, if it is rough and passed."""
-    passed = [name for name, motion in prepared.motions.items() if motion.complete.any()]
-    return next((name for name in passed if prepared.loads.profiles[name] is not None), passed[0])
-
-
 def datasets_of(
-    prepared: Prepared, surface: str, values: np.ndarray, criteria: Sequence[tuple[str, str]]
-) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Datasets of a surface by name, and notes.
-
-    Parameters
-    ----------
-    values
-        Damage, cycles, peak range and columns of criteria, shape (depths, points, 3 ...).
-    criteria
-        Pairs (criterion, column) after the first three columns.
-    """
-    passed = prepared.motions[surface].complete
-    found = {
-        f"damage/{surface}": values[..., 0],
-        f"damage/{surface}_complete": passed.astype(np.uint8),
-        f"damage/{surface}_cycles": values[..., 1],
-        f"damage/{surface}_peak_range": values[..., 2],
-    }
-    for index, (criterion, column) in enumerate(criteria, start=3):
-        name = criterion.replace("-", "_")
-        found[f"criteria/{name}/{surface}_{column}"] = values[..., index]
-        if column == CRITERIA[name]:
-            pairs = zip(values[:, passed, 0], values[:, passed, index], strict=True)
-            ranks = np.array([rank_correlation(paper, other) for paper, other in pairs])
-            found[f"criteria/{name}/{surface}_rank_correlation"] = ranks
-    of_asperities, notes = _of_asperities(prepared, surface, values[..., 0])
-    found |= of_asperities
-    if surface in prepared.loads.heated([surface]):
-        temperatures = point_temperatures(prepared.loads, surface, prepared.motions[surface], prepared.s.size)
-        found |= {f"temperature/{surface}_{name}": array for name, array in temperatures._asdict().items()}
-    return found, notes
-
-
-def _of_asperities(
-    prepared: Prepared, surface: str, damage: np.ndarray
-) -> tuple[dict[str, np.ndarray], list[str]]:
-    loads, depths = prepared.loads, prepared.settings.depths
+    prepared: Prepared, surface: str, damage: np.ndarray, report: Callable[[str], None]
+) -> dict[str, np.ndarray]:
+    """Datasets of a surface that follow from its damage (depths, points), by name."""
+    loads, depths, motion = prepared.loads, prepared.settings.depths, prepared.motions[surface]
     profile = loads.profiles[surface]
-    peaks = asperities(profile, prepared.s, prepared.motions[surface].complete)
+    peaks = asperities(profile, prepared.s, motion.complete)
     under = damage[:, peaks.point]
     at_least_one = (under >= 1).sum(axis=1)
     found = {
+        f"damage/{surface}_complete": motion.complete.astype(np.uint8),
         f"asperities/{surface}_s": peaks.s,
         f"asperities/{surface}_height": peaks.height,
         f"asperities/{surface}_damage": under,
@@ -87,49 +42,47 @@ def _of_asperities(
     if profile is not None:
         found |= {f"profile/{surface}_s": profile[0], f"profile/{surface}_z": profile[1]}
     enough = peaks.s.size >= MIN_ASPERITIES
-    for name, column in _distribution(under if enough else np.full((len(depths), 2), np.inf)).items():
+    fits = [weibull_fit(log_life(row) if enough else []) for row in under]
+    for name, column in zip(WeibullFit._fields, np.array(fits).T, strict=True):
         found[f"weibull/{surface}_{name}"] = column
-    notes = [
-        f"note: {count} of {peaks.s.size} asperities of surface {surface} have damage of 1 "
-        f"or more at z/a = {depth:g}: failure in the first pass"
-        for depth, count in zip(depths, at_least_one, strict=True)
-        if count
-    ]
+    for depth, count in zip(depths, at_least_one, strict=True):
+        if count:
+            report(
+                f"note: {count} of {peaks.s.size} asperities of surface {surface} have damage of 1 "
+                f"or more at z/a = {depth:g}: failure in the first pass"
+            )
     if profile is not None and not enough:
-        notes.append(
+        report(
             f"note: {peaks.s.size} asperities of surface {surface} passed: a Weibull distribution needs "
             f"{MIN_ASPERITIES} or more"
         )
-    return found, notes
-
-
-def _distribution(under: np.ndarray) -> dict[str, np.ndarray]:
-    """Weibull constants of the damage under asperities (depths, peaks) with their bounds, one a depth."""
-    lives = [log_life(row) for row in under]
-    columns = np.array([weibull_fit(row) for row in lives]).T
-    bounds = [weibull_bounds(row) for row in lives]
-    found = dict(zip(WeibullFit._fields, columns, strict=True))
-    for k, name in enumerate(("alpha", "beta")):
-        found[f"{name}_low"], found[f"{name}_high"] = np.array([bound[k] for bound in bounds]).T
+    if loads.is_heated(surface):
+        temperatures = point_temperatures(loads, surface, motion, prepared.s.size)
+        found |= {f"temperature/{surface}_{name}": array for name, array in temperatures._asdict().items()}
     return found
 
 
 def attributes_of(prepared: Prepared) -> dict[str, Any]:
-    """Root attributes: provenance and scales of the result."""
-    loads = prepared.loads
+    """Root attributes: provenance and scales of the result, settings of the case.
+
+    `surface` is that of the summary: 2, whose asperities have more contacts, if it is rough and passed.
+    """
+    loads, case = prepared.loads, prepared.loads.case
     mean = (loads.speeds["1"] + loads.speeds["2"]) / 2
+    passed = [name for name, motion in prepared.motions.items() if motion.complete.any()]
     return {
         "title": loads.title,
         "case": loads.case_text,
         "source": str(loads.path),
-        "surface": main_surface(prepared),
+        "surface": next((name for name in passed if loads.profiles[name] is not None), passed[0]),
         "a": loads.a,
         "inlet": loads.x[0],
         "outlet": loads.x[-1],
         "p0": loads.p0,
         "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
         "every": prepared.every,
-        "bounds_level": CONFIDENCE,
+        "material": ", ".join(case.contact.material or (DEFAULT,)),
+        "residual_stress": np.array(case.post.residual_stress or (), float).reshape(-1, 2),
         **{f"speed_{name}": loads.speeds[name] for name in prepared.motions},
     }
 

@@ -79,10 +79,9 @@ class Loads:
         order = np.argsort(profile[0])
         return profile[0][order].astype(float), profile[1][order].astype(float)
 
-    def heated(self, surfaces: Sequence[str]) -> tuple[str, ...]:
-        """Surfaces among `surfaces` whose temperature is stored; empty without [heat]."""
-        stored = () if self.case.heat is None else self._result.fields
-        return tuple(surface for surface in surfaces if f"temperature_{surface}" in stored)
+    def is_heated(self, surface: str) -> bool:
+        """Whether the temperature of a surface is stored; False without [heat]."""
+        return self.case.heat is not None and f"temperature_{surface}" in self._result.fields
 
     def bulk_temperature(self, surface: str) -> float:
         """Temperature of the body of `surface` far from the contact [K]."""

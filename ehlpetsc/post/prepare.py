@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,30 +16,21 @@ from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.stresses.body_points import NO_FLANK, Passage, body_points, passage
 
 DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5, 0.7, 1.0)  # z/a: down to the stresses of the smooth contact
-MAX_POINTS = 5_000_000
 MIN_REPRESENTATIVE_POINTS = 30  # of a surface
 END_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
 
 
 class Settings(NamedTuple):
-    """Depths z/a, material of each surface, constants of the criteria, residual stress (z/a, Pa)."""
+    """Depths z/a, material by surface, constants of the criteria, residual stress (z/a, Pa)."""
 
-    depths: tuple[float, ...]
-    material_1: Material
-    material_2: Material
+    depths: np.ndarray
+    materials: dict[str, Material]
     criteria: Criteria = Criteria()
     residual_stress: tuple[tuple[float, float], ...] = ()
 
-    def material(self, surface: str) -> Material:
-        """Material of surface "1" or "2"."""
-        return {"1": self.material_1, "2": self.material_2}[surface]
-
     def residual(self, depth: float) -> float:
         """Residual stress along the surface at a depth z/a [Pa], linearly interpolated."""
-        if not self.residual_stress:
-            return 0.0
-        depths, values = zip(*self.residual_stress, strict=True)
-        return float(np.interp(depth, depths, values))
+        return float(np.interp(depth, *np.array(self.residual_stress).T)) if self.residual_stress else 0.0
 
 
 class Prepared(NamedTuple):
@@ -58,19 +49,18 @@ class Prepared(NamedTuple):
 def read_settings(case: Case) -> Settings:
     """Settings of `[post]`; PostError if the fatigue limits contradict each other."""
     post, contact = case.post, case.contact
-    first, second = (
-        Material(modulus, ratio, **fatigue_constants(steel, post.as_dict()))
-        for modulus, ratio, steel in zip(
-            contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True
-        )
-    )
+    bodies = zip(contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True)
+    materials = {
+        surface: Material(modulus, ratio, **fatigue_constants(steel, post.as_dict()))
+        for surface, (modulus, ratio, steel) in zip(("1", "2"), bodies, strict=True)
+    }
     constants = {name: getattr(post, name) for name in Criteria.__dataclass_fields__}
     try:
         criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
     except ValueError as fault:
         raise PostError(f"post.{fault}") from None
-    depths = tuple(sorted(set(post.depths or DEPTHS)))
-    return Settings(depths, first, second, criteria, tuple(map(tuple, post.residual_stress or ())))
+    depths = np.unique(post.depths or DEPTHS).astype(float)
+    return Settings(depths, materials, criteria, tuple(map(tuple, post.residual_stress or ())))
 
 
 def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> Prepared:
@@ -85,25 +75,20 @@ def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]
     loads.check(surfaces)
     every = max(int(np.median(np.diff(loads.step))), 1)
     s, motions = _motions(loads, surfaces)
-    _warn(loads, every, motions, report)
-    return Prepared(loads, settings, every, s, motions)
+    prepared = Prepared(loads, settings, every, s, motions)
+    for warning in _warnings(prepared):
+        report(f"warning: {warning}")
+    return prepared
 
 
 def _motions(loads: Loads, surfaces: Sequence[str]) -> tuple[np.ndarray, dict[str, Passage]]:
     distances = [loads.travelled[surface] for surface in surfaces]
     moved = max(abs(distance[-1] - distance[0]) for distance in distances)
-    if moved / loads.dx + loads.x.size > MAX_POINTS:
-        raise PostError(
-            f"the surfaces moved {moved / loads.dx:.3g} nodes: more than {MAX_POINTS} body points"
-        )
     s = body_points(loads.x, loads.dx, distances)
-    try:
-        motions = {
-            surface: passage(s, loads.x, loads.dx, distance, _flank(loads, surface))
-            for surface, distance in zip(surfaces, distances, strict=True)
-        }
-    except ValueError as fault:
-        raise PostError(str(fault)) from None
+    motions = {
+        surface: passage(s, loads.x, loads.dx, distance, _flank(loads, surface))
+        for surface, distance in zip(surfaces, distances, strict=True)
+    }
     if not any(motion.complete.any() for motion in motions.values()):
         width = (loads.x[-1] - loads.x[0]) / loads.a
         raise PostError(
@@ -124,23 +109,14 @@ def _flank(loads: Loads, surface: str) -> tuple[float, float]:
     return begin - arc if ended else np.inf, begin
 
 
-def _warn(loads: Loads, every: int, motions: dict[str, Passage], report: Callable[[str], None]) -> None:
-    if loads.status != "done":
-        report(f'warning: the run\'s status is "{loads.status}": only its stored frames are used')
-    if every > 1:
-        report(
-            f"warning: stored with output.every = {every}: peaks between frames are lost, "
-            "and damage is too small"
-        )
-    for surface, motion in motions.items():
+def _warnings(prepared: Prepared) -> Iterator[str]:
+    if prepared.loads.status != "done":
+        yield f'the run\'s status is "{prepared.loads.status}": only its stored frames are used'
+    if prepared.every > 1:
+        yield f"stored with output.every = {prepared.every}: peaks between frames are lost, too little damage"
+    for surface, motion in prepared.motions.items():
         passed = np.count_nonzero(motion.complete)
-        if not passed:
-            report(
-                f"warning: no point of surface {surface} passed the whole contact: its damage is nan; "
-                "raise time.travel"
-            )
-        elif passed < MIN_REPRESENTATIVE_POINTS:
-            report(
-                f"warning: only {passed} point{'s' if passed > 1 else ''} of surface {surface} passed "
-                "the whole contact, and its damage is theirs; raise time.travel"
-            )
+        if passed < MIN_REPRESENTATIVE_POINTS:
+            count = f"only {passed} point{'s' if passed > 1 else ''}" if passed else "no point"
+            effect = "its damage is theirs" if passed else "its damage is nan"
+            yield f"{count} of surface {surface} passed the whole contact: {effect}; raise time.travel"

@@ -1,10 +1,11 @@
-"""Post-processing of one result file, in tasks over surfaces and depths."""
+"""Post-processing of one result file."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,9 +20,8 @@ from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import Counter, Counting
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import Prepared, Settings, prepare
-from ehlpetsc.post.stresses.body_stress import QUANTUM
-from ehlpetsc.post.stresses.histories import HistoryCollector, runs_of_points, workers
+from ehlpetsc.post.prepare import Prepared, prepare
+from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, histories, runs_of_points
 from ehlpetsc.results.post_result import SURFACES, PostResult
 
 MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
@@ -44,15 +44,9 @@ class Job(NamedTuple):
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
 
-    def overrides(self) -> list:
-        """Overrides of the case, see `ehlpetsc.load`."""
-        depths = () if self.depths is None else (("post.depths", list(self.depths)),)
-        return [*self.settings, *depths]
-
     def of_case(self, case: Case) -> Job:
         """The job with the strain rule and the criterion of a case."""
-        own = () if case.post.criterion == "von-mises" else (case.post.criterion,)
-        criteria = tuple(name for name in CRITERIA if name in (*self.criteria, *own))
+        criteria = tuple(name for name in CRITERIA if name in (*self.criteria, case.post.criterion))
         return self._replace(counting=self.counting._replace(strain=case.post.strain), criteria=criteria)
 
     def fingerprint(self) -> str:
@@ -69,52 +63,10 @@ class Job(NamedTuple):
             return False
 
 
-class Task(NamedTuple):
-    """Depths of one surface that one task processes."""
-
-    surface: str
-    depths: tuple[float, ...]
-
-
-class Counters:
-    """Columns of results of blocks of histories: damage of the paper, then other criteria."""
-
-    def __init__(
-        self, settings: Settings, surface: str, counting: Counting, criteria: Sequence[str], samples: int
-    ) -> None:
-        material = settings.material(surface)
-        self.parts: list[Any] = [Counter(material, counting, samples)]
-        if criteria:
-            from ehlpetsc.post.criteria.search import counter_of  # slow to compile: only if requested
-
-            options = counting.residue, counting.strain, samples
-            self.parts += [counter_of(name, material, settings.criteria, *options) for name in criteria]
-
-    def __call__(
-        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
-    ) -> None:
-        """Stress (points, 3, samples), lengths (points,) -> out (points, columns); `residual` in Pa."""
-        first = 0
-        for counter in self.parts:
-            values = np.empty((len(out), len(counter.columns)))
-            counter(stress, lengths, values, residual)
-            out[:, first : first + values.shape[1]] = values
-            first += values.shape[1]
-
-
-def columns(criteria: Sequence[str]) -> list[tuple[str, str]]:
-    """Pairs (criterion, column) of the criteria other than the paper's, in the order of the results."""
-    if not criteria:
-        return []
-    from ehlpetsc.post.criteria.search import columns_of  # as above
-
-    return [(name, column) for name in criteria for column in columns_of(name)]
-
-
 def run(
     job: Job,
     report: Callable[[str], None] = lambda text: None,
-    progress: Callable[[float, int], None] = lambda done, of: None,
+    progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> None:
     """Compute damage and statistics of one result file and write them to `job.output`, replacing it.
 
@@ -130,105 +82,108 @@ def run(
         The output cannot be written, as on a full disk; no file is left.
     """
     job.counting.check()
-    with Loads(job.path, job.overrides()) as loads:
+    depths = () if job.depths is None else (("post.depths", list(job.depths)),)
+    with Loads(job.path, [*job.settings, *depths]) as loads:
         identity = job.fingerprint()
         job = job.of_case(loads.case)
         prepared = prepare(loads, job.surfaces, report)
-        _note_material(loads.case, job.criteria, report)
-        _note_heat(loads, job.surfaces, report)
-        if prepared.settings.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
-            report("note: residual_stress changes nothing without --mean-stress morrow or --criterion")
-        computed = _compute(job, prepared, progress)
-        depths = np.array(prepared.settings.depths)
-        datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": depths}
-        for surface, values in computed.items():
-            found, notes = datasets_of(prepared, surface, values, columns(job.criteria))
-            datasets |= found
-            for note in notes:
-                report(note)
-        attributes = attributes_of(prepared) | _settings_of(job, loads.case)
-        write_result(job.output, datasets, attributes | {"fingerprint": identity})
+        for note in _notes(job, loads):
+            report(note)
+        datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.settings.depths}
+        done = 0
+
+        def advance(count: int) -> None:
+            nonlocal done
+            done += count
+            progress(done, len(prepared.motions) * len(prepared.settings.depths))
+
+        for surface in prepared.motions:
+            datasets |= solve(prepared, surface, job.counting, job.criteria, job.jobs, advance)
+            datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
+        attributes = attributes_of(prepared) | job.counting._asdict()
+        attributes |= {"settings": "\n".join(job.settings), "fingerprint": identity}
+        write_result(job.output, datasets, attributes)
 
 
-def _settings_of(job: Job, case: Case) -> dict[str, Any]:
-    """Root attributes: settings of the job."""
-    return {
-        "material": ", ".join(case.contact.material or (DEFAULT,)),
-        "settings": "\n".join(job.settings),
-        "residual_stress": np.array(case.post.residual_stress or (), float).reshape(-1, 2),
-        **job.counting._asdict(),
-    }
-
-
-def _note_material(case: Case, criteria: Sequence[str], report: Callable[[str], None]) -> None:
-    """Report the default steel if the case names none, and the assumptions of Dang Van's limits."""
+def _notes(job: Job, loads: Loads) -> Iterator[str]:
+    """Notes on defaults and on the treatment of heat and of residual stress."""
+    case = loads.case
     if case.contact.material is None and all(getattr(case.post, key) is None for key in FATIGUE_KEYS):
-        report(f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel")
-    if "dang-van" in criteria:
-        report(
+        yield f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel"
+    if "dang-van" in job.criteria:
+        yield (
             "note: dang-van holds where the steel has shaken down to elastic cycles; torsion_limit and "
             "bending_limit left out are those of bearing steel (ISO 281)"
         )
-
-
-def _note_heat(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> None:
-    """Report the treatment of heat in the result."""
-    if loads.case.heat is None:
-        return
-    if cold := [surface for surface in surfaces if surface not in loads.heated([surface])]:
-        names = ", ".join(f'"temperature_{surface}"' for surface in cold)
-        report(f"note: no surface temperatures in it: list {names} in output.fields of the case for them")
-    report("note: thermal stresses are not computed: damage is that of pressure and shear stress alone")
-
-
-def _compute(job: Job, prepared: Prepared, progress: Callable[[float, int], None]) -> dict[str, np.ndarray]:
-    """Results (depths, points, columns) of each surface."""
-    depths, done = prepared.settings.depths, 0
-    number = -(-len(depths) // DEPTHS_AT_ONCE)  # of tasks of about equal size
-    found: dict[str, dict[float, np.ndarray]] = {surface: {} for surface in prepared.motions}
-    with workers(job.jobs) as map_:
-        for surface, values in found.items():
-            for task in (Task(surface, depths[k::number]) for k in range(number)):
-
-                def task_progress(fraction: float, done: int = done, task: Task = task) -> None:
-                    progress(done + fraction * len(task.depths), len(found) * len(depths))
-
-                values |= zip(task.depths, solve(job, prepared, task, map_, task_progress), strict=True)
-                done += len(task.depths)
-    return {surface: np.stack([values[depth] for depth in depths]) for surface, values in found.items()}
+    if case.heat is not None:
+        if cold := [surface for surface in job.surfaces if not loads.is_heated(surface)]:
+            names = ", ".join(f'"temperature_{surface}"' for surface in cold)
+            yield f"note: no surface temperatures in it: list {names} in output.fields of the case for them"
+        yield "note: thermal stresses are not computed: damage is that of pressure and shear stress alone"
+    if case.post.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
+        yield "note: residual_stress changes nothing without --mean-stress morrow or --criterion"
 
 
 def solve(
-    job: Job,
     prepared: Prepared,
-    task: Task,
-    map_: Callable = map,
-    progress: Callable[[float], None] = lambda fraction: None,
-) -> np.ndarray:
-    """Damage, cycles, peak range, criteria (depths, points, 3 ...) of a task; nan for incomplete points."""
-    loads, motion = prepared.loads, prepared.motions[task.surface]
-    width = len(Counter.columns) + len(columns(job.criteria))
-    out = np.full((len(task.depths), prepared.s.size, width), np.nan)
-    residual = [prepared.settings.residual(depth) for depth in task.depths]
-    if not motion.complete.any():
-        return out
+    surface: str,
+    counting: Counting,
+    criteria: tuple[str, ...] = (),
+    jobs: int = 1,
+    advance: Callable[[int], None] = lambda count: None,
+) -> dict[str, np.ndarray]:
+    """Damage, cycles, peak range and criteria of a surface (depths, points) by name in the file.
+
+    nan for incomplete points. `jobs` is the number of threads, `advance` is called with finished depths.
+    """
+    depths = prepared.settings.depths
+    blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(jobs, len(depths))))
+    work = partial(_solve_depths, prepared, surface, counting, criteria, MAX_HISTORY_BYTES / jobs)
+    found = []
+    for values in ThreadPoolExecutor(jobs).map(work, blocks) if jobs > 1 else map(work, blocks):
+        found.append(values)
+        advance(len(values[f"damage/{surface}"]))
+    return {name: np.concatenate([values[name] for values in found]) for name in found[0]}
+
+
+def _solve_depths(
+    prepared: Prepared,
+    surface: str,
+    counting: Counting,
+    criteria: tuple[str, ...],
+    memory: float,
+    depths: np.ndarray,
+) -> dict[str, np.ndarray]:
+    loads, motion = prepared.loads, prepared.motions[surface]
+    counters = _counters(prepared, surface, counting, criteria, motion.samples() + 2)
+    names = [[f"{start}{column}" for column in counter.columns] for start, counter in counters]
+    names[0][0] = f"damage/{surface}"
+    out = {name: np.full((len(depths), prepared.s.size), np.nan) for row in names for name in row}
     lengths = motion.leave - motion.enter + 3
-    runs = runs_of_points(motion, MAX_HISTORY_BYTES, len(task.depths))
-    frames = sum(motion.leave[points].max() + 1 - motion.enter[points].min() for points in runs)
-    done = 0
-
-    def finish(counter: Counters, depth: int, first: int, last: int, histories: np.ndarray) -> None:
-        counter(histories, lengths[first:last], out[depth, first:last], residual[depth])
-
-    def advance(count: int) -> None:
-        nonlocal done
-        done += count
-        progress(done / frames)
-
-    make = partial(Counters, prepared.settings, task.surface, job.counting, job.criteria)
-    counters = list(map_(make, [motion.samples() + 2] * job.jobs))
-    depths, quantum = np.array(task.depths) * loads.a / loads.dx, QUANTUM * loads.p0
-    collect = HistoryCollector(loads, task.surface, motion, depths, quantum, map_, advance)
-    for points in runs:
-        collect(points, [partial(finish, counter) for counter in counters])
+    stress = BodyStress(loads.x.size, depths * loads.a / loads.dx)
+    for points in runs_of_points(motion, memory, len(depths)):
+        for k, stresses in enumerate(histories(loads, surface, motion, stress, points, QUANTUM * loads.p0)):
+            for row, (_, counter) in zip(names, counters, strict=True):
+                values = np.empty((points.size, len(row)))
+                counter(stresses, lengths[points], values, prepared.settings.residual(depths[k]))
+                for name, column in zip(row, values.T, strict=True):
+                    out[name][k, points] = column
     return out
+
+
+def _counters(
+    prepared: Prepared, surface: str, counting: Counting, criteria: tuple[str, ...], samples: int
+) -> list[tuple[str, Any]]:
+    """Beginning of the names of results, and counter of histories, of the paper's damage and of criteria."""
+    material, constants = prepared.settings.materials[surface], prepared.settings.criteria
+    counters: list[tuple[str, Any]] = [(f"damage/{surface}_", Counter(material, counting, samples))]
+    if "fatemi-socie" in criteria:  # slow to compile: only if requested
+        from ehlpetsc.post.criteria.critical_plane import PlaneCounter
+
+        counter = PlaneCounter(material, constants, counting, samples)
+        counters.append((f"criteria/fatemi_socie/{surface}_", counter))
+    if "dang-van" in criteria:
+        from ehlpetsc.post.criteria.dang_van import LimitCounter
+
+        counters.append((f"criteria/dang_van/{surface}_", LimitCounter(material.poisson_ratio, constants)))
+    return counters

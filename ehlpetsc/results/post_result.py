@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -17,8 +16,6 @@ if TYPE_CHECKING:
 SURFACES = ("2", "1")
 CRITERIA = {  # name in files: quantity that compares points
     "fatemi_socie": "damage",
-    "shear": "damage",
-    "swt": "damage",
     "dang_van": "utilisation",
 }
 
@@ -39,11 +36,6 @@ DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "damage/{n}_cycles": Dataset("1", "counted cycles of a pass", "z s"),
     "damage/{n}_peak_range": Dataset("Pa", "largest equivalent stress range", "z s"),
     "damage/{n}_complete": Dataset("1", "1 where a point entered and left the domain", "s"),
-    "damage/{n}_mean": Dataset("1", "fatigue damage of a pass, mean of the passes", "z s"),
-    "damage/{n}_deviation": Dataset("1", "standard deviation of the damage of a pass, with n - 1", "z s"),
-    "damage/{n}_largest": Dataset("1", "largest damage of a pass", "z s"),
-    "damage/{n}_count": Dataset("1", "passes", "z s"),
-    "damage/{n}_life": Dataset("1", "passes to failure by Miner's sum, 1/mean", "z s"),
     "asperities/{n}_s": Dataset("m", "body coordinate of asperity peaks", "peak"),
     "asperities/{n}_height": Dataset("m", "height of asperity peaks", "peak"),
     "asperities/{n}_damage": Dataset("1", "damage under asperity peaks, at the nearest body point", "z peak"),
@@ -57,16 +49,9 @@ DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "criteria/{criterion}/{n}_utilisation": Dataset(
         "1", "of the fatigue limit; up to 1 no crack starts", "z s"
     ),
-    "criteria/{criterion}/{n}_rank_correlation": Dataset(
-        "1", "Spearman's, with the damage of the paper's criterion", "z"
-    ),
     "weibull/{n}_alpha": Dataset("1", "Weibull scale of -log10 of the damage under asperities", "z"),
     "weibull/{n}_beta": Dataset("1", "Weibull shape", "z"),
     "weibull/{n}_r_squared": Dataset("1", "squared correlation of the median rank regression", "z"),
-    "weibull/{n}_alpha_low": Dataset("1", "lower bound of alpha, by resampling, at bounds_level", "z"),
-    "weibull/{n}_alpha_high": Dataset("1", "upper bound of alpha", "z"),
-    "weibull/{n}_beta_low": Dataset("1", "lower bound of beta, by resampling, at bounds_level", "z"),
-    "weibull/{n}_beta_high": Dataset("1", "upper bound of beta", "z"),
     "weibull/{n}_at_least_one": Dataset("1", "asperities with damage of 1 or more", "z"),
     "weibull/{n}_undamaged": Dataset("1", "asperities without damage, censored in the fit", "z"),
     "temperature/{n}_highest": Dataset("K", f"highest surface temperature in one pass; {NOT_PASSED}", "s"),
@@ -116,15 +101,15 @@ class PostResult:
     s, z
         Body points [m]; depths z/a.
     surfaces, main
-        Surfaces with damage; the one of `height`, `under`, `fits` and `bounds`.
+        Surfaces with damage; the one of `height`, `under` and `fits`.
     damage, complete
         By surface, shapes (nz, ns) and (ns,).
     profiles
         (s, z) by rough surface.
     height, under
         Heights (peaks,) of the asperities of `main`, and the damage (nz, peaks) under them.
-    fits, bounds
-        Weibull distribution of `under` and its bounds by name, one a depth.
+    fits
+        Weibull distribution of `under`, one a depth.
     criteria
         By criterion, then surface: damage or utilisation (nz, ns).
     temperatures
@@ -178,19 +163,8 @@ class PostResult:
     def _read_asperities(self) -> None:
         self.height = self._get(f"asperities/{self.main}_height", np.empty(0))
         self.under = self._get(f"asperities/{self.main}_damage", np.empty((len(self.z), 0)))
-        prefix = f"weibull/{self.main}_"
-        weibull = {k.removeprefix(prefix): v for k, v in self._arrays.items() if k.startswith(prefix)}
-        rows = [{name: float(values[k]) for name, values in weibull.items()} for k in range(len(self.z))]
-        self.fits = [WeibullFit(*(row[name] for name in WeibullFit._fields)) for row in rows if row]
-        self.bounds = [
-            {name: value for name, value in row.items() if name.endswith(("_low", "_high"))} for row in rows
-        ]
-
-    def with_damage(self, surface: str, values: np.ndarray) -> PostResult:
-        """A copy whose damage of one surface is `values` (nz, ns)."""
-        other = copy(self)
-        other.damage = {**self.damage, surface: values}
-        return other
+        columns = [self._get(f"weibull/{self.main}_{name}", np.empty(0)) for name in WeibullFit._fields]
+        self.fits = [WeibullFit(*map(float, row)) for row in zip(*columns, strict=True)]
 
     def passed(self, surface: str) -> np.ndarray:
         """Damage (nz, points) of the points that passed the whole contact; empty if not computed."""

@@ -11,7 +11,7 @@ from support.running import BARE, SCRIPT, command, run, settings
 
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.post.passes import note_damage
+from ehlpetsc.post.command import note_damage
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.outputs.recorder import Recorder

@@ -1,4 +1,4 @@
-"""Surfaces after a pass, statistics over passes, and damage near an asperity."""
+"""Surfaces after a pass, and damage of passes in their index."""
 
 import json
 
@@ -8,29 +8,11 @@ import pytest
 from support.made_loads import Scene, write
 from support.made_results import make_result
 
-from ehlpetsc.base.errors import ExitStatus, PostError
-from ehlpetsc.post import pass_statistics
+from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.post.command import main
-from ehlpetsc.post.passes import same_points
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import heights, passes_to_run_in, statistics
-
-
-def test_mean_scatter_and_life():
-    result = pass_statistics([[1e-3, 0.0, np.nan], [3e-3, 0.0, 2e-4], [2e-3, 0.0, np.nan]])
-    assert result.mean == pytest.approx([2e-3, 0.0, 2e-4])
-    assert result.deviation[:2] == pytest.approx([1e-3, 0.0]) and np.isnan(result.deviation[2])
-    assert result.largest == pytest.approx([3e-3, 0.0, 2e-4]) and list(result.count) == [3, 3, 1]
-    assert result.life == pytest.approx([500, np.inf, 5000])
-
-
-def test_miners_sum_reaches_one_after_the_expected_passes():
-    rng = np.random.default_rng(0)
-    damages = 10.0 ** -rng.uniform(3, 5, size=2000)
-    known = pass_statistics(damages[:, None])
-    drawn = np.cumsum(rng.choice(damages, 20000))
-    assert np.searchsorted(drawn, 1.0) == pytest.approx(known.life[0], rel=0.1)
 
 
 @pytest.fixture
@@ -70,16 +52,6 @@ def test_damage_of_another_case_is_not_that_of_a_pass(index):
         assert damage_beside(result) is not None
         result.attrs = {"case": "another"}
         assert damage_beside(result) is None
-
-
-def test_passes_of_another_profile_are_refused(tmp_path):
-    scenes = [Scene(per_width=20, ratio=0.5, travel=12.0) for _ in range(2)]
-    scenes[1].profiles["1"] = scenes[1].profiles["2"]
-    paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.1,))) for k, scene in enumerate(scenes)]
-    assert main([*paths]) == ExitStatus.DONE
-    results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
-    with pytest.raises(PostError, match="profiles of surface 1 "):
-        same_points(results, "1")
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import sys
 import h5py
 import numpy as np
 import pytest
+from scipy.stats import spearmanr
 from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
@@ -18,7 +19,6 @@ from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.passes import same_points
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.results.post_result import PostResult
@@ -165,41 +165,13 @@ def test_pictures_for_two_slide_roll_ratios(tmp_path, capsys, monkeypatch):
     assert is_line_with(message.splitlines()[-1], "--point s/a = 400: ", "s/a = -5.1 to -2.5 ")
 
 
-@pytest.mark.slow
-def test_picture_of_repeated_passes_of_one_surface(tmp_path, capsys, monkeypatch):
-    """Surface 2 is one; that it meets is another in each pass. Drawn are the passes alone."""
-    monkeypatch.setattr(gallery, "_of_one", lambda *_: [])
-    scenes = [Scene(per_width=30, ratio=0.5, travel=9.0, seed=seed) for seed in (0, 7)]
-    scenes[1].profiles["2"] = scenes[0].profiles["2"]
-    paths = [str(write(tmp_path / f"{k}.h5", scene, depths=(0.0, 0.1))) for k, scene in enumerate(scenes)]
-    assert main([*paths, "--passes", "2", "--pictures", str(tmp_path / "out")]) == 0
-    assert (tmp_path / "out" / "passes.damage_2.png").is_file()
-    results = [PostResult(path.replace(".h5", ".post.h5")) for path in paths]
-    s, damages = same_points(results, "2")
-    assert damages.shape == (2, 2, s.size) and np.isfinite(damages).all() and s.size > 20
-    place = np.argmin(np.abs(results[1].s - s[3]))
-    assert damages[1][:, 3] == pytest.approx(results[1].damage["2"][:, place], rel=1e-12)
-    with h5py.File(tmp_path / "passes_2.post.h5") as file:
-        assert file["damage/2_mean"][:] == pytest.approx(damages.mean(axis=0), rel=1e-12)
-        assert file["damage/2_deviation"][:] == pytest.approx(damages.std(axis=0, ddof=1), rel=1e-9)
-        assert file["damage/2_life"][:] == pytest.approx(1 / damages.mean(axis=0), rel=1e-12)
-        assert (file["damage/2_count"][:] == 2).all() and file.attrs["passes"] == 2
-        assert file["damage/s"][:] == pytest.approx(s)
-    assert f" {1 / damages.mean(axis=0)[1].max():.4g} passes" in capsys.readouterr().out
-    assert "--passes: the profiles of surface 1 " in refused(
-        capsys, main, *paths, "--passes", "1", "--pictures"
-    )
-    with pytest.raises(SystemExit):
-        main([paths[0], "--passes", "2"])
-
-
 @pytest.fixture(scope="module")
 def judged(scene, tmp_path_factory):
     """A result with all criteria, residual stress and a distance about the peaks, as the command makes it."""
     folder = tmp_path_factory.mktemp("judged")
     residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
     path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
-    argv = [str(path), "--criterion", "dang-van", "shear", "fatemi-socie", "swt"]
+    argv = [str(path), "--criterion", "dang-van", "fatemi-socie"]
     save = gallery._save
     with pytest.MonkeyPatch.context() as patch:  # of the pictures that of the criteria alone
         patch.setattr(gallery, "_save", lambda *one: save(*one) if "criteria" in one[1] else [])
@@ -216,15 +188,12 @@ def test_criteria_are_stored_beside_the_default_damage(judged, scene, tmp_path):
         np.testing.assert_array_equal(file["damage/2"], other["damage/2"])  # the paper's stays
         assert "criteria" not in other
         passed = file["damage/2_complete"][:].astype(bool)
-        assert set(file["criteria"]) == {"fatemi_socie", "shear", "swt", "dang_van"}
-        for name in ("fatemi_socie", "shear"):
-            group = file[f"criteria/{name}"]
-            assert (group["2_damage"][:, passed] > 0).all() and (group["2_tilt"][0, passed] > 40).all()
-            assert np.isnan(group["2_damage"][:, ~passed]).all()
-            assert group["2_rank_correlation"][0] > 0.9
-            assert group["2_damage"].dims[1][0] == file["damage/s"]
-        opened = file["criteria/fatemi_socie/2_damage"][:, passed]
-        assert (opened >= 0.95 * file["criteria/shear/2_damage"][:, passed]).all()
+        assert set(file["criteria"]) == {"fatemi_socie", "dang_van"}
+        group = file["criteria/fatemi_socie"]
+        assert (group["2_damage"][:, passed] > 0).all() and (group["2_tilt"][0, passed] > 40).all()
+        assert np.isnan(group["2_damage"][:, ~passed]).all()
+        assert spearmanr(file["damage/2"][0, passed], group["2_damage"][0, passed])[0] > 0.9
+        assert group["2_damage"].dims[1][0] == file["damage/s"]
         use = file["criteria/dang_van/2_utilisation"][1]
         point = np.flatnonzero(passed)[10]
         with Loads(str(plain)) as loads:
@@ -232,13 +201,6 @@ def test_criteria_are_stored_beside_the_default_damage(judged, scene, tmp_path):
             _, history = history_at(loads, "2", file["damage/s"][point], 0.5 * loads.a, quantum)
         assert use[point] == pytest.approx(dang_van(*history, 0.3, residual_stress=-2e8), rel=1e-6)
         assert file.attrs["residual_stress"].tolist() == [[0.0, -4e8], [1.0, 0.0]]
-
-
-def test_asperity_distribution_has_confidence_bounds(judged):
-    with h5py.File(judged) as file:
-        for name in ("alpha", "beta"):
-            low, fit, high = (file[f"weibull/2_{name}{end}"][:] for end in ("_low", "", "_high"))
-            assert (low < fit).all() and (fit < high).all()
 
 
 def test_residual_stress_without_a_mean_stress_term_is_a_note(scene, tmp_path, capsys):

@@ -101,7 +101,7 @@ POST_KEYS = {
     ),
     "criterion": Key(
         "of the damage of a life; ehlpetsc post computes it beside D, which is von-mises",
-        choices=("von-mises", "fatemi-socie", "shear", "swt"),
+        choices=("von-mises", "fatemi-socie"),
         default="von-mises",
     ),
     "residual_stress": Key(

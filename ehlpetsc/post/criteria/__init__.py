@@ -1,3 +1,3 @@
-"""Fatigue criteria other than the paper's: critical planes in three dimensions, tension, fatigue limit."""
+"""Fatigue criteria other than the paper's: critical planes in three dimensions, fatigue limit."""
 
-CRITERIA = ("fatemi-socie", "shear", "swt", "dang-van")
+CRITERIA = ("fatemi-socie", "dang-van")

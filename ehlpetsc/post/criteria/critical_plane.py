@@ -1,36 +1,42 @@
-r"""Critical plane of a history: plane of maximum damage in three dimensions.
+r"""Fatemi and Socie's criterion on the critical plane of a history, the plane of maximum damage.
 
-A criterion is a quantity whose cycles are counted on a plane and a parameter P of each cycle (laws in
-:mod:`ehlpetsc.post.criteria.laws`). The largest normal stress of a cycle is that within its closed loop.
+Planes in three dimensions: the normal of a plane has the angle :math:`\theta` from x towards z in the section
+and the tilt :math:`\varphi` out of it; a direction in the plane the angle :math:`\psi` from the section's:
 
+.. math::
+    n = (\cos\varphi\cos\theta,\ \sin\varphi,\ \cos\varphi\sin\theta), \quad
+    t = \cos\psi\,(-\sin\theta,\ 0,\ \cos\theta)
+        + \sin\psi\,(-\sin\varphi\cos\theta,\ \cos\varphi,\ -\sin\varphi\sin\theta)
+
+With :math:`\sigma_y=\nu(\sigma_x+\sigma_z)` and no shear out of the section, shear stress
+:math:`t\cdot\sigma n` and normal stress :math:`n\cdot\sigma n` are sums of the three in-plane stresses.
+Planes tilted by opposite angles are equivalent, so that tilts from 0 to 90 degrees suffice.
+
+The cycles of the shear stress are counted; the largest normal stress of a cycle is that in its closed loop.
 First all planes of a coarse grid are evaluated on the samples at which the path turns, in the order of their
 widest range, until no other plane can reach the largest damage so far. The best two planes are then improved
 by a pattern search, and the damage of the best plane is counted on all samples.
 
-Reduction of a history to the samples at which its path in stress space turns.
-
 The stress on a plane is a weighted sum of the three stresses. Samples at which one of 13 such sums reverses
 by more than a tolerance are kept, and between them samples off the straight line; the path between kept
 samples is straight and monotone, so that the stress on any plane has no larger reversal between them than
-about the tolerance. The reduced history serves to find the worst plane; its damage is counted on all
-samples.
+about the tolerance.
 """
 
-from math import exp, log, pi, sqrt
+from __future__ import annotations
+
+from math import cos, exp, log, pi, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
-from ehlpetsc.post.criteria.planes import (
-    GRID_STEP,
-    normal_weights,
-    residual_share,
-    shear_weights,
-    strain_weights,
-)
-from ehlpetsc.post.fatigue.cycles import equivalent_points, find_cycles, loop_of
-from ehlpetsc.post.fatigue.strain_life import interpolate
+from ehlpetsc.post.criteria.laws import Criteria, shear_tables
+from ehlpetsc.post.fatigue.accumulate import Counting, evaluate
+from ehlpetsc.post.fatigue.cycles import equivalent_points, find_cycles, loop_of, workspace
+from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material, interpolate
 
+GRID_STEP = pi / 12  # between the planes and directions of the coarse grid
 TOLERANCE = 0.02  # of the widest of the three axes
 DIRECTIONS = np.array(
     [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -44,30 +50,67 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
 @compiled(error_model="python", nogil=True)
-def _mark_reversals(
-    points: np.ndarray, size: int, direction: np.ndarray, tolerance: float, is_kept: np.ndarray
-) -> None:
-    """Mark the samples at which the path reverses along a direction by more than the tolerance."""
-    high = low = direction[0] * points[0, 0] + direction[1] * points[1, 0] + direction[2] * points[2, 0]
+def _normal(theta: float, phi: float) -> tuple[float, float, float]:
+    return cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
+
+
+@compiled(error_model="python", nogil=True)
+def shear_weights(theta: float, phi: float, psi: float, nu: float) -> tuple[float, float, float]:
+    """Weights (3,) of sx, sz, txz in the shear stress on a plane along a direction in it."""
+    x, y, z = _normal(theta, phi)
+    c, s = cos(psi), sin(psi)
+    tx = -c * sin(theta) - s * sin(phi) * cos(theta)
+    ty = s * cos(phi)
+    tz = c * cos(theta) - s * sin(phi) * sin(theta)
+    return x * tx + nu * y * ty, z * tz + nu * y * ty, x * tz + z * tx
+
+
+@compiled(error_model="python", nogil=True)
+def normal_weights(theta: float, phi: float, nu: float) -> tuple[float, float, float]:
+    """Weights (3,) of sx, sz, txz in the normal stress on a plane."""
+    x, y, z = _normal(theta, phi)
+    return x * x + nu * y * y, z * z + nu * y * y, 2 * x * z
+
+
+@compiled(error_model="python", nogil=True)
+def residual_share(theta: float, phi: float) -> float:
+    """Normal stress on a plane under a unit residual stress along the surface, in x and y."""
+    x, y, _ = _normal(theta, phi)
+    return x * x + y * y
+
+
+def planes_and_directions(step: float = GRID_STEP) -> np.ndarray:
+    """Angles (count, 3) in radians of planes and directions in them, both about `step` apart.
+
+    Planes without tilt have shear only in the direction of the section; the plane of the section has none.
+    """
+    degrees, rows = np.degrees(step), []
+    for tilt in np.arange(0.0, 90.0, degrees):
+        count = max(1, round(180 / degrees * np.cos(np.radians(tilt))))
+        directions = np.arange(0.0, 180.0, degrees) if tilt else (0.0,)
+        rows += [(theta, tilt, psi) for theta in 180 / count * np.arange(count) for psi in directions]
+    return np.radians(rows)
+
+
+@compiled(error_model="python", nogil=True)
+def _mark_reversals(values: np.ndarray, tolerance: float, is_kept: np.ndarray) -> None:
+    """Mark the samples at which a series reverses by more than the tolerance."""
     top = bottom = sign = 0
-    for k in range(1, size):
-        value = direction[0] * points[0, k] + direction[1] * points[1, k] + direction[2] * points[2, k]
+    for k in range(1, values.size):
         if sign >= 0:
-            if value > high:
-                high, top = value, k
-            elif high - value > tolerance:
+            if values[k] > values[top]:
+                top = k
+            elif values[top] - values[k] > tolerance:
                 is_kept[top] = True
-                sign, low, bottom = -1, value, k
+                sign, bottom = -1, k
         if sign <= 0:
-            if value < low:
-                low, bottom = value, k
-            elif value - low > tolerance:
+            if values[k] < values[bottom]:
+                bottom = k
+            elif values[k] - values[bottom] > tolerance:
                 is_kept[bottom] = True
-                sign, high, top = 1, value, k
-    if sign > 0:
-        is_kept[top] = True
-    if sign < 0:
-        is_kept[bottom] = True
+                sign, top = 1, k
+    if sign:
+        is_kept[top if sign > 0 else bottom] = True
 
 
 @compiled(error_model="python", nogil=True)
@@ -97,7 +140,10 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     is_kept = np.zeros(size, np.bool_)
     is_kept[0] = is_kept[size - 1] = True
     for direction in DIRECTIONS:
-        _mark_reversals(points, size, direction, tolerance, is_kept)
+        a, b, c = direction
+        _mark_reversals(
+            a * points[0, :size] + b * points[1, :size] + c * points[2, :size], tolerance, is_kept
+        )
     count, first = 0, ZERO
     ends = np.empty(size, np.int64)
     for last in range(size):
@@ -118,7 +164,6 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     return count
 
 
-SHEAR, FATEMI_SOCIE, SWT = 0, 1, 2
 STARTS = 2  # planes of the coarse grid that are improved
 MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
 NEGLIGIBLE_RANGE = (
@@ -135,43 +180,33 @@ def _sum(weights: tuple, scale: float, offset: float, stress: np.ndarray, out: n
 
 
 @compiled(error_model="python", nogil=True)
-def _on_plane(kind: int, angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
-    """Fill in the counted series (as an equivalent stress) and, if required, the normal stress."""
+def _on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
+    """Fill in the shear stress, as an equivalent stress, and the normal stress."""
     (theta, phi, psi), nu = angles, law[0]
-    if kind == SWT:
-        _sum(strain_weights(theta, phi, nu), 1.0, 0.0, stress, work[2])
-    else:
-        _sum(shear_weights(theta, phi, psi, nu), 3**0.5, 0.0, stress, work[2])
-    if kind != SHEAR:
-        _sum(normal_weights(theta, phi, nu), 1.0, law[1] * residual_share(theta, phi), stress, work[3])
+    _sum(shear_weights(theta, phi, psi, nu), 3**0.5, 0.0, stress, work[2])
+    _sum(normal_weights(theta, phi, nu), 1.0, law[1] * residual_share(theta, phi), stress, work[3])
 
 
 @compiled(error_model="python", nogil=True)
-def _cycle_damage(kind: int, width: float, normal: float, law: tuple) -> float:
+def _cycle_damage(width: float, normal: float, law: tuple) -> float:
     """1/N of a cycle with a range and a maximum normal stress."""
     _, _, _, sensitivity, curve, lives = law
-    if kind == SWT and normal <= 0 or width <= 0:
+    if width <= 0:
         return 0.0
     parameter = interpolate(2 * log(width), curve)
-    if kind == SWT:
-        parameter += log(normal)
-    elif kind == FATEMI_SOCIE and normal > 0:
+    if normal > 0:
         parameter += log(1 + sensitivity * normal)
     return exp(min(interpolate(parameter, lives), 700.0))
 
 
 @compiled(error_model="python", nogil=True)
-def plane_damage(
-    kind: int, angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: float, work: tuple
-) -> float:
+def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: float, work: tuple) -> float:
     """Damage on one plane, without cycles below `threshold` of the widest range."""
     stack, cycles, series, normal = work
     size, closed = stress.shape[1], law[2]
-    _on_plane(kind, angles, stress, law, work)
+    _on_plane(angles, stress, law, work)
     n, full = find_cycles(series[:size], closed, stack, cycles)
-    min_range = 0.0
-    if threshold > 0:
-        min_range = threshold * (series[:size].max() - series[:size].min())
+    min_range = threshold * (series[:size].max() - series[:size].min())
     total = 0.0
     for k in range(n):
         i, j = cycles[k, 0], cycles[k, 1]
@@ -179,30 +214,27 @@ def plane_damage(
         if width <= min_range:
             continue
         highest = 0.0
-        if kind != SHEAR:
-            start, count = loop_of(series, size, i, j, closed)
-            for m in range(start, start + count):
-                highest = max(highest, normal[m if m < size else m - size])
-        total += (1.0 if k < full else 0.5) * _cycle_damage(kind, width, highest, law)
+        start, count = loop_of(series, size, i, j, closed)
+        for m in range(start, start + count):
+            highest = max(highest, normal[m if m < size else m - size])
+        total += (1.0 if k < full else 0.5) * _cycle_damage(width, highest, law)
     return total
 
 
 @compiled(error_model="python", nogil=True)
-def _coarse(
-    kind: int, grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple
-) -> tuple[np.ndarray, np.ndarray]:
+def _coarse(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> tuple[np.ndarray, np.ndarray]:
     """Angles (STARTS, 3) and damage of the best planes of the grid, in falling order."""
     size, bounds = stress.shape[1], np.empty(grid.shape[0])
     _, _, series, normal = work
     for g in range(grid.shape[0]):
-        _on_plane(kind, grid[g], stress, law, work)
+        _on_plane(grid[g], stress, law, work)
         width = series[:size].max() - series[:size].min()
-        bounds[g] = _cycle_damage(kind, width, normal[:size].max() if kind != SHEAR else 0.0, law)
+        bounds[g] = _cycle_damage(width, normal[:size].max(), law)
     best, angles = np.full(STARTS, -1.0), np.zeros((STARTS, 3))
     for g in np.argsort(-bounds):
         if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
             break
-        damage = plane_damage(kind, grid[g], stress, law, NEGLIGIBLE_RANGE, work)
+        damage = plane_damage(grid[g], stress, law, NEGLIGIBLE_RANGE, work)
         rank = STARTS
         while rank > 0 and damage > best[rank - 1]:
             rank -= 1
@@ -214,19 +246,17 @@ def _coarse(
 
 
 @compiled(error_model="python", nogil=True)
-def _improve(
-    kind: int, angles: np.ndarray, damage: float, stress: np.ndarray, law: tuple, work: tuple
-) -> None:
+def _improve(angles: np.ndarray, damage: float, stress: np.ndarray, law: tuple, work: tuple) -> None:
     """Pattern search over the angles, from half the coarse step down to `MIN_ANGLE_STEP`."""
-    step = GRID_STEP * pi / 180 / 2
+    step = GRID_STEP / 2
     trial = angles.copy()
     while step > MIN_ANGLE_STEP:
         better = False
-        for axis in range(2 if kind == SWT else 3):
+        for axis in range(3):
             for change in (-step, step):
                 trial[:] = angles
                 trial[axis] += change
-                trial_damage = plane_damage(kind, trial, stress, law, NEGLIGIBLE_RANGE, work)
+                trial_damage = plane_damage(trial, stress, law, NEGLIGIBLE_RANGE, work)
                 if trial_damage > damage:
                     damage, better = trial_damage, True
                     angles[:] = trial
@@ -237,7 +267,7 @@ def _improve(
 
 @compiled(error_model="python", nogil=True)
 def worst_plane(
-    kind: int, grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple, spare: tuple
+    grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple, spare: tuple
 ) -> tuple[float, float, float]:
     """Damage on the worst plane of stress (3, samples), theta and phi of its normal [rad].
 
@@ -248,15 +278,98 @@ def worst_plane(
     count = turning_samples(points, stress.shape[1], indices)
     few = np.empty((3, count))
     for k in range(count):
-        for component in range(3):
-            few[component, k] = stress[component, indices[k]]
-    starts, damages = _coarse(kind, grid, few, law, work)
+        few[:, k] = stress[:, indices[k]]
+    starts, damages = _coarse(grid, few, law, work)
     worst, theta, phi = 0.0, 0.0, 0.0
     for k in range(STARTS):
         if damages[k] <= 0:
             continue
-        _improve(kind, starts[k], damages[k], few, law, work)
-        damage = plane_damage(kind, starts[k], stress, law, 0.0, work)
+        _improve(starts[k], damages[k], few, law, work)
+        damage = plane_damage(starts[k], stress, law, 0.0, work)
         if damage > worst:
             worst, theta, phi = damage, starts[k, 0], starts[k, 1]
     return worst, theta, phi
+
+
+class PlaneDamage(NamedTuple):
+    """Damage of each history on its worst plane, and angles of the plane's normal in degrees.
+
+    `inclination` is from x towards z in the section (90: the plane is parallel to the surface), `tilt` out of
+    the section.
+    """
+
+    damage: np.ndarray
+    inclination: np.ndarray
+    tilt: np.ndarray
+
+
+@compiled(error_model="python", nogil=True)
+def _worst_planes(
+    grid: np.ndarray, histories: tuple, law: tuple, work: tuple, spare: tuple, out: np.ndarray
+) -> None:
+    stress, lengths = histories
+    for p in range(stress.shape[0]):
+        out[p] = worst_plane(grid, stress[p, :, : lengths[p]].copy(), law, work, spare)
+
+
+class PlaneCounter:
+    """Damage on the worst plane of blocks of histories."""
+
+    columns = PlaneDamage._fields
+
+    def __init__(self, material: Material, constants: Criteria, counting: Counting, samples: int) -> None:
+        counting.check()
+        self.grid, self.tables = planes_and_directions(), shear_tables(material, counting.strain)
+        self.head = (material.poisson_ratio, counting.residue == "closed", constants.sensitivity(material))
+        self.work = (*workspace(samples), np.empty(samples), np.empty(samples))
+        self.spare = np.empty((3, samples)), np.empty(samples, np.int64)
+
+    def law(self, residual: float) -> tuple:
+        """Constants of the compiled functions; residual stress [Pa]."""
+        nu, closed, sensitivity = self.head
+        return nu, float(residual), closed, sensitivity, *self.tables
+
+    def __call__(
+        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
+    ) -> None:
+        """Stress (points, 3, samples), lengths (points,) -> out (points, 3): as in PlaneDamage."""
+        stress = np.ascontiguousarray(stress, float)  # one compiled version for files and arrays
+        _worst_planes(self.grid, (stress, lengths), self.law(residual), self.work, self.spare, out)
+        theta, phi = out[:, 1].copy(), out[:, 2]
+        x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
+        out[:, 1], out[:, 2] = (
+            np.degrees(np.arctan2(z, x)) % 180.0,
+            np.degrees(np.arctan2(abs(y), np.hypot(x, z))),
+        )
+
+
+def critical_plane(
+    sx: np.ndarray,
+    sz: np.ndarray,
+    txz: np.ndarray,
+    material: Material,
+    constants: Criteria | None = None,
+    residue: str = "closed",
+    strain: str = DEFAULT_STRAIN,
+    residual_stress: float = 0.0,
+) -> PlaneDamage:
+    """Damage of one pass of each history by Fatemi and Socie on its worst plane, planes in three dimensions.
+
+    Equation and sources: :mod:`ehlpetsc.post.criteria.laws`.
+
+    Parameters
+    ----------
+    sx, sz, txz
+        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    residue, strain
+        See :func:`ehlpetsc.post.damage`.
+    residual_stress
+        Residual stress along the surface, equal in x and y, zero in z [Pa]; adds to the normal stress of a
+        plane.
+    """
+    counting = Counting(residue=residue, strain=strain)
+
+    def counter_of(samples: int) -> PlaneCounter:
+        return PlaneCounter(material, constants or Criteria(), counting, samples)
+
+    return PlaneDamage(*evaluate(sx, sz, txz, counter_of, residual_stress))

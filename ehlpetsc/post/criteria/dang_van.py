@@ -16,59 +16,51 @@ Under the pressure of a rolling contact the linear criterion would allow unlimit
 hydrostatic stress counts as zero, which is conservative.
 """
 
+from __future__ import annotations
+
 from math import sqrt
 
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
+from ehlpetsc.post.criteria.laws import Criteria
+from ehlpetsc.post.fatigue.accumulate import evaluate
+from ehlpetsc.post.fatigue.cycles import equivalent_points
 
 MAX_ROUNDS = 200  # of the search for the smallest ball
 BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 
 
-@compiled(error_model="python", nogil=True)
-def _centre(points: np.ndarray, corners: np.ndarray, count: int) -> tuple[bool, np.ndarray]:
-    """Centre of the smallest sphere through 1 to 4 points; False if they are degenerate."""
+@compiled(nogil=True)
+def _centre(points: np.ndarray, corners: np.ndarray, count: int) -> np.ndarray:
+    """Centre of the smallest sphere through 1 to 4 points; nan or infinite if they are degenerate."""
     centre = points[:, corners[0]].copy()
-    n = count - 1
-    if n == 0:
-        return True, centre
-    edges = np.empty((n, 3))
-    for k in range(n):
-        edges[k] = points[:, corners[k + 1]] - centre
-    system = np.empty((n, n + 1))
-    for k in range(n):
-        for m in range(n):
-            system[k, m] = 2 * np.sum(edges[k] * edges[m])
-        system[k, n] = np.sum(edges[k] ** 2)
-    for k in range(n):  # elimination with the largest pivot of the Gram matrix
-        pivot = k
-        for m in range(k + 1, n):
-            if abs(system[m, k]) > abs(system[pivot, k]):
-                pivot = m
-        if abs(system[pivot, k]) <= 1e-12 * system[:, n].max():
-            return False, centre
-        for m in range(n + 1):
-            system[k, m], system[pivot, m] = system[pivot, m], system[k, m]
-        for m in range(n):
-            if m != k:
-                factor = system[m, k] / system[k, k]
-                for q in range(k, n + 1):
-                    system[m, q] -= factor * system[k, q]
-    for k in range(n):
-        centre += system[k, n] / system[k, k] * edges[k]
-    return True, centre
+    if count == 1:
+        return centre
+    a = points[:, corners[1]] - centre
+    aa = np.sum(a * a)
+    if count == 2:
+        return centre + a / 2
+    b = points[:, corners[2]] - centre
+    bb, normal = np.sum(b * b), np.cross(a, b)
+    if count == 3:
+        return centre + np.cross(aa * b - bb * a, normal) / (2 * np.sum(normal * normal))
+    c = points[:, corners[3]] - centre
+    cc = np.sum(c * c)
+    return centre + (cc * normal + aa * np.cross(b, c) + bb * np.cross(c, a)) / (2 * np.sum(normal * c))
 
 
-@compiled(error_model="python", nogil=True)
+@compiled(nogil=True)
 def _max_distance(points: np.ndarray, corners: np.ndarray, count: int, centre: np.ndarray) -> float:
     reach = 0.0
     for k in range(count):
-        reach = max(reach, np.sum((points[:, corners[k]] - centre) ** 2))
+        squared = np.sum((points[:, corners[k]] - centre) ** 2)
+        if not squared <= reach:  # also nan
+            reach = squared
     return sqrt(reach)
 
 
-@compiled(error_model="python", nogil=True)
+@compiled(nogil=True)
 def _smallest_of_few(
     points: np.ndarray, indices: np.ndarray, count: int
 ) -> tuple[float, np.ndarray, np.ndarray, int]:
@@ -84,11 +76,9 @@ def _smallest_of_few(
                 size += 1
         if size > 4:
             continue
-        has_ball, centre = _centre(points, subset, size)
-        if not has_ball:
-            continue
-        radius = _max_distance(points, subset, size, centre)
-        if radius < best and _max_distance(points, indices, count, centre) <= radius * (1 + BALL_TOLERANCE):
+        centre = _centre(points, subset, size)
+        radius = _max_distance(points, indices, count, centre)
+        if radius < best:
             best, best_centre, best_count = radius, centre, int(size)
             best_subset[:size] = subset[:size]
     return best, best_centre, best_subset, best_count
@@ -104,16 +94,9 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     indices = np.zeros(5, np.int64)
     count, radius, centre = 1, 0.0, points[:, 0].copy()
     for _ in range(MAX_ROUNDS):
-        farthest, squared = 0, -1.0
-        for k in range(points.shape[1]):
-            away = (
-                (points[0, k] - centre[0]) ** 2
-                + (points[1, k] - centre[1]) ** 2
-                + (points[2, k] - centre[2]) ** 2
-            )
-            if away > squared:
-                farthest, squared = k, away
-        if sqrt(squared) <= radius * (1 + BALL_TOLERANCE):
+        away = ((points - centre.reshape(3, 1)) ** 2).sum(axis=0)
+        farthest = away.argmax()
+        if sqrt(away[farthest]) <= radius * (1 + BALL_TOLERANCE):
             break
         indices[count] = farthest
         larger, new_centre, indices, count = _smallest_of_few(points, indices, count + 1)
@@ -138,3 +121,54 @@ def utilisation(
         hydrostatic = ((1 + nu) * (float(stress[0, k]) + float(stress[1, k])) + 2 * residual) / 3
         largest = max(largest, shear + slope * max(hydrostatic, 0.0))
     return largest / limit
+
+
+@compiled(error_model="python", nogil=True)
+def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, out: np.ndarray) -> None:
+    stress, lengths = histories
+    slope, limit = limits
+    points = np.empty((3, stress.shape[2]))
+    for p in range(stress.shape[0]):
+        history = stress[p, :, : lengths[p]].copy()
+        equivalent_points(history, nu, points)
+        out[p, 0] = utilisation(history, points[:, : lengths[p]], nu, residual, slope, limit)
+
+
+class LimitCounter:
+    """Dang Van's utilisation of blocks of histories."""
+
+    columns = ("utilisation",)
+
+    def __init__(self, poisson_ratio: float, constants: Criteria) -> None:
+        self.nu = poisson_ratio
+        self.limits = constants.hydrostatic_slope, constants.torsion_limit
+
+    def __call__(
+        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
+    ) -> None:
+        """Stress (points, 3, samples), lengths (points,) -> out (points, 1)."""
+        stress = np.ascontiguousarray(stress, float)
+        _utilisations((stress, lengths), self.nu, float(residual), self.limits, out)
+
+
+def dang_van(
+    sx: np.ndarray,
+    sz: np.ndarray,
+    txz: np.ndarray,
+    poisson_ratio: float,
+    constants: Criteria | None = None,
+    residual_stress: float = 0.0,
+) -> float | np.ndarray:
+    """Dang Van's utilisation U of the fatigue limit by each history; no crack for U <= 1, safety 1/U.
+
+    Parameters
+    ----------
+    sx, sz, txz
+        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    constants
+        With the two fatigue limits.
+    residual_stress
+        Residual stress along the surface, equal in x and y [Pa]; adds to the hydrostatic stress.
+    """
+    constants = constants or Criteria()
+    return evaluate(sx, sz, txz, lambda samples: LimitCounter(poisson_ratio, constants), residual_stress)[0]

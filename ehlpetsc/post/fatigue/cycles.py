@@ -149,29 +149,16 @@ def loop_of(series: np.ndarray, size: int, i: int, j: int, closed: bool) -> tupl
     `closed`: the history repeats, so that a loop may extend across its end, as from i to j < i.
     """
     low, high = min(series[i], series[j]), max(series[i], series[j])
-    count = (j - i if j >= i else j - i + size) + 1
-    first = i
-    while count < size:
-        before = first - 1
-        if before < 0:
-            if not closed:
+    count, first = (j - i) % size + 1, i
+    for step in (-1, 1):
+        at = first if step < 0 else first + count - 1
+        while count < size:
+            at += step
+            if not (closed or 0 <= at < size) or not low <= series[at % size] <= high:
                 break
-            before += size
-        if not low <= series[before] <= high:
-            break
-        first = before
-        count += 1
-    last = (first + count - 1) % size
-    while count < size:
-        after = last + 1
-        if after == size:
-            if not closed:
-                break
-            after = 0
-        if not low <= series[after] <= high:
-            break
-        last = after
-        count += 1
+            count += 1
+            if step < 0:
+                first = at % size
     return first, count
 
 

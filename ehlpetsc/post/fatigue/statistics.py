@@ -8,8 +8,6 @@ from ehlpetsc.results.post_result import WeibullFit
 
 MIN_PROMINENCE = 0.1  # of Rq: smaller peaks are noise of the measurement
 MIN_SPREAD = 1e-6  # relative: damages are accurate to about 1e-6
-CONFIDENCE = 0.9  # of the bounds
-DRAWS = 1000  # of the bootstrap
 
 
 class Asperities(NamedTuple):
@@ -18,14 +16,6 @@ class Asperities(NamedTuple):
     s: np.ndarray
     height: np.ndarray
     point: np.ndarray
-
-
-class WeibullBounds(NamedTuple):
-    """Lower and upper bounds of scale and shape, and the drawn rows (alpha, beta)."""
-
-    alpha: tuple[float, float]
-    beta: tuple[float, float]
-    draws: np.ndarray
 
 
 def asperities(
@@ -54,32 +44,6 @@ def benard_ranks(n: int) -> np.ndarray:
     return (np.arange(1, n + 1) - 0.3) / (n + 0.4)
 
 
-def _lines(rows: np.ndarray) -> np.ndarray:
-    """Columns alpha, beta, squared correlation of each row (draws, n); nan if its values are too similar."""
-    rows = np.sort(rows, axis=1)
-    used = (rows > 0) & np.isfinite(rows)
-    count = used.sum(axis=1)
-    y = np.where(used, np.log(-np.log1p(-benard_ranks(rows.shape[1]))), 0.0)
-    x = np.log(np.where(used, rows, 1.0))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean_x, mean_y = x.sum(axis=1) / count, y.sum(axis=1) / count
-        dx, dy = np.where(used, x - mean_x[:, None], 0), np.where(used, y - mean_y[:, None], 0)
-        xx, xy, yy = (dx * dx).sum(axis=1), (dx * dy).sum(axis=1), (dy * dy).sum(axis=1)
-        beta = yy / xy
-        fits = np.column_stack([np.exp(mean_x - mean_y / beta), beta, xy**2 / (xx * yy)])
-    fits[~(np.isfinite(fits).all(axis=1) & (fits > 0).all(axis=1))] = np.nan
-    return fits
-
-
-def _checked(values: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Values as one row, and whether they suffice for a fit: their range is above `MIN_SPREAD`."""
-    values = np.asarray(values, float).ravel()
-    if np.isnan(values).any():
-        raise ValueError("values must not be nan")
-    used = values[(values > 0) & np.isfinite(values)]
-    return values, used.size > 1 and bool(used.max() - used.min() > MIN_SPREAD * used.max())
-
-
 def weibull_fit(values: np.ndarray) -> WeibullFit:
     r"""Two-parameter Weibull by median rank regression.
 
@@ -95,38 +59,17 @@ def weibull_fit(values: np.ndarray) -> WeibullFit:
         -log10 of damages. An infinite value (no damage) is censored: it counts in the ranks, above all other
         values. A value of 0 or less (damage of 1 or more) has a rank, but is not used for the line.
     """
-    values, enough = _checked(values)
-    return WeibullFit(*map(float, _lines(values[None])[0])) if enough else WeibullFit(np.nan, np.nan, np.nan)
-
-
-def weibull_bounds(
-    values: np.ndarray, level: float = CONFIDENCE, draws: int = DRAWS, seed: int = 0
-) -> WeibullBounds:
-    """Bounds of :func:`weibull_fit` by resampling the values with replacement (Efron's percentiles).
-
-    `level` is the fraction of the `draws` fits between the bounds; nan if the values are too similar.
-    Neighbouring asperities are in contact with the same parts of the other surface; if damages are
-    correlated, the true bounds are wider.
-    """
-    values, enough = _checked(values)
-    if not 0 < level < 1:
-        raise ValueError("level must lie between 0 and 1")
-    if not enough:
-        return WeibullBounds((np.nan, np.nan), (np.nan, np.nan), np.full((0, 2), np.nan))
-    chosen = np.random.default_rng(seed).integers(values.size, size=(draws, values.size))
-    fits = _lines(values[chosen])[:, :2]
-    fits = fits[np.isfinite(fits[:, 0])]
-    ends = np.quantile(fits, [(1 - level) / 2, (1 + level) / 2], axis=0)
-    return WeibullBounds(tuple(ends[:, 0]), tuple(ends[:, 1]), fits)
-
-
-def rank_correlation(first: np.ndarray, second: np.ndarray) -> float:
-    """Spearman's rank correlation of two samples, ties at their mean rank; nan if one is constant."""
-    from scipy.stats import rankdata  # an import of one second, only for pictures and criteria
-
-    if first.size < 2 or np.ptp(first) == 0 or np.ptp(second) == 0:
-        return np.nan
-    return float(np.corrcoef(rankdata(first), rankdata(second))[0, 1])
+    values = np.sort(np.asarray(values, float).ravel())
+    used = (values > 0) & np.isfinite(values)
+    if np.isnan(values).any():
+        raise ValueError("values must not be nan")
+    if used.sum() < 2 or not np.ptp(values[used]) > MIN_SPREAD * values[used].max():
+        return WeibullFit(np.nan, np.nan, np.nan)
+    x, y = np.log(values[used]), np.log(-np.log1p(-benard_ranks(values.size)[used]))
+    dx, dy = x - x.mean(), y - y.mean()
+    beta = (dy @ dy) / (dx @ dy)
+    alpha = np.exp(x.mean() - y.mean() / beta)
+    return WeibullFit(float(alpha), float(beta), float((dx @ dy) ** 2 / ((dx @ dx) * (dy @ dy))))
 
 
 def log_life(damage: np.ndarray) -> np.ndarray:

@@ -210,13 +210,6 @@ def cycle_damage(dsv: float, mean: float, rule: int, constants: tuple) -> float:
     return 2 * exp(min(-y, MAX_EXPONENT))
 
 
-@compiled(error_model="python", nogil=True)
-def _lives(dsv: np.ndarray, mean: np.ndarray, rule: int, constants: tuple, out: np.ndarray) -> None:
-    for i in range(dsv.size):
-        damage = cycle_damage(dsv[i], mean[i], rule, constants)
-        out[i] = 1 / damage if damage > 0 else inf
-
-
 def cycles_to_failure(
     dsv: np.ndarray, material: Material, mean_stress: float | np.ndarray = 0.0, strain: str = "direct"
 ) -> float | np.ndarray:
@@ -231,13 +224,13 @@ def cycles_to_failure(
     strain
         Rule applied to the elastic range before (13): "direct", "neuber" or "glinka".
     """
-    rule = rule_of(strain)
-    dsv, mean = (np.array(array, float) for array in np.broadcast_arrays(dsv, mean_stress))
+    rule, constants = rule_of(strain), material.constants()
+    dsv, mean = np.broadcast_arrays(np.asarray(dsv, float), np.asarray(mean_stress, float))
     if not (dsv >= 0).all() or np.isnan(mean).any():
         raise ValueError("stress ranges must be numbers of 0 or more")
-    out = np.empty(dsv.size)
-    _lives(dsv.ravel(), mean.ravel(), rule, material.constants(), out)
-    return float(out[0]) if dsv.ndim == 0 else out.reshape(dsv.shape)
+    damages = [cycle_damage(*pair, rule, constants) for pair in zip(dsv.ravel(), mean.ravel(), strict=True)]
+    with np.errstate(all="ignore"):
+        return (1 / np.reshape(damages, dsv.shape))[()]
 
 
 ENTRIES = 4096
@@ -260,6 +253,25 @@ def curve_table(
     return table
 
 
+def log_amplitude(
+    log_squared: float, modulus: float, hardening: float, exponent: float, rule: int
+) -> tuple[float, float]:
+    """ln of the strain amplitude, and its slope, from ln of the squared elastic range."""
+    local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
+    value = log_strain_amplitude(local, modulus, hardening, exponent)
+    elastic = exp(local - log(2 * modulus) - value)
+    return value, (elastic + (1 - elastic) / exponent) * rate / 2
+
+
+def log_damage(
+    amplitude: float, strength: float, modulus: float, ductility: float, b: float, c: float
+) -> tuple[float, float]:
+    """ln(1/N), and its slope, from ln of the strain amplitude."""
+    y = log_reversals(amplitude, strength, modulus, ductility, b, c)
+    elastic = exp(log(strength / modulus) + b * y - amplitude)
+    return log(2.0) - y, -1 / (b * elastic + c * (1 - elastic))
+
+
 @lru_cache(maxsize=8)
 def life_table(material: Material, strain: str = "direct") -> np.ndarray:
     """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: rule applied before eq. (13).
@@ -267,18 +279,14 @@ def life_table(material: Material, strain: str = "direct") -> np.ndarray:
     Cached: all histories of one material use the same table.
     """
     modulus, hardening, exponent, strength, ductility, b, c = material.constants()
-    rule = rule_of(strain)
+    curve = modulus, hardening, exponent, rule_of(strain)
 
-    def log_damage(log_squared: float) -> tuple[float, float]:
-        local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
-        amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
-        y = log_reversals(amplitude, strength, modulus, ductility, b, c)
-        elastic = exp(local - log(2 * modulus) - amplitude)
-        life = exp(log(strength / modulus) + b * y - amplitude)
-        slope = (elastic + (1 - elastic) / exponent) / (b * life + c * (1 - life))
-        return log(2.0) - y, -slope * rate / 2
+    def value_and_slope(log_squared: float) -> tuple[float, float]:
+        amplitude, rate = log_amplitude(log_squared, *curve)
+        value, slope = log_damage(amplitude, strength, modulus, ductility, b, c)
+        return value, slope * rate
 
-    return curve_table(2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength), log_damage)
+    return curve_table(2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength), value_and_slope)
 
 
 @compiled(error_model="python", nogil=True)

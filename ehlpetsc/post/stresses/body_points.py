@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.errors import PostError
+
 NO_FLANK = np.inf, -np.inf
 GRID_ROUNDING = 1e-9  # nodes: points nearer to a node are at it
 
@@ -47,7 +49,7 @@ def passage(
     """Passage of the points s = s[0] + j dx of a body with x = s + travelled (nt,).
 
     `flank` are the points s at x = 0 at the end and at the beginning of the contact of two teeth; points
-    between them need not enter or leave the nodes. ValueError if the body turns back.
+    between them need not enter or leave the nodes. PostError if the body turns back.
     """
     base = np.round((s[0] - x[0] + travelled) / dx, 9)
     shift = np.floor(base).astype(np.int64)
@@ -59,5 +61,5 @@ def passage(
         enter, leave = np.searchsorted(-base, j - last, "left"), np.searchsorted(-base, j, "right") - 1
         complete = (base[0] + j >= last) & (base[-1] + j <= 0)
     else:
-        raise ValueError("a surface turns back: its points would pass the contact several times")
+        raise PostError("a surface turns back: its points would pass the contact several times")
     return Passage(shift, base - shift, enter, leave, complete)

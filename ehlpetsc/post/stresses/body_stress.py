@@ -26,7 +26,7 @@ import numpy as np
 from scipy import fft
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.stresses.body_points import passage
+from ehlpetsc.post.stresses.body_points import Passage, passage
 from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
 
 if TYPE_CHECKING:
@@ -104,6 +104,8 @@ def hermite_spectra(nx: int, z: float, offset: float) -> np.ndarray:
     return fft.rfft(kernels.reshape(8, n))
 
 
+FRAMES_PER_READ = 144
+SAMPLE_BYTES = 12  # three stresses in single precision
 FRAMES_PER_BATCH = 8  # transformed at once, so that their spectra fit in the cache
 FREQUENCIES_PER_BLOCK = 32
 # of p0 (60 Pa at 1 GPa): single-precision histories are rounded to multiples, so that the noise of the
@@ -205,20 +207,70 @@ class BodyStress:
         return fft.irfft(out, self.n, overwrite_x=True)
 
 
+@compiled(error_model="python", nogil=True)
+def _collect(
+    stress: np.ndarray, begin: int, first: int, motion: tuple, quantum: float, histories: np.ndarray
+) -> None:
+    """Copy stresses (frames, 3, n) of frames from `begin` on into histories (points, 3, samples).
+
+    Point by point from `first` on, rounded to a multiple of the quantum if it is not zero.
+    """
+    shift, enter, leave = motion
+    inverse, end = 1.0 / quantum if quantum else 0.0, begin + stress.shape[0]
+    for row in range(histories.shape[0]):
+        j = first + row
+        for frame in range(max(begin, enter[j]), min(end, leave[j] + 1)):
+            node, sample = j + shift[frame], frame - enter[j] + 1
+            for component in range(3):
+                value = stress[frame - begin, component, node]
+                histories[row, component, sample] = np.rint(value * inverse) * quantum if quantum else value
+
+
+def runs_of_points(motion: Passage, memory: float, depths: int) -> list[np.ndarray]:
+    """Split the complete points into ranges of consecutive points whose histories fit in `memory` bytes."""
+    points = np.flatnonzero(motion.complete)
+    room = max(1, int(memory / (SAMPLE_BYTES * depths * (motion.samples() + 2))))
+    runs: list[np.ndarray] = []
+    for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
+        runs += np.array_split(stretch, -(-stretch.size // room)) if stretch.size else []
+    return runs
+
+
+def histories(
+    loads: Loads,
+    surface: str,
+    motion: Passage,
+    stress: BodyStress,
+    points: np.ndarray,
+    quantum: float,
+    dtype: type = np.float32,
+) -> np.ndarray:
+    """Stress histories (nz, points, 3, samples) of consecutive points, multiples of `quantum` [Pa].
+
+    Of a point the first leave - enter + 3 samples count: it is unstressed before it enters and after it
+    leaves, so that its history begins and ends with zero.
+    """
+    samples = int((motion.leave - motion.enter)[points].max()) + 3
+    found = np.zeros((len(stress.tables), points.size, 3, samples), dtype)
+    weights, places = offset_weights(motion.offset), (motion.shift, motion.enter, motion.leave)
+    end = motion.leave[points].max() + 1
+    for begin in range(motion.enter[points].min(), end, FRAMES_PER_READ):
+        pressure, shear = loads.read(surface, begin, min(begin + FRAMES_PER_READ, end))
+        for at in range(0, len(pressure), FRAMES_PER_BATCH):
+            batch = slice(at, at + FRAMES_PER_BATCH)
+            spectra = stress.transform(pressure[batch], shear[batch])
+            of_frames = weights[begin + at : begin + at + len(spectra)]
+            for depth, rows in enumerate(found):
+                fields = stress(depth, spectra, of_frames)
+                _collect(fields, begin + at, points[0], places, quantum, rows)
+    return found
+
+
 def history_at(
     loads: Loads, surface: str, s: float, depth: float, quantum: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
     motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
-    enter, leave = int(motion.enter[0]), int(motion.leave[0]) + 1
     stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
-    values = np.zeros((3, max(leave - enter, 0) + 2))
-    for begin in range(enter, leave, FRAMES_PER_BATCH):
-        frames = np.arange(begin, min(begin + FRAMES_PER_BATCH, leave))
-        spectra = stress.transform(*loads.read(surface, frames[0], frames[-1] + 1))
-        fields = stress(0, spectra, offset_weights(motion.offset[frames]))
-        at = frames - enter + 1
-        values[:, at] = fields[np.arange(frames.size), :, motion.shift[frames]].T
-    if quantum:
-        values = np.rint(values * (1 / quantum)) * quantum
-    return loads.time[enter:leave], values
+    found = histories(loads, surface, motion, stress, np.array([0]), quantum, float)
+    return loads.time[motion.enter[0] : motion.leave[0] + 1], found[0, 0]

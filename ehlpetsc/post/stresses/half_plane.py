@@ -17,9 +17,6 @@ With u = x - s, D = u^2 + z^2 the plane-strain half plane under pressure p and t
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache
-
 import numpy as np
 from scipy import fft
 
@@ -35,6 +32,7 @@ def von_mises_squared(sx: np.ndarray, sy: np.ndarray, sz: np.ndarray, txz: np.nd
 
 GAUSS_DISTANCE = 8.0  # elements: beyond, quadrature is exact to rounding and the closed form has cancellation
 GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(10)
+PARITY = np.array([1.0, -1.0, 1.0, -1.0])[:, None]  # of the kernels in u
 
 
 def point_kernels(u: np.ndarray, z: float) -> np.ndarray:
@@ -63,33 +61,18 @@ def _primitives(u: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
     return first, second
 
 
-def _half_closed(u: np.ndarray, z: float) -> np.ndarray:
-    """Closed form of the left half hat, load 1 + s on -1 <= s <= 0."""
-    first, second = _primitives(u, z)
-    return _primitives(u + 1, z)[1] - second - first
+def half_hat(u: np.ndarray, z: float) -> np.ndarray:
+    """Kernels integrated over the left half of a hat, load 1 + s on -1 <= s <= 0.
 
-
-def _hat_closed(u: np.ndarray, z: float) -> np.ndarray:
-    return _primitives(u + 1, z)[1] - 2 * _primitives(u, z)[1] + _primitives(u - 1, z)[1]
-
-
-def _half_quadrature(u: np.ndarray, z: float) -> np.ndarray:
-    s = (GAUSS_NODES - 1) / 2
-    values = point_kernels(u[:, None] - s, z)
-    return values @ (GAUSS_WEIGHTS / 2 * (1 + s))
-
-
-def _hat_quadrature(u: np.ndarray, z: float) -> np.ndarray:
-    mirrored = np.array([1.0, -1.0, 1.0, -1.0])[:, None] * _half_quadrature(-u, z)
-    return _half_quadrature(u, z) + mirrored
-
-
-def _blend(u: np.ndarray, z: float, closed: Callable, quadrature: Callable) -> np.ndarray:
+    At u = z = 0 the stress of a jump of the traction is infinite; the finite part is returned.
+    """
     u = np.asarray(u, float)
     near = np.hypot(u, z) < GAUSS_DISTANCE
     out = np.empty((4, u.size))
-    out[:, near] = closed(u[near], z)
-    out[:, ~near] = quadrature(u[~near], z)
+    first, second = _primitives(u[near], z)
+    out[:, near] = _primitives(u[near] + 1, z)[1] - second - first
+    s = (GAUSS_NODES - 1) / 2
+    out[:, ~near] = point_kernels(u[~near][:, None] - s, z) @ (GAUSS_WEIGHTS / 2 * (1 + s))
     return out
 
 
@@ -99,19 +82,10 @@ def hat(u: np.ndarray, z: float) -> np.ndarray:
     `u` (n,) is the distance from the centre of the hat, `z` the depth, both in elements; at z = 0 the limits
     from inside the body.
     """
-    return _blend(u, z, _hat_closed, _hat_quadrature)
-
-
-def half_hat(u: np.ndarray, z: float) -> np.ndarray:
-    """Kernels integrated over the left half of a hat: contribution of an end node outside the load.
-
-    At u = z = 0 the stress of a jump of the traction is infinite; the finite part is returned.
-    """
-    return _blend(u, z, _half_closed, _half_quadrature)
+    return half_hat(u, z) + PARITY * half_hat(-u, z)
 
 
 SPACING_TOLERANCE = 1e-6  # relative, of stored positions
-DEPTHS_AT_ONCE = 5  # so that their spectra fit in the cache
 
 
 def spacing(x: np.ndarray) -> float:
@@ -165,44 +139,26 @@ class StressField:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Stresses (sx, sz, txz), each (..., nz, nx), under pressure and traction (..., nx), all in Pa."""
         p = fft.rfft(pressure, self.n)[..., None, :]
-        q = None if shear is None else fft.rfft(shear, self.n)[..., None, :]
-        fields = np.empty((3, *p.shape[:-2], len(self.depths), self.nx))
-        for first in range(0, len(self.depths), DEPTHS_AT_ONCE):
-            block = slice(first, first + DEPTHS_AT_ONCE)
-            fields[..., block, :] = fft.irfft(self._spectra(block, p, q), self.n, overwrite_x=True)[
-                ..., : self.nx
-            ]
+        spectra = np.stack([self.along * p, self.normal * p, self.cross * p])
+        if shear is not None:
+            q = fft.rfft(shear, self.n)[..., None, :]
+            spectra += np.stack([self.shear * q, self.cross * q, self.along * q])
+        fields = fft.irfft(spectra, self.n, overwrite_x=True)[..., : self.nx]
         self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
         return fields[0], fields[1], fields[2]
 
-    def _spectra(self, block: slice, p: np.ndarray, q: np.ndarray | None) -> np.ndarray:
-        """Spectra (3, ..., depths, f) of the stresses at some depths."""
-        normal, cross, along = self.normal[block], self.cross[block], self.along[block]
-        out = np.stack([along * p, normal * p, cross * p])
-        if q is not None:
-            out[0] += self.shear[block] * q
-            out[1] += cross * q
-            out[2] += along * q
-        return out
-
     def _cut_ends(self, fields: np.ndarray, pressure: np.ndarray, shear: np.ndarray | None) -> None:
         """Subtract the outer halves of the end nodes' hats if the load is not zero there."""
-        nodes, parity = np.arange(self.nx), np.array([1.0, -1.0, 1.0, -1.0])[:, None, None]
         for node in (0, -1):
             p, q = pressure[..., node], 0.0 if shear is None else shear[..., node]
             if not (np.any(p) or np.any(q)):
                 continue
-            kernels = -2 / np.pi * np.stack([half_hat(nodes, z) for z in self.depths], axis=1)
-            normal, cross, along, tangential = parity * kernels[..., ::-1] if node else kernels
+            kernels = -2 / np.pi * np.stack([half_hat(np.arange(self.nx), z) for z in self.depths], axis=1)
+            normal, cross, along, tangential = PARITY[..., None] * kernels[..., ::-1] if node else kernels
             p, q = np.asarray(p)[..., None, None], np.asarray(q)[..., None, None]
             fields[0] -= along * p + tangential * q
             fields[1] -= normal * p + cross * q
             fields[2] -= cross * p + along * q
-
-
-@lru_cache(maxsize=4)
-def _field(nx: int, dx: float, depths: tuple[float, ...]) -> StressField:
-    return StressField(nx, dx, np.array(depths))
 
 
 def stress(
@@ -243,9 +199,7 @@ def stress(
         raise ValueError("pressure and shear must have one value a node, and the same shape")
     if not -1 < poisson_ratio <= 0.5:
         raise ValueError("Poisson's ratio must lie between -1 and 0.5")
-    dx = spacing(x)
-    field = _field(x.size, dx, tuple(np.atleast_1d(np.asarray(z, float))))
-    sx, sz, txz = field(pressure, shear)
+    sx, sz, txz = StressField(x.size, spacing(x), z)(pressure, shear)
     return (sx[..., 0, :], sz[..., 0, :], txz[..., 0, :]) if np.ndim(z) == 0 else (sx, sz, txz)
 
 
