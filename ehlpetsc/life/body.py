@@ -203,7 +203,7 @@ class LifeBody(NamedTuple):
         passes, done
             Passes of the jump, and before it.
         rule
-            As of :func:`.laws.broken_out`; "none": failed cells at the surface are counted and remain.
+            As of :func:`.laws.broken_out`; "none": columns with failed cells are counted, and remain.
         """
         wear, added, volume = rates.after(passes)
         fails = (self.damage < 1.0) & (self.damage + added >= 1.0)
@@ -217,8 +217,10 @@ class LifeBody(NamedTuple):
             damage_rate=rates.damage,
             volume_rate=rates.volume,
         )
-        breaks = rule != "none"
-        bottom = laws.broken_out(body.damage, body.edges, body.recession, rule if breaks else "connected")
-        is_new = bottom > body.recession
+        recession, breaks = body.recession, rule != "none"
+        bottom = laws.broken_out(body.damage, body.edges, recession, rule if breaks else "above")
+        if breaks:
+            bottom = laws.with_walls(bottom, recession, self.s[1] - self.s[0])
+        is_new = bottom > recession
         pit = bottom - body.wear if breaks else body.pit
         return body._replace(is_pitted=body.is_pitted | is_new, pit=np.where(is_new, pit, body.pit))

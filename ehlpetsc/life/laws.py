@@ -14,6 +14,7 @@ FINE_CELLS = 12  # cells of equal thickness below the surface as made
 CELL_GROWTH = 1.25  # of the thickness of the cells below them
 
 WEAKENED_DAMAGE = 0.95  # damage from which cells break out with a failed one
+WALL_SLOPE = 3.0**-0.5  # of the walls of a pit: 30 degrees
 
 
 def sum_over(passes: float, rate: float | np.ndarray, slope: float) -> float | np.ndarray:
@@ -136,6 +137,27 @@ def broken_out(
         breaking = np.intersect1d(at_surface, breaking)
     bottom = np.where(np.isin(numbers, breaking), edges[1:, None], 0.0).max(axis=0)
     return np.maximum(bottom, recession)
+
+
+def with_walls(bottom: np.ndarray, recession: np.ndarray, width: float) -> np.ndarray:
+    """Depths of pits whose walls rise at 30 degrees from the cells that break out [m].
+
+    Cracks of micropits grow at a shallow angle to the surface (Rycerz and Kadiric, Tribology Letters 67
+    (2019) 63), and the width of a pit is then independent of that of the columns.
+
+    Parameters
+    ----------
+    bottom : shape (columns,)
+        As of :func:`broken_out` [m].
+    recession : shape (columns,)
+        Depth of the surface before [m].
+    width
+        Of a column [m].
+    """
+    number = np.arange(len(bottom))
+    breaks = np.flatnonzero(bottom > recession)
+    rise = WALL_SLOPE * width * np.abs(number[:, None] - breaks)
+    return np.maximum(recession, np.max(bottom[breaks] - rise, axis=1, initial=0.0))
 
 
 def number_of_pits(is_pitted: np.ndarray) -> int:

@@ -104,7 +104,9 @@ def test_first_pit_is_independent_of_the_allowed_jump():
         ends.append((done, *bodies[0].pit))
     assert ends[0] == ends[1]
     assert ends[0][0] == int(np.exp(0.1) / 8e-5) + 1
-    assert bodies[0].pit[-1] == 1.0 and np.count_nonzero(bodies[0].pit) == 1
+    assert bodies[0].pit == pytest.approx([0.0] * 6 + [1.0 - 3.0**-0.5, 1.0]), (
+        "a cell, and the wall beside it"
+    )
     assert bodies[0].failed[0, -1] == pytest.approx(np.exp(0.1) / 8e-5, rel=1e-12)
 
 
@@ -150,6 +152,17 @@ def test_failed_cell_breaks_out_with_all_cells_above_it():
     damage[2, 1], damage[1, 3] = 0.96, 0.97  # weakened: below a failed cell, and alone
     assert laws.broken_out(damage, EDGES, np.zeros(4), "above").tolist() == [0.0, 4.0, 4.0, 0.0]
     assert laws.broken_out(damage, EDGES, np.zeros(4), "connected").tolist() == [0.0, 0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize("columns", [41, 161])
+def test_pits_are_as_wide_on_any_mesh(columns):
+    """A cell that fails at a depth of 4 breaks out with all below 30 degrees above it."""
+    width, middle = 20.0 / (columns - 1), columns // 2
+    bottom = np.full(columns, 0.5)  # worn before
+    bottom[middle] = 4.0
+    depth = laws.with_walls(bottom, np.full(columns, 0.5), width)
+    assert depth[middle] == 4.0 and depth[0] == 0.5
+    assert width * np.count_nonzero(depth > 0.5) == pytest.approx(2 * 3.5 * 3.0**0.5, abs=width)
 
 
 def body(columns=8):
