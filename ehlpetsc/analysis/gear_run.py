@@ -132,6 +132,15 @@ def lines(runs: list[GearRun]) -> list[str]:
     return texts + [line for run in runs if run.damage for line in run.damage.lines()]
 
 
+def panels(runs: list[GearRun]) -> dict[str, list[str]]:
+    """Scalars that all runs have, by the ending of their picture: "" or temperatures."""
+    known = [
+        name for name, *_ in SCALARS if all(np.isfinite(run.scalars.get(name, np.nan)).any() for run in runs)
+    ]
+    hot = [name for name in known if "temperature" in name]
+    return {"": [name for name in known if name not in hot]} | ({".temperatures": hot} if hot else {})
+
+
 class FlankDamage:
     """Damage of one engagement along both flanks, from the post-processing of a gear run.
 

@@ -11,6 +11,7 @@ bulk temperatures are those of its own losses.
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -76,7 +77,7 @@ def run(chosen: argparse.Namespace) -> None:
 
 def _compare(chosen: argparse.Namespace) -> None:
     """Print and draw results along their paths of contact, those of an index over the torque."""
-    from ehlpetsc.analysis.gear_run import lines
+    from ehlpetsc.analysis.gear_run import lines, panels
     from ehlpetsc.pictures.gears import draw_damage, draw_runs, draw_stages
     from ehlpetsc.results.index import files_of
 
@@ -89,13 +90,21 @@ def _compare(chosen: argparse.Namespace) -> None:
     target = _picture(chosen, "stages" if is_series else "gears")
     if target is None:
         return
-    (draw_stages if is_series else draw_runs)(runs, target)
-    print(target)
-    if not is_series and any(run.damage for run in runs):
-        flanks = target.with_suffix(".flanks.png")
-        check_derived(flanks, files, PICTURES)
-        draw_damage([run for run in runs if run.damage], flanks)
-        print(flanks)
+    if is_series:
+        pictures = {target: partial(draw_stages, runs)}
+    else:
+        pictures = {
+            target.with_suffix(ending + target.suffix): partial(draw_runs, runs, names=names)
+            for ending, names in panels(runs).items()
+        }
+        damaged = [run for run in runs if run.damage]
+        if damaged:
+            pictures[target.with_suffix(".flanks" + target.suffix)] = partial(draw_damage, damaged)
+    for path in pictures:
+        check_derived(path, files, PICTURES)
+    for path, draw in pictures.items():
+        draw(path)
+        print(path)
 
 
 def _run_of(file: Path) -> GearRun:

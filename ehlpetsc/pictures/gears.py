@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -79,13 +80,9 @@ def _sharings(path: ContactPath) -> list[tuple[str, np.ndarray, dict]]:
     return curves
 
 
-def draw_runs(runs: list[GearRun], target: Path) -> None:
-    """Draw the scalars of runs along the line of action, with those of the standards, into a file."""
-    rows = [
-        row
-        for row in SCALARS
-        if all(row[0] in run.scalars and np.isfinite(run.scalars[row[0]]).any() for run in runs)
-    ]
+def draw_runs(runs: list[GearRun], target: Path, *, names: Sequence[str]) -> None:
+    """Draw scalars of runs along the line of action, with those of the standards, into a file."""
+    rows = [row for row in SCALARS if row[0] in names]
     figure, axes = _panels(len(rows), runs[0].title if len(runs) == 1 else "")
     for axis, (name, factor, label) in zip(axes, rows, strict=True):
         colours = [OF_FLANKS.get(name, style.SINGLE)] if len(runs) == 1 else _colours(len(runs))

@@ -1,6 +1,8 @@
 """Involute geometry, load sharing and losses of spur gears against published figures and closed forms."""
 
+import json
 import math
+import re
 from types import SimpleNamespace
 
 import h5py
@@ -368,6 +370,26 @@ def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsy
     assert rows[0, 0] == 0.0 and (np.diff(rows[:, 0]) > 0).all() and (rows[:, 1] > 0).all()
     assert main(["no.toml"]) == 2
     assert is_line_with(capsys.readouterr().err, "no.toml: ", "No such file")
+
+
+def test_runs_until_bulk_temperatures_are_those_of_the_losses(tmp_path, monkeypatch, capsys):
+    """And pictures of one run, of two side by side, of stages, each with figures of the standards."""
+    monkeypatch.chdir(tmp_path)
+    keys = ["heat.bulk_temperature=losses", "heat.reference_temperature=363", "surface={}", "time.courant=8"]
+    words = [word for key in (*keys, "mesh.points_per_half_width=20") for word in ("--set", key)]
+    assert main([str(CASES / "fzg.toml"), *words, "--run", "gear.h5"]) == 0
+    *_, last, file = capsys.readouterr().out.splitlines()
+    used, found = ([float(word) for word in re.findall(r"\d+\.\d", part)] for part in last.split(";"))
+    assert file == "gear.h5" and 368.0 < found[0] < 378.0
+    assert abs(used[0] - found[0]) < 1.0
+    assert main(["gear.h5", "gear.h5"]) == 0
+    printed = capsys.readouterr().out
+    assert re.search(r"loss factor H_V 0.18\d*, 0.18\d*; 0.1958, 0.1958 by Niemann", printed)
+    assert {path.name for path in tmp_path.glob("*.png")} == {"gear.gears.png", "gear.gears.temperatures.png"}
+    index = {"members": [{"file": "gear.h5", "value": 302.0}]}
+    (tmp_path / "gear.series.json").write_text(json.dumps(index))
+    assert main(["gear.series.json"]) == 0
+    assert (tmp_path / "gear.stages.png").stat().st_size > 10_000
 
 
 def test_scalars_are_averaged_over_a_fiftieth_of_the_path():
