@@ -14,7 +14,7 @@ MPI_TESTS = Path(__file__).parent / "mpi"
 # solver, and nothing
 DEAREST = """
 test_post_run test_compliant test_run_script test_wear_against_fatigue test_series test_options
-test_passes test_extremes test_operation test_plot test_interruptions test_batch
+test_passes test_extremes test_operation test_plot test_plot_series test_interruptions test_batch
 test_fuzz test_cases test_lives_with_effects test_stops test_heat
 test_yielding test_lives_killed test_packaging test_asperities test_sweep test_figures test_derived_files
 test_waviness test_output test_starts test_mixed test_heat_with_effects test_dense_profiles

@@ -1,6 +1,5 @@
 """Pictures of results: the drawn arrays, the instant that is chosen, formats and options, refusals."""
 
-from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import h5py
@@ -17,7 +16,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing
-from ehlpetsc.pictures import friction_curves, over_time, style
+from ehlpetsc.pictures import over_time, style
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 
@@ -25,7 +24,6 @@ FRAME = ["pressure [GPa]", "film thickness [µm]"]
 MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
 COURSES = ["film [µm]", "maximum\npressure [GPa]", "friction\ncoefficient"]
 OPTIONS = plot.arguments().parse_args(["x"])
-SPEEDS = (0.001, 0.02, 0.5, 5.0, 20.0)
 
 
 @pytest.fixture
@@ -176,14 +174,6 @@ def test_series_is_overlaid_in_order_of_its_key(series, drawn):
             assert axes.get_legend().get_window_extent().x0 >= axes.get_window_extent().x1
 
 
-def test_maps_of_a_series_share_their_colours(series, drawn):
-    assert draw(*series, "--map") == 0
-    (figure,) = drawn
-    titles = [axes.get_title() for axes in figure.axes]
-    assert titles == [*(f"fluid.viscosity = {v}" for v in ("0.002", "0.005", "0.01")), ""]  # last the colours
-    assert len({axes.collections[0].get_clim() for axes in figure.axes[:3]}) == 1
-
-
 def test_map_includes_contacts_of_skipped_frames(result):
     with read_result(result) as r:
         touching = over_time.contacts_of_blocks(r, slice(0, len(r.x)), 7)
@@ -220,17 +210,6 @@ def test_movie_has_every_frame_on_fixed_axes(tmp_path, monkeypatch):
     assert all(bounds == seen[0][0] for bounds, _ in seen)
     steps = [title.partition("step ")[2].partition(",")[0] for _, title in seen]
     assert steps == ["0", "13", "27", "40"]
-
-
-def test_steady_result_without_contacts_is_drawn(tmp_path, drawn):
-    fields = ("pressure", "film_thickness")
-    path = make_result(tmp_path / "one.h5", steps=1, fields=fields)
-    assert draw(path) == 0
-    (figure,) = drawn
-    with read_result(path) as steady:
-        for axes, name, unit in zip(figure.axes, fields, (1e9, 1e-6), strict=True):
-            (line,) = [line for line in axes.lines if len(line.get_xdata()) == len(steady.x)]  # not Hertz's
-            np.testing.assert_allclose(line.get_ydata(), steady[name][0] / unit)
 
 
 def test_default_instant_has_maximum_pressure_without_load_on_solids(tmp_path, result):
@@ -281,18 +260,6 @@ def test_dry_contact_shows_gap_and_no_flow(tmp_path, drawn):
     assert "gap" in [text.get_text() for text in lower.get_legend().texts]
 
 
-def test_gap_beside_a_closed_contact_is_in_view(tmp_path):
-    path = make_result(tmp_path / "closed.h5")
-    with h5py.File(path, "r+", libver="latest") as file:
-        inside = np.abs(file["x"][:]) <= A
-        file["film_thickness"][:, inside] = 0.0
-    figure = Figure()
-    with read_result(path) as closed:
-        beside = 1e6 * closed.frame("film_thickness", 0)[np.abs(closed.x) <= 1.2 * A].max()
-        drawing.fill_frame(figure.subplots(2), [closed], [0], (-1.2, 1.2))
-    assert beside > 0.0 and figure.axes[1].get_ylim() == pytest.approx((0.0, 1.15 * beside))
-
-
 @pytest.mark.parametrize("share", [0.8, 0.0])
 def test_pressure_of_the_solids_is_drawn_under_the_total(tmp_path, share):
     path = with_solids(make_result(tmp_path / "mixed.h5", viscosity=0.002))
@@ -327,88 +294,9 @@ def test_plot_faults_are_reported(result, options, parts, capsys):
     assert fault.startswith("ehlpetsc plot: ") and is_line_with(fault, *parts)
 
 
-@pytest.mark.parametrize(
-    "name, kind", [("one.png", []), ("one.html", ["--report"]), ("one.gif", ["--movie"])]
-)
-def test_picture_never_overwrites_its_input(tmp_path, result, name, kind, capsys):
-    path = result.rename(tmp_path / name)
-    before = path.read_bytes()
-    assert draw(path, *kind, "-o", path) == 2
-    assert is_line_with(capsys.readouterr().err, f"{path}: ", f"({path})") and path.read_bytes() == before
-
-
 def test_undrawable_result_is_reported(tmp_path, capsys):
     steady = make_result(tmp_path / "one.h5", steps=1)
     assert draw(steady, "--map") == 2
     assert is_line_with(capsys.readouterr().err, "one.h5: ", "map", "frame")
     assert draw(make_result(tmp_path / "two.h5", fields=("pressure",))) == 2
     assert is_line_with(capsys.readouterr().err, "two.h5: ", " film_thickness")
-
-
-@pytest.fixture
-def stribeck_series(tmp_path):
-    """Share on the solids 1/(1 + u), friction between 0.12 of the solids and 0.03."""
-    paths = []
-    for speed in SPEEDS:
-        share = 1.0 / (1.0 + 5.0 * speed)
-        path = make_result(tmp_path / f"u{speed}.h5", speed=speed, nodes=41, steps=81)
-        paths.append(with_solids(path, share, 0.03 + 0.09 * share))
-    return paths
-
-
-def test_stribeck_curve_has_means_and_scatter(tmp_path, stribeck_series, drawn):
-    points, short = friction_curves.stribeck_points([read_result(path) for path in stribeck_series])
-    assert [point.at for point in points] == list(SPEEDS) and short == []
-    for point in points:
-        share = 1.0 / (1.0 + 5.0 * point.at)
-        mean, low, high = point.scalars["friction_coefficient"]
-        assert mean == pytest.approx(0.03 + 0.09 * share, rel=0.02)
-        assert point.scalars["contact_share"][0] == pytest.approx(share, rel=0.02)
-        # of a cosine of amplitude 0.2 5 and 95 % lie at 0.2 cos(0.05 pi)
-        assert high / mean == pytest.approx(1 + 0.2 * np.cos(0.05 * np.pi), abs=0.02)
-        assert low / mean == pytest.approx(1 - 0.2 * np.cos(0.05 * np.pi), abs=0.02)
-        assert point.boundary == 0.12
-    assert draw(*stribeck_series, "--stribeck") == 0
-    (figure,) = drawn
-    for axes, name in zip(figure.axes, friction_curves.QUANTITIES, strict=True):
-        means = [point.scalars[name][0] for point in points]
-        np.testing.assert_allclose(axes.lines[0].get_xydata(), np.column_stack([SPEEDS, means]))
-
-
-@pytest.mark.parametrize("share", [0.0, 1e-3])
-def test_stribeck_axes_are_hersey_number_and_logarithmic_fraction(tmp_path, share):
-    paths = [make_result(tmp_path / f"u{u:g}.h5", speed=u, nodes=41, steps=81) for u in (1.0, 10.0)]
-    for path in paths:
-        change_case(with_solids(path, share, 0.05), {"contact.load": 5e5})
-    figure = friction_curves.draw_stribeck([read_result(path) for path in paths], None)
-    (above,) = figure.axes[0].child_axes
-    figure.draw_without_rendering()
-    ratio = np.array(above.get_xlim()) / figure.axes[0].get_xlim()
-    assert "Hersey" in above.get_xlabel() and ratio == pytest.approx(0.005 / 5e5)  # viscosity over load
-    assert figure.axes[1].get_yscale() == ("log" if share else "linear")
-
-
-def test_stribeck_means_start_when_the_contact_is_filled(tmp_path):
-    paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in (5.0, 40.0)]
-    slow, fast = (read_result(path) for path in paths)
-    # the slower surface, 0.88 u, from -2.5 a to a, and the ramp
-    points, short = friction_curves.stribeck_points([slow, fast])
-    assert ([p.at for p in points], short) == ([40.0], ["5.0.h5"])  # 40 us are too short for 5 m/s
-    assert np.isnan(points[0].scalars["contact_share"][0])
-    with pytest.raises(OutputError, match=r"one result .* motion\.entrainment_speed$"):
-        friction_curves.stribeck_points([slow])
-    unfinished = [read_result(make_result(tmp_path / f"u{u}.h5", speed=u, status="running")) for u in (1, 2)]
-    with pytest.raises(OutputError, match="no member .*two or more"):
-        friction_curves.stribeck_points(unfinished)
-    other = read_result(make_result(tmp_path / "4.h5", speed=4.0, rough=True))
-    with pytest.raises(OutputError, match=r"no member .* time\.travel "):
-        friction_curves.stribeck_points([slow, other])
-
-
-def test_time_means_are_weighted_by_step_length():
-    values = np.array([1.0, 2.0, np.nan, 9.0])
-    result = SimpleNamespace(scalars=["load"], steps=lambda name: values)
-    weights = np.array([1.0, 3.0, 1.0, 0.0])
-    mean, low, high = friction_curves.time_statistics(result, "load", weights)
-    assert mean == pytest.approx(1.75)
-    assert 1.0 <= low < high <= 2.0
