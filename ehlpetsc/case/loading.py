@@ -88,8 +88,8 @@ def stored_case(text: str, overrides: Overrides = None) -> Case:
     return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
 
 
-def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[GearPair, Tables, Case | None]:
-    """Gear pair of a case file, its tables, of which only `[gears]` is checked, and the case, None if faulty.
+def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[GearPair, Tables, Case | str]:
+    """Gear pair of a case file, its tables, and the case or the first fault outside of `[gears]`.
 
     Raises `CaseError`.
     """
@@ -105,9 +105,9 @@ def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[Gear
     if faults + found:
         raise CaseError(_lines(path, faults + found))
     try:
-        case = load(path, overrides)
-    except CaseError:  # of other tables, which the path does not need
-        case = None
+        case: Case | str = load(path, overrides)
+    except CaseError as error:  # of other tables, which the path does not need
+        case = error.faults[0]
     return gears.pair, with_derived(data), case
 
 

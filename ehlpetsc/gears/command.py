@@ -60,11 +60,13 @@ def run(chosen: argparse.Namespace) -> None:
     pair, tables, case = gear_tables(file, chosen.set)
     path, contact = path_of_contact(pair), tables.get("contact")
     modulus = modulus_of(contact if isinstance(contact, dict) else {})
-    rating = rating_of(case, file.parent) if case else None
+    rating = None if isinstance(case, str) else rating_of(case, file.parent)
     target = _picture(chosen, "path")
     if chosen.csv is not None:
         check_derived(Path(chosen.csv), [file], (".csv", ".txt"), "--csv", ", ".join(COLUMNS).encode())
     print("\n".join(rows(path, modulus, rating)))
+    if isinstance(case, str):
+        print(f"note: without film, friction and temperatures of the standards: {case}")
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(path).encode())
         print(chosen.csv)
