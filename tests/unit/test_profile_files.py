@@ -1,6 +1,5 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
-import random
 import sys
 
 import numpy as np
@@ -9,7 +8,6 @@ from support import CASES
 
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case import loading as case
-from ehlpetsc.surfaces import text_columns
 from ehlpetsc.surfaces.profile_files import Layout, read_profile
 
 X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])
@@ -142,7 +140,7 @@ REFUSED = {
         'mm and um, .* unit = "um" .* x_unit = "mm"',
     ),
     "header of numbers": ("4000\n" + lines("{},{}\n"), {}, "^line 1: 1 numbers, .* 2; .* header_lines = 1 "),
-    "text in it": (lines("{},{}\n") + "end\n", {}, "^line 7: 'end'; .*header_lines"),
+    "text in it": (lines("{},{}\n") + "end\n", {}, "^line 1: 2 numbers, the last line has 1; .*header_lines"),
     "no numbers": ("a\nb\n", {}, "^0 points"),
     "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, r"^point 7 .* 1e\+06 m;"),
     "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "^x = 1e-05 appears twice; .*spacing"),
@@ -202,50 +200,3 @@ def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
     x, z, _ = read_profile(path)
     np.testing.assert_allclose(x, np.arange(6) * 1e-6)
     np.testing.assert_allclose(z, 0.1 * x + 1e-6)  # the middle one of three traces
-
-
-DIGITS = "0123456789 \t\n.,;eE+-"
-
-
-def drawn_text(draw):
-    """Lines of numbers as instruments write them, with faults here and there."""
-    separator = draw.choice([",", ";", "\t", " ", ", ", " ; ", "  ", ",,"])
-    decimal = draw.choice([".", ".", ","])
-    lines = []
-    for _ in range(draw.randrange(1, 12)):
-        words = [f"{draw.random():.5f}" for _ in range(draw.choice([2] * 9 + [1, 3]))]
-        if draw.random() < 0.15:
-            words[0] = draw.choice(["", "nan", "1e5", "-.5", "+3.", "1e999", "7"])
-        line = separator.join(words).replace(".", decimal)
-        lines.append(line + draw.choice([""] * 20 + [" ", "#x", ",", ";", "\t"]))
-    if draw.random() < 0.3:
-        lines.insert(0, draw.choice(["x [um], z [um]", "# c", "1 2 3", "; ;", "", '"x"']))
-    text = list(draw.choice(["\n", "\r\n", "\r", "\n\n", "\v\n"]).join(lines))
-    for _ in range(draw.choice([0, 0, 1, 3])):
-        text.insert(draw.randrange(len(text) + 1), draw.choice(DIGITS))
-    return "".join(text)
-
-
-def test_block_reading_equals_line_reading(tmp_path, monkeypatch):
-    """However a file is cut, and whether numpy reads a block: the same numbers, or the same refusal."""
-    path, draw, refused = tmp_path / "p.csv", random.Random(5), 0
-
-    def outcome(size, fast, *layout):
-        monkeypatch.setattr(text_columns, "CHARACTERS_PER_BLOCK", size)
-        monkeypatch.setattr(text_columns._Words, "table", table if fast else lambda *_: None)
-        try:
-            columns, header = text_columns.text_columns(path, *layout)
-            return columns.tolist().__repr__(), header
-        except ProfileError as error:
-            return str(error)
-
-    table = text_columns._Words.table
-    for _ in range(500):
-        text = drawn_text(draw)
-        path.write_text(text, newline="")
-        layout = draw.choice([None, None, None, ",", "."]), draw.choice([None, None, None, 0, 1, 2])
-        line_by_line = outcome(1 << 20, False, *layout)
-        for choice in ((1 << 20, True), (15, True), (60, True), (15, False)):
-            assert outcome(*choice, *layout) == line_by_line, (text, layout, choice)
-        refused += isinstance(line_by_line, str)
-    assert 70 < refused < 430  # both ends are tried
