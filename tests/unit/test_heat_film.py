@@ -14,7 +14,7 @@ from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, FilmLaw, film_law, film_temperature
 from ehlpetsc.physics.film_shear import film_stress
 from ehlpetsc.physics.laws import EXPONENTIAL, ROELANDS, ln_viscosity, padded
-from ehlpetsc.physics.rheology import EYRING, NEWTON, FlowLaw
+from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
@@ -43,6 +43,8 @@ LAWS = {
     "eyring": LAW,
     "newtonian": LAW._replace(flow=tuple(FlowLaw(NEWTON))),
     "limited": LAW._replace(limit=0.06),
+    "carreau": LAW._replace(flow=tuple(FlowLaw(CARREAU, 7e6, 0.45, 2.0)), limit=0.06),
+    "eyring of p": LAW._replace(stress_pressure=0.6e-9, stress_temperature=0.003, limit=0.06),
     "conducting": LAW._replace(conductivity_pressure=1.7e-9, conductivity_saturation=0.5e-9),
     "roelands": LAW._replace(viscosity=oil(ROELANDS, 1.1, 0.0), is_linear=False),
 }
@@ -68,6 +70,7 @@ def test_shear_stress_of_a_film_without_transport(law):
     _, _, slope = ln_viscosity(law.viscosity, 0.8e9, SECANT)
     eta = ln_viscosity(law.viscosity, 0.8e9, REFERENCE)[0] + slope * (wall - REFERENCE)
     rise = law.conductivity_pressure * 0.8e9 / (1.0 + law.conductivity_saturation * 0.8e9)
+    grown = (1.0 + law.stress_pressure * 0.8e9) * (1.0 + law.stress_temperature * (REFERENCE - 363.0))
     film = film_stress(
         3e-7,
         0.02 * np.exp(eta - SPREAD),
@@ -76,7 +79,7 @@ def test_shear_stress_of_a_film_without_transport(law):
         wall,
         0.14 * (1.0 + rise),
         12.5,
-        FlowLaw(*law.flow),
+        FlowLaw(law.flow[0], law.flow[1] * grown, *law.flow[2:]),
         law.limit * 0.8e9,
     )
     assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)

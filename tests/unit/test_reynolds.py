@@ -40,9 +40,15 @@ def with_history(inputs, reynolds, q, h):
     return replace(inputs, history=history)
 
 
+PRESSED = ["fluid.eyring_stress_pressure=1e-9"]
+CARREAU = [("fluid.eyring_stress", None), "fluid.carreau_stress=6e6", "fluid.carreau_exponent=0.45"]
+
+
 @pytest.mark.parametrize("transient", [False, True], ids=["steady", "transient"])
 @pytest.mark.parametrize(
-    "extra", [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"]], ids=["roelands", "barus", "starved"]
+    "extra",
+    [[], ["fluid.law=barus"], ["fluid.inlet_film=1e-8"], PRESSED, CARREAU],
+    ids=["roelands", "barus", "starved", "Eyring stress of p", "carreau"],
 )
 def test_derivatives(extra, transient):
     reynolds, inputs, n = rows_of(extra)

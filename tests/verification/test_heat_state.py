@@ -63,7 +63,7 @@ def test_rubbing_solids_heat_the_walls():
         walls.append(wall)
         assert accepted.scalars["heat_error"] < 1e-10
     above, walls = np.concatenate(above), np.concatenate(walls)
-    assert len(above) > 100 and above.mean() < 10.0
+    assert len(above) > 100 and above.max() < 10.0
     assert walls.max() > 363.0 + 50.0
 
 

@@ -210,7 +210,6 @@ def faces(
             stress = no_pressure
             if stress_rise != 0.0:
                 stress += stress_rise * at[P, i]
-            fluidity = at[FLUIDITY, i] * at[THERMAL, i] * at[THERMAL, i]
-            rate = max(sliding / (stress * at[H, i] * fluidity), MIN_RATE)
+            rate = max(sliding / (stress * at[H, i] * fluidities(at, i, i)[0]), MIN_RATE)
             spread[i] = stress_spread(0.5 * at[H, i] * abs(gradient[i]) / stress, np.log(rate), table)
     couette[0] = couette[1]
