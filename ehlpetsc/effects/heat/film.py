@@ -23,6 +23,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     P,
     face_mobilities,
     fill_mass,
+    fluidities,
     positive_extrapolation,
 )
 from ehlpetsc.effects.heat.film_law import A, B, FilmLaw, film_temperature, fixed_at
