@@ -13,7 +13,7 @@ import argparse
 import contextlib
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -94,21 +94,30 @@ def _as_text(cell: str) -> str:
 def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status: 0 done, 2 bad input."""
     description = "Means, percentiles and extremes of every scalar of runs, all steps or one frame, as CSV."
-    parser = CommandParser("summary", description)
-    parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
-    parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
+    parser = table_parser("summary", description)
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--steps", action="store_true", help="scalars of every step of one result, over time")
     kinds.add_argument("--frame", type=int, metavar="STEP", help="fields of one result at a stored step")
     chosen = parser.parse_args(words)
-    return exit_status("summary", lambda: _run(chosen), output=chosen.output)
+    return exit_status("summary", lambda: put_table(chosen, _rows), output=chosen.output)
 
 
-def _run(chosen: argparse.Namespace) -> None:
+def table_parser(name: str, description: str) -> CommandParser:
+    """Parser of a command that makes a table from results."""
+    parser = CommandParser(name, description)
+    parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
+    parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
+    return parser
+
+
+def put_table(
+    chosen: argparse.Namespace, rows_of: Callable[[list[Result], argparse.Namespace], Iterable[Sequence]]
+) -> None:
+    """Print the rows of a table of results as CSV, or write them to the file of ``-o``."""
     with contextlib.ExitStack() as stack:
         results = in_order(open_all(chosen.results, stack))
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(_rows(results, chosen))
+        csv.writer(text, lineterminator="\n").writerows(rows_of(results, chosen))
         if not chosen.output:
             print(text.getvalue(), end="")
             return

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ehlpetsc.analysis.ensemble import CONFIDENCE, Ensemble, bootstrap, ensembles
+from ehlpetsc.analysis.ensemble import Ensemble, deviation, ensembles
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
@@ -36,7 +36,7 @@ FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 
 def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) -> Figure:
-    """Runs, mean and interval of each scalar over the key that differs apart from seeds."""
+    """Runs, mean and deviation of each scalar over the key that differs apart from seeds."""
     all_ensembles = ensembles(results)
     names = [name for name in PANELS if all(name in ensemble.scalars for ensemble in all_ensembles)]
     if not names:
@@ -58,10 +58,9 @@ def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) ->
             panel.set_xticks(at, [one.name for one in all_ensembles], rotation=20, fontsize="small")
     for panel in axes.flat[len(names) :]:
         panel.set_axis_off()
-    interval = f"mean and its\n{100 * CONFIDENCE:g} % interval\n(bootstrap)"
     handles = [
         Line2D([], [], color=style.FAINT, marker="o", ls="", ms=3, label="one run"),
-        Line2D([], [], color=style.SINGLE, marker="o", ms=5, label=interval),
+        Line2D([], [], color=style.SINGLE, marker="o", ms=5, label="mean and\nstandard deviation"),
     ]
     style.legend_beside(axes[0, -1], handles)
     style.set_title(figure, str(results[0].attrs["title"]))
@@ -78,12 +77,12 @@ def _abscissae(all_ensembles: list[Ensemble]) -> tuple[list[float], str]:
 
 
 def _draw_ensemble(axes: Axes, x: float, shift: float, values: np.ndarray) -> None:
-    """Draw the runs left and their mean with its interval right of an abscissa."""
+    """Draw the runs left and their mean with its deviation right of an abscissa."""
     axes.plot(np.full(values.size, x - shift), values, "o", color=style.FAINT, ms=3, mew=0)
     axes.plot(x + shift, values.mean(), "o", color=style.SINGLE, ms=5)
-    ends = bootstrap(values)
-    if np.isfinite(ends).all():
-        axes.vlines(x + shift, *ends, color=style.SINGLE, lw=1.6)
+    half = deviation(values)
+    if np.isfinite(half):
+        axes.vlines(x + shift, values.mean() - half, values.mean() + half, color=style.SINGLE, lw=1.6)
 
 
 def draw_running_in(results: list[Result], _options: argparse.Namespace | None) -> Figure:

@@ -10,7 +10,7 @@ LIMIT = 120  # s
 SPEEDS = (10.0, 5.0, 1.0)
 FOREIGN = {"foreign.csv": b"0,1\n1,2\n", "case.toml": b"title = 'a'", "foreign.restart.h5": b"a"}
 WORDS = {
-    ensemble: ("--resamples 0", "--resamples 50", "--seed -1", "--seed 3", "--resamples x"),
+    ensemble: ("-o e.csv",),
     compare: ("--rtol 0", "--rtol -1", "--atol nan", "--rtol 1e300"),
     summary: ("--steps", "--frame 3", "--frame -1", "--frame x", "--steps --frame 3"),
     plot: (

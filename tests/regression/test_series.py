@@ -190,5 +190,6 @@ def test_grid_of_keys_is_accepted_by_all_commands(tmp_path):
     assert {entry["state"] for entry in index["members"]} == {"done"}
     series_index = str(tmp_path / "out.series.json")
     assert plot([series_index]) == plot([series_index, "--ensemble"]) == 0
-    assert ensemble.main([series_index]) == 0
-    assert len((tmp_path / "out.ensemble.csv").read_text().splitlines()) > 20
+    table = tmp_path / "out.ensemble.csv"
+    assert ensemble.main([series_index, "-o", str(table)]) == 0
+    assert len(table.read_text().splitlines()) > 20

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_results import P0, A, make_result
 
-from ehlpetsc.analysis.compare import LinearInterpolation, compare, main
+from ehlpetsc.analysis.compare import compare, interpolated, main
 from ehlpetsc.results.reader import read_result
 
 
@@ -80,6 +80,8 @@ def test_nan_in_one_result_is_a_difference(tmp_path, result, capsys):
 
 def test_interpolation_is_exact_for_linear_data_and_at_the_ends():
     grid = np.array([0.0, 1.0, 3.0])
-    line = LinearInterpolation(grid, np.array([0.0, 0.5, 2.0, 3.0]))
-    np.testing.assert_allclose(line(2 * grid + 1), [1, 2, 5, 7])
-    np.testing.assert_array_equal(line(np.array([np.nan, 1.0, 2.0]))[[2, 3]], [1.5, 2.0])
+    points = np.array([0.0, 0.5, 2.0, 3.0])
+    np.testing.assert_allclose(interpolated(grid, 2 * grid + 1, points), [1, 2, 5, 7])
+    np.testing.assert_array_equal(
+        interpolated(grid, np.array([np.nan, 1.0, 2.0]), points)[[2, 3]], [1.5, 2.0]
+    )
