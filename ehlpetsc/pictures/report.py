@@ -30,7 +30,7 @@ MIN_CHANGE = 1e-9  # relative change over a run below which a scalar counts as c
 MINIMUM_SCALARS = {"h_min", "film_central", "mean_gap_ratio"}  # of several steps; of others the maximum
 FIELDS = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
 SHOWN_UNITS = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
-HIDDEN_SCALARS = {"step", "time", "load", "wall", "load_error", "mass_error"}
+HIDDEN_SCALARS = set("step time dt newton retries load wall load_error mass_error".split())
 MEANS = {  # over the time in which both surfaces fill the contact: label, factor, unit
     "friction_coefficient": ("mean friction coefficient", 1.0, ""),
     "film_central": ("mean central film", 1e6, " µm"),
