@@ -47,22 +47,17 @@ def outcome(life: LifeHistory) -> dict:
 
     Returns
     -------
-    "winner", "passes" and "solved"; of both surfaces the largest pitted share and damage; "worn_depth",
-    the mean of the columns that are worn most [m]; "ra_change" of surface 1; "first_failure" in passes,
-    None where no cell fails; "damage_ahead" as of `body.LifeBody.damage_ahead`, None without wear.
+    "winner", "passes", "solved", "friction"; the larger pitted share of both surfaces; "first_failure" in
+    passes, None where no cell fails; "damage_ahead" as of `body.LifeBody.damage_ahead`, None without wear.
     """
-    last, bodies = life.rows[-1], life.bodies[-1]
-    new = float(np.abs(bodies[0].height - bodies[0].height.mean()).mean())
+    last = life.rows[-1]
     return {
         "winner": winner(life),
         "passes": last["passes"],
         "solved": life.solved,
         "first_failure": _number(life.first_failure),
         "pitted_share": max(last["pitted_share_1"], last["pitted_share_2"]),
-        "damage": max(max(life("damage_1")), max(life("damage_2"))),
         "damage_ahead": _number(max(last["damage_ahead_1"], last["damage_ahead_2"])),
-        "worn_depth": max(float(body.wear.mean()) for body in bodies),
-        "ra_change": last["ra_1"] / new - 1.0 if new else None,
         "friction": last["friction"],
     }
 
@@ -70,14 +65,6 @@ def outcome(life: LifeHistory) -> dict:
 def _number(value: float) -> float | None:
     """A number for JSON; None: infinite."""
     return float(value) if np.isfinite(value) else None
-
-
-INDEX = ".series.json"
-
-
-def index_of(output: Path) -> Path:
-    """Path of the index of a series of lives, from the stem of `output`."""
-    return _stem(output).with_suffix(f".life{INDEX}")
 
 
 def _stem(output: Path) -> Path:
@@ -147,7 +134,7 @@ class _Lives:
             raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
         keys = keys_of(tomllib.loads(case.text)["series"])
         self.overwrite, self.unresolved = overwrite, unresolved
-        self.index = Index(index_of(output), case, "members", keys=keys)
+        self.index = Index(_stem(output).with_suffix(".life.series.json"), case, "members", keys=keys)
         self.members = members_of(case, _stem(output))
         for member in self.members:
             check_case(member.case)

@@ -34,8 +34,7 @@ def life(pits=0, ahead=0.5, rows=2):
 def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, wins):
     assert winner(life(pits, ahead)) == wins
     found = outcome(life(pits, ahead))
-    assert found["worn_depth"] == pytest.approx(4e-8) and found["first_failure"] == (8e5 if pits else None)
-    assert found["solved"] == 2 and found["ra_change"] == pytest.approx(0.0, abs=1e-12)
+    assert found["first_failure"] == (8e5 if pits else None) and found["solved"] == 2
 
 
 def test_line_of_a_round_fits_a_terminal():
