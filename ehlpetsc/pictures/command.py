@@ -76,15 +76,17 @@ def main(words: list[str]) -> int:
 
 
 def _run(options: argparse.Namespace, kind: str | None, output: Path) -> None:
-    cases = [path for path in options.results if path.endswith(".toml")]
-    if cases:
-        _draw_case(options, cases)
-        return
-    signatures = OTHERS[kind][1] if kind in OTHERS else PICTURES
-    with contextlib.ExitStack() as stack:
-        results = in_order(open_all(options.results, stack))
-        check_derived(output, [*map(Path, options.results), *(r.path for r in results)], signatures)
-        draw(results, kind, options, output)
+    signatures, inputs = OTHERS[kind][1] if kind in OTHERS else PICTURES, list(map(Path, options.results))
+    if any(path.suffix == ".toml" for path in inputs):
+        if len(inputs) > 1 or kind:
+            raise OutputError(f"{inputs[0]}: a case is drawn alone, without results and kinds of pictures")
+        check_derived(output, inputs, signatures)
+        style.save(draw_case(inputs[0], options.set), output, chosen=options)
+    else:
+        with contextlib.ExitStack() as stack:
+            results = in_order(open_all(options.results, stack))
+            check_derived(output, [*inputs, *(result.path for result in results)], signatures)
+            draw(results, kind, options, output)
     print(output)
 
 
@@ -117,19 +119,9 @@ def _check(results: list[Result], kind: str | None, options: argparse.Namespace)
             raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
 
 
-def _draw_case(options: argparse.Namespace, cases: list[str]) -> None:
-    """Draw the profiles of one case file."""
-    if len(options.results) > 1:
-        raise OutputError(f"{cases[0]}: a case is drawn alone, without results")
-    output = options.output or Path(Path(cases[0]).stem + ".case.png")
-    check_derived(output, [Path(cases[0])], PICTURES)
-    style.save(draw_case(cases[0], options.set), output, chosen=options)
-    print(output)
-
-
 def _stem(paths: list[str]) -> str:
     """Name of a picture without its suffix, from the names of the results."""
     first, *others = (re.sub(r"(\.(series|passes)\.json|\.h5)$", "", path) for path in paths)
     if not others:
-        return first
+        return f"{Path(first).stem}.case" if first.endswith(".toml") else first
     return f"{first}_and_{Path(others[0]).name if len(others) == 1 else f'{len(others)}_more'}"

@@ -45,24 +45,18 @@ COURSE_HEIGHT = 1.5  # inches of a panel
 
 
 def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
-    """Pressure over x and time, one panel for each result, with common colours."""
-    width, height = frames.SIZE
-    size = (width * max(1.0, 0.6 * len(results)), height)
-    figure, axes = style.new_figure(1, len(results), size, squeeze=False)
-    maps = [field_over_time(result, "pressure", frames.window([result], options)) for result in results]
-    highest = max(1e-9 * np.percentile(values, COLOUR_PERCENTILE) for *_, values in maps)
-    _, names, key = style.series_colours(results)
-    for panel, result, (columns, stride, values), name in zip(axes[0], results, maps, names, strict=True):
-        image = space_time_map(panel, result, columns, stride, 1e-9 * values, (0.0, highest), "viridis")
-        outline_contacts(panel, result, columns, stride)
-        if len(results) > 1:
-            panel.set_title(f"{key} = {name}" if key else name, fontsize="medium")
+    """Pressure of one result over x and time, contacts outlined."""
+    result = _only(results, "--map")
+    figure, axes = style.new_figure(1, 1, frames.SIZE)
+    columns, stride, values = field_over_time(result, "pressure", frames.window(results, options))
+    limits = (0.0, 1e-9 * float(np.percentile(values, COLOUR_PERCENTILE)))
+    image = space_time_map(axes, result, columns, stride, 1e-9 * values, limits, "viridis")
+    outline_contacts(axes, result, columns, stride)
     figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
-    if any(result.contact_count.any() for result in results):
+    if result.contact_count.any():
         mark = Line2D([], [], color=style.CONTACT, lw=1.0, label="in contact")
-        axes[0][0].legend(handles=[mark], loc="upper left", fontsize="small")
-    title = str(results[0].attrs["title"]) if len(results) == 1 else ""
-    style.set_title(figure, title, style.conditions(results))
+        axes.legend(handles=[mark], loc="upper left", fontsize="small")
+    style.set_title(figure, str(result.attrs["title"]), style.conditions(results))
     return figure
 
 
