@@ -57,7 +57,7 @@ def table(results: list[Result]) -> list[tuple]:
     cases = cases or [str(result.attrs["title"]) for result in results]
     rows = [COLUMNS]
     for result, case in zip(results, cases, strict=True):
-        rows += [(_as_text(result.path.name), _as_text(case), *row) for row in statistics(result)]
+        rows += [(result.path.name, case, *row) for row in statistics(result)]
     return rows
 
 
@@ -80,15 +80,6 @@ def frame_table(result: Result, step: int) -> list[Sequence]:
 def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return [list(columns), *([f"{value:.9g}" for value in row] for row in rows)]
-
-
-def _as_text(cell: str) -> str:
-    """A cell that no spreadsheet takes for a formula; numbers stay."""
-    try:
-        float(cell)
-    except ValueError:
-        return f"'{cell}" if cell.startswith(("=", "+", "-", "@")) else cell
-    return cell
 
 
 def main(words: Sequence[str]) -> int:

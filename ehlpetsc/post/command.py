@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -21,7 +20,7 @@ from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES, Counting
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of, read_index
 from ehlpetsc.results.output_guard import Lock, atomic_write, check_output_path
-from ehlpetsc.results.post_result import SURFACES, PointTemperatures, PostResult, damage_beside, post_path
+from ehlpetsc.results.post_result import SURFACES, PostResult, damage_beside, post_path
 from ehlpetsc.results.reader import read_result
 
 DESCRIPTION = (
@@ -91,8 +90,6 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
     """Raise UsageError for options that do not fit each other."""
     if chosen.output and len(files) > 1:
         raise UsageError("-o names one file: give one RESULT.h5, or leave it out")
-    if chosen.point and not (math.isfinite(chosen.point[0]) and 0 <= chosen.point[1] < math.inf):
-        raise UsageError(f"--point {chosen.point[0]:g} {chosen.point[1]:g}: the depth z/a must be 0 or more")
     for setting in chosen.set:
         if not setting.startswith(("post.", "contact.material=")):
             raise UsageError(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")
@@ -180,7 +177,12 @@ def _summary(output: str, wall: float) -> None:
         print(" ".join(words))
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():
-            print(_temperatures(surface, result.temperatures[surface]))
+            highest, mean, flash = result.temperatures[surface]
+            print(
+                f"surface {surface} temperature: highest={np.nanmax(highest):.5g} K "
+                f"mean={np.nanmean(mean):.5g} K flash_max={np.nanmax(flash):.4g} K "
+                f"flash_median={np.nanmedian(flash):.4g} K"
+            )
     points = " ".join(f"{name}={result.complete[name].sum()}" for name in surfaces)
     print(
         f"ehlpetsc post: done {output} points {points} depths={len(result.z)} "
@@ -192,15 +194,6 @@ def _largest(result: PostResult, criterion: str, surface: str, depth: int) -> fl
     """Largest damage or utilisation by a criterion at depth number `depth`; nan if no point passed."""
     values = result.criteria[criterion][surface][depth, result.complete[surface]]
     return values.max() if values.size else np.nan
-
-
-def _temperatures(surface: str, temperatures: PointTemperatures) -> str:
-    """Text of the surface temperatures of body points."""
-    return (
-        f"surface {surface} temperature: highest={np.nanmax(temperatures.highest):.5g} K "
-        f"mean={np.nanmean(temperatures.mean):.5g} K flash_max={np.nanmax(temperatures.flash):.4g} K "
-        f"flash_median={np.nanmedian(temperatures.flash):.4g} K"
-    )
 
 
 def note_damage(index: str | Path) -> list[tuple[int, dict]]:
@@ -225,17 +218,13 @@ def _print_passes(index: str) -> None:
     """Add the damage of every pass to the index of a run, and print one line for each pass."""
     passes = note_damage(index)
     for number, damage in passes:
-        print(f"pass {number}: {' '.join(_pass_figures(damage))}")
-    print(f"ehlpetsc post: done {index} passes={len(passes)}")
-
-
-def _pass_figures(damage: dict) -> Iterator[str]:
-    """Maximum damage of each surface and, with [heat], maximum flash temperature."""
-    for side in sorted(SURFACES):
-        if side in damage:
-            yield f"{side} D_max={max(damage[side]['largest']):.3e}"
+        words = [f"pass {number}:"]
+        for side in [side for side in sorted(SURFACES) if side in damage]:
+            words.append(f"{side} D_max={max(damage[side]['largest']):.3e}")
             if "flash_temperature" in damage[side]:
-                yield f"flash_max={damage[side]['flash_temperature']:.4g} K"
+                words.append(f"flash_max={damage[side]['flash_temperature']:.4g} K")
+        print(" ".join(words))
+    print(f"ehlpetsc post: done {index} passes={len(passes)}")
 
 
 def _draw(paths: Sequence[str], chosen: argparse.Namespace) -> None:

@@ -42,21 +42,17 @@ class Loads:
         self.path = Path(path)
         self._result = read_result(self.path, rdcc_nbytes=CACHE_BYTES)
         self._stored: dict[str, Any] = {}
-        try:
-            attrs = self._result.attrs
-            self.case_text = attrs["case"]
-            self.case = stored_case(self.case_text, overrides)
-            self.title, self.status = attrs["title"], attrs["status"]
-            self.a, self.p0 = float(attrs["a"]), float(attrs["p0"])
-            self.speeds = {"1": float(attrs["u1"]), "2": float(attrs["u2"])}
-            self.x, self.time, self.step = self._result.x, self._result.time, self._result.step
-            self.dx = spacing(self.x)
-            self.operation = operation_of(self.case, Scales.of(self.case))
-            self.travelled = self._travelled()
-            self.profiles = {surface: self._profile(surface) for surface in SURFACES}
-        except BaseException:
-            self._result.close()
-            raise
+        attrs = self._result.attrs
+        self.case_text = attrs["case"]
+        self.case = stored_case(self.case_text, overrides)
+        self.title, self.status = attrs["title"], attrs["status"]
+        self.a, self.p0 = float(attrs["a"]), float(attrs["p0"])
+        self.speeds = {"1": float(attrs["u1"]), "2": float(attrs["u2"])}
+        self.x, self.time, self.step = self._result.x, self._result.time, self._result.step
+        self.dx = spacing(self.x)
+        self.operation = operation_of(self.case, Scales.of(self.case))
+        self.travelled = self._travelled()
+        self.profiles = {surface: self._profile(surface) for surface in SURFACES}
 
     def __enter__(self) -> Loads:
         return self

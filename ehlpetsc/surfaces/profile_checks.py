@@ -14,11 +14,6 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
     from ehlpetsc.surfaces.samples import Samples
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from ehlpetsc.surfaces.samples import Samples
-
 
 MAX_SPACING = 0.25  # half widths between two points: wider than asperities
 MAX_RQ = 0.1  # half widths
@@ -115,11 +110,10 @@ def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[
         if not profile or not arrives or case.time.travel >= arrives[1]:
             continue
         reaches, fills = arrives
-        ends = f"surface.{side}: the run ends at time.travel = {case.time.travel:g}, before"
-        if case.time.travel < reaches:
-            notes.append(f"{ends} the profile reaches the contact ({reaches:.2f}): it stays smooth there")
-        elif profile.repeats:
-            notes.append(f"{ends} the profile fills the contact ({fills:.2f})")
-        else:
-            notes.append(f"{ends} the middle of the profile is at x = 0 ({fills:.2f})")
+        last = ("fills" if profile.repeats else "is with its middle in the centre of", fills)
+        event, time = ("reaches", reaches) if case.time.travel < reaches else last
+        notes.append(
+            f"surface.{side}: the run ends at time.travel = {case.time.travel:g}, before the profile {event} "
+            f"the contact ({time:.2f})"
+        )
     return notes

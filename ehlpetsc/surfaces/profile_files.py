@@ -13,7 +13,6 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
-OTHER_FORMATS = {*".png .jpg .jpeg .gif .svg .pdf .toml .json .h5 .html .py .zip .gz .doc .docx .odt".split()}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
 SPACING_VARIATION = 0.02  # relative, of equally spaced points
 MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
@@ -135,8 +134,6 @@ def _chosen(columns: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
-    if path.suffix.lower() in OTHER_FORMATS:
-        raise ProfileError(f"{path.suffix!r} is no profile file; allowed: two columns of text, x and z")
     text_keys = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
     if text_keys:
         raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
@@ -173,13 +170,12 @@ def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, n
     if (step < 0).all():
         x, z, step = x[::-1], z[::-1], -step[::-1]
         notes.append("x falls in the file: read from its end")
-    if (step == 0).any():
+    if (step <= 0).any():
+        k = (step <= 0).argmax()
         raise ProfileError(
-            f"x = {x[(step == 0).argmax()]:g} appears twice; allowed: every x once, or spacing and columns "
-            "for the heights alone"
+            f"x = {x[k + 1]:g} follows x = {x[k]:g}; allowed: x increasing or falling, every x once, "
+            "or spacing and columns for the heights alone"
         )
-    if (step < 0).any():
-        raise ProfileError(f"x falls after x = {x[(step < 0).argmax()]:g}; allowed: x increasing, or falling")
     x, z = _with_missing_lines(x, z)
     if np.isnan(z).any():
         x, z = _filled(x, z, layout.fill_gaps, notes)

@@ -95,14 +95,9 @@ def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
     if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
         z = z - mean
         notes.append(f"mean height of {1e6 * mean:.4g} um subtracted")
-    return Samples(*_flipped_and_scaled(X, z, spec), True, True, tuple(notes))
-
-
-def _flipped_and_scaled(X: np.ndarray, z: np.ndarray, spec: Values) -> tuple[np.ndarray, np.ndarray]:
-    """Heights flipped and scaled."""
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
-    return X, z if spec.scale == 1.0 else spec.scale * z
+    return Samples(X, z if spec.scale == 1.0 else spec.scale * z, True, True, tuple(notes))
 
 
 def layout_of(spec: Values) -> Layout:

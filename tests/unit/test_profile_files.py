@@ -143,7 +143,7 @@ REFUSED = {
     "text in it": (lines("{},{}\n") + "end\n", {}, "^line 1: 2 numbers, the last line has 1; .*header_lines"),
     "no numbers": ("a\nb\n", {}, "^0 points"),
     "no x": (lines("{},{}\n") + "nan,1e-7\n", {}, r"^point 7 .* 1e\+06 m;"),
-    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "^x = 1e-05 appears twice; .*spacing"),
+    "twice": (lines("{:.1e},{}\n") + "1e-05,0\n", {}, "^x = 1e-05 follows x = 1e-05; .*spacing"),
 }
 
 

@@ -46,12 +46,6 @@ def test_one_frame_is_listed_over_the_nodes(path, capsys):
         np.testing.assert_allclose(found, result.frame("pressure", 7), rtol=1e-8)
 
 
-@pytest.mark.parametrize("title, cell", [("=1+1", "'=1+1"), ("-1e-3", "-1e-3")])
-def test_no_cell_is_a_formula(tmp_path, capsys, title, cell):
-    (row, *_) = rows_of(capsys, make_result(tmp_path / "r.h5", title=title))
-    assert row["case"] == cell
-
-
 def test_scalars_of_the_steps_are_listed_in_python(path):
     with read_result(path) as result:
         lines = str(result.steps).splitlines()

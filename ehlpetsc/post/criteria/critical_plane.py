@@ -164,7 +164,6 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     return count
 
 
-STARTS = 2  # planes of the coarse grid that are improved
 MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
 NEGLIGIBLE_RANGE = (
     0.2  # of the widest range: smaller cycles, ignored in the search, have less than 1e-7 of its damage
@@ -223,26 +222,22 @@ def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: 
 
 @compiled(error_model="python", nogil=True)
 def _coarse(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> tuple[np.ndarray, np.ndarray]:
-    """Angles (STARTS, 3) and damage of the best planes of the grid, in falling order."""
+    """Angles (2, 3) and damage of the best planes of the grid, in falling order."""
     size, bounds = stress.shape[1], np.empty(grid.shape[0])
     _, _, series, normal = work
     for g in range(grid.shape[0]):
         _on_plane(grid[g], stress, law, work)
         width = series[:size].max() - series[:size].min()
         bounds[g] = _cycle_damage(width, normal[:size].max(), law)
-    best, angles = np.full(STARTS, -1.0), np.zeros((STARTS, 3))
-    for g in np.argsort(-bounds):
-        if (size // 2 + 1) * bounds[g] <= best[STARTS - 1]:
+    order, first, second = np.argsort(-bounds), -1.0, -1.0
+    damages = np.full(order.size, -1.0)
+    for n in range(order.size):
+        if (size // 2 + 1) * bounds[order[n]] <= second:
             break
-        damage = plane_damage(grid[g], stress, law, NEGLIGIBLE_RANGE, work)
-        rank = STARTS
-        while rank > 0 and damage > best[rank - 1]:
-            rank -= 1
-        for k in range(STARTS - 1, rank, -1):
-            best[k], angles[k] = best[k - 1], angles[k - 1]
-        if rank < STARTS:
-            best[rank], angles[rank] = damage, grid[g]
-    return angles, best
+        damages[n] = plane_damage(grid[order[n]], stress, law, NEGLIGIBLE_RANGE, work)
+        first, second = max(first, damages[n]), max(second, min(first, damages[n]))
+    best = np.argsort(-damages, kind="mergesort")[:2]
+    return grid[order[best]], damages[best]
 
 
 @compiled(error_model="python", nogil=True)
@@ -281,7 +276,7 @@ def worst_plane(
         few[:, k] = stress[:, indices[k]]
     starts, damages = _coarse(grid, few, law, work)
     worst, theta, phi = 0.0, 0.0, 0.0
-    for k in range(STARTS):
+    for k in range(2):
         if damages[k] <= 0:
             continue
         _improve(starts[k], damages[k], few, law, work)

@@ -116,15 +116,8 @@ class Material:
 
     def constants(self) -> tuple[float, ...]:
         """Constants (E, K', n', sigma_f', eps_f', b, c) of the compiled functions."""
-        return (
-            self.youngs_modulus,
-            self.hardening_coefficient,
-            self.cyclic_hardening,
-            self.fatigue_strength,
-            self.fatigue_ductility,
-            self.b,
-            self.c,
-        )
+        curve = self.youngs_modulus, self.hardening_coefficient, self.cyclic_hardening
+        return *curve, self.fatigue_strength, self.fatigue_ductility, self.b, self.c
 
 
 def equivalent_range(dsx: np.ndarray, dsy: np.ndarray, dsz: np.ndarray, dtxz: np.ndarray) -> np.ndarray:

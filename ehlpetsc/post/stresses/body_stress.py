@@ -166,14 +166,8 @@ def _multiply(table: np.ndarray, weights: np.ndarray, loads: np.ndarray, out: np
             for k in range(start, min(start + FREQUENCIES_PER_BLOCK, table.shape[0])):
                 row = table[k]
                 for m in range(8):
-                    kernel[m] = (
-                        w[0] * row[0, m]
-                        + w[1] * row[1, m]
-                        + w[2] * row[2, m]
-                        + w[3] * row[3, m]
-                        + w[4] * row[4, m]
-                        + w[5] * row[5, m]
-                    )
+                    low = w[0] * row[0, m] + w[1] * row[1, m] + w[2] * row[2, m]
+                    kernel[m] = low + w[3] * row[3, m] + w[4] * row[4, m] + w[5] * row[5, m]
                 p, q, dp, dq = loads[frame, 0, k], loads[frame, 1, k], loads[frame, 2, k], loads[frame, 3, k]
                 a, b, c, e = kernel[0], kernel[1], kernel[2], kernel[3]
                 da, db, dc, de = kernel[4], kernel[5], kernel[6], kernel[7]
