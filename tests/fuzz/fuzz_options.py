@@ -13,34 +13,24 @@ from ehlpetsc.results.reader import read_result
 
 MESH = ["mesh.inlet=-1.3", "mesh.outlet=1.3", "mesh.points_per_half_width=15", "output.checkpoint=1e-4"]
 SCENES = (
-    ["table1_smooth.toml"],
     ["table1_smooth.toml", "contact.model='mixed'"],
     ["table1_rough.toml", "time.travel=0.14", "fluid.viscosity=0.003"],
     ["dry_hertz.toml"],
 )
-LIMIT, RUN_MINUTES = 300, "0.15"
+LIMIT = 300  # s
 SAME = 1e-5  # relative, of minimum film and maximum pressure
-NUMBERS = (*"0 1 -1 2 7 100 1e-3 1e-9 0.5 1e300 nan -inf abc 1e-400".split(), "")
+NUMBERS = (*"0 1 -1 2 7 100 1e-3 1e-9 1e300 nan -inf abc 1e-400".split(), "")
 NUMERIC = (
-    "snes_atol snes_rtol snes_stol snes_max_it snes_max_funcs snes_vi_zero_tolerance snes_lag_jacobian "
-    "snes_divergence_tolerance snes_lag_preconditioner snes_max_linear_solve_fail snes_max_fail ksp_rtol "
-    "ksp_atol ksp_max_it ksp_gmres_restart ksp_divtol snes_force_iteration snes_linesearch_damping "
-    "snes_linesearch_max_it pc_factor_levels ehl_ranks_per_member ehl_time_limit"
+    "snes_atol snes_rtol snes_stol snes_max_it snes_max_funcs snes_lag_jacobian snes_divergence_tolerance "
+    "ksp_rtol ksp_atol ksp_max_it ksp_gmres_restart snes_linesearch_damping ehl_time_limit"
 )
 WORDS_OF = {
-    "ksp_type": "gmres fgmres minres cg bcgs preonly richardson lsqr tfqmr nosuch none",
-    "pc_type": "lu ilu jacobi none galerkin sor asm bjacobi mg gamg python shell nosuch",
-    "snes_type": "newtonls newtontr vinewtonrsls vinewtonssls qn ngmres ksponly nrichardson x",
-    "snes_linesearch_type": "basic bt l2 cp nleqerr shell x",
+    "ksp_type": "gmres fgmres cg preonly nosuch none",
+    "pc_type": "lu ilu jacobi none mg python shell nosuch",
+    "snes_type": "newtonls newtontr vinewtonrsls qn ksponly x",
+    "snes_linesearch_type": "basic bt l2 cp x",
     "snes_convergence_test": "default skip correct_pressure x",
-    "ksp_norm_type": "none preconditioned unpreconditioned natural x",
-    "ksp_pc_side": "left right symmetric x",
-    "pc_factor_mat_solver_type": "mumps petsc superlu_dist x",
-    "pc_python_type": "x os.path numpy.array",
     "snes_monitor": "ascii:/no/such/f nosuch:x 5",
-    "mat_type": "aij dense x",
-    "vec_type": "mpi seq x",
-    "options_left": "no x",
     "ehl_scheme": "newton sweep x",
     "ehl_output": "o.h5 / no/o.h5 case.toml",
     "ehl_set": "fluid.viscosity=0.004 mesh.inlet=0 x=1 time={} petsc.snes_rtol='nan'",
@@ -48,11 +38,8 @@ WORDS_OF = {
 }
 VALUES = {name: NUMBERS for name in NUMERIC.split()} | {k: (*v.split(), "") for k, v in WORDS_OF.items()}
 FLAGS = (
-    "snes_monitor ksp_monitor snes_view ksp_view snes_mf snes_mf_operator snes_fd snes_converged_reason "
-    "log_view ksp_view_eigenvalues snes_check_jacobian help malloc_dump snes_test_jacobian info version "
-    "ksp_converged_use_initial_residual_norm ksp_error_if_not_converged snes_error_if_not_converged "
-    "ksp_diagonal_scale ksp_initial_guess_nonzero ehl_overwrite ksp_converged_reason snes_vi_monitor "
-    "snes_monitor_solution options_view snes_fd_color ehl_overwrit -overwrite -nosuch"
+    "snes_monitor snes_view snes_mf snes_fd log_view snes_check_jacobian help snes_test_jacobian "
+    "ksp_error_if_not_converged ehl_overwrite options_view ehl_overwrit -overwrite -nosuch"
 ).split()
 ANOTHER = ("ehl_set", "looser than", "ehl_scheme")  # another answer is right, or announced
 
@@ -61,41 +48,35 @@ class Draw:
     """One run after the other."""
 
     def __init__(self, folder):
-        self.folder, self.answers = folder, {}
-        for number, (name, *_) in enumerate(SCENES):
-            status, report = self._run(number, ["-ehl_time_limit", "10"])  # the first compiles
-            assert status == 0, (name, report)
-            self.answers[number] = self._answer()
+        self.folder, self.answers = folder, []
+        for scene in SCENES:
+            status, report = self._run(scene, ["-ehl_time_limit", "10"])  # the first compiles
+            assert status == 0, (scene, report)
+            self.answers.append(self._answer())
 
     def __call__(self, rng):
         """Outcome and what was done."""
-        scene, words = int(rng.integers(len(SCENES))), []
+        number, words = int(rng.integers(len(SCENES))), []
         for _ in range(1 + int(rng.integers(4))):
             if rng.random() < 0.25:
                 words.append(f"-{rng.choice(FLAGS)}")
                 continue
             name = str(rng.choice(list(VALUES)))
             words += [f"-{name}", *filter(None, [str(rng.choice(VALUES[name]))])]
-        before = (CASES / SCENES[scene][0]).read_bytes()
-        status, report = self._run(scene, words)
+        status, report = self._run(SCENES[number], words)
         word = word_of(status, report)
         if word == "done" and not any(marker in " ".join((report, *words)) for marker in ANOTHER):
             answer = self._answer()
-            if answer is not None and not np.allclose(answer, self.answers[scene], rtol=SAME, atol=0.0):
+            if answer is not None and not np.allclose(answer, self.answers[number], rtol=SAME, atol=0.0):
                 word = "different"
-        if (CASES / SCENES[scene][0]).read_bytes() != before or list(self.folder.glob(".*.tmp")):
-            word = "changed"
-        return word, f"{SCENES[scene][:2]} {' '.join(words)}: {status} {report[-1500:]}"
-
-    def keep(self, place):
-        """Nothing to keep: the output is printed."""
+        return word, f"{SCENES[number]} {' '.join(words)}: {status} {report[-1500:]}"
 
     def _run(self, scene, words):
-        name, *settings = SCENES[scene]
+        name, *settings = scene
         for left in self.folder.glob("*.h5"):
             left.unlink()
-        sets = [word for setting in (*MESH, *settings) for word in ("--set", setting)]
-        limit = [] if "-ehl_time_limit" in words else ["--time-limit", RUN_MINUTES]
+        sets = [word for setting in (*MESH, *settings) for word in ("-ehl_set", setting)]
+        limit = [] if "-ehl_time_limit" in words else ["-ehl_time_limit", "0.15"]
 
         def work():
             os.chdir(self.folder)

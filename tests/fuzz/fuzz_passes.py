@@ -71,20 +71,12 @@ class Draw:
             word = "changed"
         return word, f"{actions}: {status} {report[-1500:]}"
 
-    def keep(self, place):
-        """Copy the folder of the last draw."""
-        shutil.copytree(self.folder, place)
-
     def _run(self, name, folder, after=LIMIT, stop=signal.SIGKILL, often=()):
         words = [word for key in (*SCENES[name], *often) for word in ("--set", key)]
-        run = subprocess.Popen(
-            [sys.executable, "-m", "ehlpetsc", str(ROOT / "cases" / name), *words],
-            cwd=folder,
-            env=os.environ | {"PYTHONPATH": f"{ROOT}:{os.environ.get('PYTHONPATH', '')}"},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
+        command = [sys.executable, "-m", "ehlpetsc", str(ROOT / "cases" / name), *words]
+        env = os.environ | {"PYTHONPATH": f"{ROOT}:{os.environ.get('PYTHONPATH', '')}"}
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+        run = subprocess.Popen(command, cwd=folder, env=env, **pipes)
         for limit in (after, LIMIT):
             try:
                 report, _ = run.communicate(timeout=limit)

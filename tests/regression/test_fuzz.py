@@ -10,13 +10,8 @@ pytestmark = pytest.mark.slow
 
 
 def test_invalid_input_ends_with_a_documented_status(tmp_path):
-    numbers = "--results 8 --options 1 --python 3".split()
-    words = [PYTHON, ROOT / "tests" / "fuzz" / "all.py", "--seed", "3", *numbers]
+    words = [PYTHON, ROOT / "tests" / "fuzz" / "all.py", "--seed", "3", "--options", "6"]
     done = subprocess.run(words, cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
-    counted = {
-        kind: outcomes for kind, _, outcomes in (line.partition(": ") for line in done.stdout.splitlines())
-    }
-    assert list(counted) == ["results", "options", "python"]
-    assert "refused " in counted["results"]
+    assert done.stdout.startswith("options: ") and "refused " in done.stdout
     assert list(tmp_path.iterdir()) == []
