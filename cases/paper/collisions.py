@@ -17,11 +17,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from scipy.ndimage import binary_dilation, label
 
 from ehlpetsc.api import Result
+from ehlpetsc.pictures import style
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.index import in_order, open_all, series_values
 
@@ -160,44 +160,39 @@ def report(collisions: list[Collision], values: list[float], key: str, a: float)
 
 def draw_collisions(results: list[Result], values: list[float], key: str, chosen: list[Collision]) -> Figure:
     """Pressure and film at collisions, one column each, a line for each member, contacts marked."""
-    figure = Figure(figsize=(5.0 * len(chosen), 5.6), layout="constrained")
-    axes = figure.subplots(2, len(chosen), squeeze=False, sharex="col")
+    figure, axes = style.new_figure(2, len(chosen), (5.0 * len(chosen), 5.6), squeeze=False, sharex="col")
     a = results[0].attrs["a"]
     for (upper, lower), c in zip(axes.T, chosen, strict=True):
-        for k, (result, value) in enumerate(zip(results, values, strict=True)):
+        for result, value, colour in zip(results, values, style.shades(len(results)), strict=True):
             frame = result.nearest_frame(time=c.time)
             view = np.abs(result.x - c.x) <= 0.5 * VIEW * a
-            style = dict(
-                color=colormaps["viridis"](0.9 * k / max(len(results) - 1, 1)), lw=1.1, label=f"{value:g}"
-            )
-            marks = dict(marker="v", ms=4, markevery=np.flatnonzero(in_contact(result, frame)[view]).tolist())
-            for panel, name, factor in ((upper, "pressure", 1e-9), (lower, "film_thickness", 1e6)):
-                panel.plot(result.x[view] / a, factor * result.frame(name, frame)[view], **style, **marks)
+            marked = np.flatnonzero(in_contact(result, frame)[view]).tolist()
+            look = dict(color=colour, lw=1.1, label=f"{value:g}", marker="v", ms=4, markevery=marked)
+            upper.plot(result.x[view] / a, 1e-9 * result.frame("pressure", frame)[view], **look)
+            lower.plot(result.x[view] / a, 1e6 * result.frame("film_thickness", frame)[view], **look)
         upper.set_title(f"{1e6 * c.time:.2f} µs", fontsize="medium")
-        lower.set(xlabel="x/a", ylim=(0.0, None))
+        upper.set_ylim(bottom=0.0)
+        lower.set(xlabel=style.ACROSS, ylim=(0.0, None))
     axes[0, 0].set_ylabel("pressure [GPa]")
     axes[1, 0].set_ylabel("film thickness [µm]")
-    axes[0, -1].legend(
-        title=key, fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5)
-    )
+    style.legend_beside(axes[0, -1], title=style.UNITS.get(key, key))
+    style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure
 
 
-def draw_points(values: list[float], key: str, points: list[Collision], a: float) -> Figure:
+def draw_points(results: list[Result], values: list[float], key: str, points: list[Collision]) -> Figure:
     """Film and pressure at contact points over the varied value; triangles: in contact."""
-    figure = Figure(figsize=(8.4, 5.6), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
+    figure, (upper, lower) = style.new_figure(2, 1, (8.4, 5.6), sharex=True)
     for number, c in enumerate(points):
-        style = dict(color=f"C{number}", lw=1.1, ms=4)
-        upper.plot(
-            values, 1e6 * np.array(c.film), "o-", label=f"{c.x / a:.3f} a, {1e6 * c.time:.2f} µs", **style
-        )
-        lower.plot(values, 1e-9 * np.array(c.pressure), "-", **style)
-        for mark, shown in (("o", ~np.array(c.dry)), ("v", np.array(c.dry))):
-            lower.plot(np.array(values)[shown], 1e-9 * np.array(c.pressure)[shown], mark, **style)
+        look, dry = dict(color=f"C{number}", lw=1.1, ms=4), np.array(c.dry)
+        label = f"{c.x / results[0].attrs['a']:.3f} a, {1e6 * c.time:.1f} µs"
+        for panel, shown in ((upper, 1e6 * np.array(c.film)), (lower, 1e-9 * np.array(c.pressure))):
+            panel.plot(values, shown, "o-", markevery=np.flatnonzero(~dry).tolist(), label=label, **look)
+            panel.plot(np.array(values)[dry], shown[dry], "v", **look)
     upper.set(ylabel="film thickness [µm]", ylim=(0.0, None))
-    lower.set(ylabel="pressure [GPa]", xlabel=key, ylim=(0.0, None), xlim=(0.0, None))
-    upper.legend(fontsize="small", frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    lower.set(ylabel="pressure [GPa]", xlabel=style.UNITS.get(key, key), ylim=(0.0, None), xlim=(0.0, None))
+    style.legend_beside(upper)
+    style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure
 
 
@@ -214,10 +209,10 @@ def main(words: list[str] | None = None) -> None:
         collisions, a = find(results), results[0].attrs["a"]
         print("\n".join(report(collisions, values, key, a)))
         if chosen.points:
-            draw_points(values, key, breakdowns(collisions)[:8], a).savefig(chosen.output, dpi=160)
+            style.save(draw_points(results, values, key, breakdowns(collisions)[:8]), chosen.output)
         elif chosen.draw:
             shown = [collisions[number] for number in chosen.draw]
-            draw_collisions(results, values, key, shown).savefig(chosen.output, dpi=160)
+            style.save(draw_collisions(results, values, key, shown), chosen.output)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result
+from ehlpetsc.pictures import style
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all
 
 ORDER = 8  # of the polynomial
@@ -39,20 +40,18 @@ def contact_length(result: Result) -> float:
 
 def draw(results: list[Result], names: list[str]) -> Figure:
     """Q along the contact: above as counted, below its polynomial."""
-    figure = Figure(figsize=(8.4, 5.6), layout="constrained")
-    upper, lower = figure.subplots(2, 1, sharex=True)
-    for number, (result, name) in enumerate(zip(results, names, strict=True)):
+    figure, (upper, lower) = style.new_figure(2, 1, (8.4, 5.6), sharex=True)
+    for result, name, colour in zip(results, names, style.shades(len(results)), strict=True):
         x, counted = result.x / result.attrs["a"], rate(result)
         inside = np.abs(x) <= 1.0
         fit = np.polynomial.Polynomial.fit(x[inside], counted[inside], ORDER)
-        upper.plot(x, counted, color=f"C{number}", lw=0.6)
-        lower.plot(
-            x[inside], fit(x[inside]), color=f"C{number}", lw=1.4, label=f"{name}: {mean_rate(result):.3g}"
-        )
+        upper.plot(x, counted, color=colour, lw=0.6)
+        label = f"{name}: {mean_rate(result):.3g}"
+        lower.plot(x[inside], fit(x[inside]), color=colour, lw=1.4, label=label)
     upper.set(ylabel="contacts per ms", xlim=(-1.5, 1.5), ylim=(0.0, None))
-    lower.set(ylabel=f"polynomial of order {ORDER}", xlabel="x/a", ylim=(0.0, None))
-    lower.legend(title="mean in abs(x) < a [1/ms]", fontsize="small", frameon=False)
-    figure.suptitle(results[0].attrs["title"], fontsize="medium")
+    lower.set(ylabel=f"polynomial of order {ORDER}", xlabel=style.ACROSS, ylim=(0.0, None))
+    style.legend_beside(lower, title="mean in abs(x) < a [1/ms]")
+    style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure
 
 
@@ -70,7 +69,7 @@ def main(words: list[str] | None = None) -> None:
             means = (mean_rate(result), mean_rate(result, -1.0, -0.5), mean_rate(result, 0.0))
             length, highest = contact_length(result) / result.attrs["a"], 1e-9 * result.steps("p_max").max()
             print(f"{name:30} {means[0]:8.2f} {means[1]:8.2f} {means[2]:8.2f} {length:9.5f} {highest:9.3f}")
-        draw(results, names).savefig(chosen.output, dpi=160)
+        style.save(draw(results, names), chosen.output)
 
 
 if __name__ == "__main__":

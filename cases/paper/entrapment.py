@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result, read_result
-from ehlpetsc.pictures.frames import deformed_heights
+from ehlpetsc.pictures import frames, style
 from ehlpetsc.results.contacts import in_contact
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
@@ -62,23 +62,28 @@ def instants(result: Result, event: Entrapment, interval: int = INTERVAL) -> lis
 
 def draw(result: Result, event: Entrapment) -> Figure:
     """Pressure and both deformed surfaces at four instants, contacts marked."""
-    figure = Figure(figsize=(13.4, 5.6), layout="constrained")
-    axes = figure.subplots(2, 4, sharex="col", sharey="row")
+    figure, axes = style.new_figure(2, 4, (13.4, 5.6), sharex="col", sharey="row")
     x, a = result.x / result.attrs["a"], result.attrs["a"]
+    heights = []
     for (upper, lower), (frame, centre) in zip(axes.T, instants(result, event), strict=True):
-        view = np.abs(result.x - centre) <= 0.5 * VIEW * a
+        view = np.abs(x - centre / a) <= 0.5 * VIEW
         touching = in_contact(result, frame) & view
-        pressure = 1e-9 * result.frame("pressure", frame)
-        below, above = (1e6 * heights for heights in deformed_heights(result, frame))
-        upper.plot(x[view], pressure[view], color="k", lw=1.1)
-        upper.plot(x[touching], pressure[touching], "rv", ms=4)
-        lower.plot(x[view], above[view], x[view], below[view], color="k", lw=1.0)
-        lower.plot(x[touching], below[touching], "rv", ms=4)
-        upper.set_title(f"{1e6 * result.time[frame]:.2f} µs", fontsize="medium")
-        lower.set(xlabel="x/a", xlim=(centre / a - VIEW / 2.0, centre / a + VIEW / 2.0))
-    axes[0, 0].set(ylabel="pressure [GPa]", ylim=(0.0, None))
-    axes[1, 0].set_ylabel("surfaces [µm]")
-    figure.suptitle(result.attrs["title"], fontsize="medium")
+        pressure, (below, _) = 1e-9 * result.frame("pressure", frame), frames.deformed_heights(result, frame)
+        frames.deformed_surfaces(lower, result, frame, (x[view][0], x[view][-1]))
+        lower.get_legend().remove()
+        heights += lower.get_ylim()
+        upper.plot(x[view], pressure[view], color=style.SINGLE, lw=1.1)
+        marks = dict(color=style.CONTACT, ms=4)
+        upper.plot(x[touching], pressure[touching], "v", **marks)
+        lower.plot(x[touching], 1e6 * below[touching], "v", **marks)
+        upper.set_title(f"{1e6 * result.time[frame]:.1f} µs", fontsize="medium")
+        upper.set_xlim(x[view][0], x[view][-1])
+    axes[0, 0].set_ylim(bottom=0.0)
+    axes[1, 0].set_ylim(min(heights), max(heights))
+    axes[0, 0].set_ylabel(frames.PRESSURE)
+    for panel in axes[1, 1:]:
+        panel.set_ylabel("")
+    style.set_title(figure, str(result.attrs["title"]), style.conditions([result]))
     return figure
 
 
@@ -94,7 +99,7 @@ def main(words: list[str] | None = None) -> None:
             raise SystemExit(
                 f"{chosen.result}: no pressure maximum between two contacts {MAX_GAP} a apart or less"
             )
-        draw(result, found[0]).savefig(chosen.output, dpi=160)
+        style.save(draw(result, found[0]), chosen.output)
 
 
 if __name__ == "__main__":

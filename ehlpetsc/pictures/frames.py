@@ -23,6 +23,7 @@ GAP = "gap [µm]"  # without oil
 WINDOW = (-1.6, 1.4)  # limits of x/a by default
 SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
+FAR = 1e3  # µm, to which solids are filled
 AROUND_WIDTH = 0.5  # half-widths, of a view around a point
 MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
 
@@ -247,7 +248,7 @@ def deformed_surfaces(axes: Axes, result: Result, index: int, window: tuple[floa
     shown = inside if inside.any() else in_view
     bottom, top = lower[shown].min(), upper[shown].max()
     room = 0.15 * (top - bottom)
-    for height, end, side in ((upper, top + room, "1"), (lower, bottom - room, "2")):
+    for height, end, side in ((upper, FAR, "1"), (lower, -FAR, "2")):
         axes.fill_between(x, height, end, color="0.85", lw=0)
         axes.plot(x, height, color=style.SURFACES[side], lw=0.9, label=f"surface {side}")
     axes.set(xlabel=ACROSS, ylabel="surfaces [µm]", ylim=(bottom - room, top + room))
