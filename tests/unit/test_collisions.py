@@ -137,8 +137,7 @@ def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
         x, p = pressure.lines[0].get_data()
         np.testing.assert_allclose(p, 1e-9 * np.interp(x * A, result.x, result.frame("pressure", frame)))
         above, below = (line.get_ydata() for line in surfaces.lines[:2])
-        film = np.interp(x * A, result.x, result.frame("film_thickness", frame))
-        np.testing.assert_allclose(above - below, 1e6 * film, atol=1e-9)
+        np.testing.assert_allclose(above - below, 1e6 * result.frame("film_thickness", frame), atol=1e-9)
 
 
 def test_pressure_peak_outside_contacts_is_no_entrapment(series):
