@@ -286,4 +286,4 @@ def _ratio(result: PostResult) -> str:
 
 
 def _strain_rule(result: PostResult) -> str:
-    return f"{result.attrs.get('strain', 'direct')} strains"
+    return f'strain = "{result.attrs.get("strain", "direct")}"'
