@@ -3,9 +3,8 @@ OUTPUT.series.json, OUTPUT.passes.json; or the profiles of a CASE.toml as they w
 
 Pressure and film of one frame, by default that with the maximum load on the solids from when both profiles
 fill the contact or, without load on solids, the maximum pressure; several results at the same travel in one
-picture. Or a map of pressure over x and time, a movie; of a series its Stribeck or traction curves; of one
-result its temperatures or an HTML page. The file name after -o determines the format (png, svg, pdf, eps; of
-a movie gif, mp4, webm; of a page html). Input files are never overwritten.
+picture. The file name after -o determines the format (png, svg, pdf, eps ...; of a movie gif, mp4, webm).
+Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
 """

@@ -76,6 +76,11 @@ def test_every_case_is_described_with_its_picture():
             assert re.search(r"\(pictures/\w+\.png\)", row), case.name
 
 
+def test_every_committed_picture_is_on_a_page():
+    shown = set(re.findall(r"pictures/([\w.]+\.png)\)", "".join(TEXTS.values())))
+    assert {path.name for path in (ROOT / "cases" / "pictures").iterdir()} == shown
+
+
 def test_main_page_length_is_limited():
     assert len(MAIN.splitlines()) <= 150
 
