@@ -15,6 +15,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.physics.friction_correlations import benedict_kelley, xu_kahraman
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
@@ -29,6 +31,7 @@ QUANTITIES = {
     "mean_gap_ratio": "mean gap over\nthe combined Rq",
 }
 MIN_LOAD_FRACTION = 1e-5  # of the solids, lower end of the axis
+MIN_LOGARITHMIC_RATIO = 100.0  # of slide/roll ratios: a larger span is drawn on a logarithmic axis
 
 
 @dataclass(frozen=True)
@@ -179,11 +182,32 @@ def draw_traction(results: list[Result], _options: argparse.Namespace | None) ->
             label = ", ".join(filter(None, [name.replace("_", " "), heating])) or "friction"
             axes.plot(ratios, friction, dashes, color=colour, marker="o", ms=3, lw=1.2, label=label)
             _mark_maximum(axes, ratios, friction, colour)
-    axes.set(xlabel=style.UNITS[RATIO], ylabel="friction coefficient", xlim=(0.0, None), ylim=(0.0, None))
+    ratios = np.unique([result.case.motion.slide_roll_ratio for result in results if result.case.motion])
+    ratios = ratios[ratios > 0.0]
+    if len({name.partition(",")[0] for name in names}) == 1 and results[0].case.fluid and ratios.size:
+        axes.set_ylim(top=1.6 * axes.get_ylim()[1])  # a correlation without bound is cut
+        for (label, friction), dashes in zip(
+            correlations(results[0], ratios).items(), (":", "-."), strict=True
+        ):
+            axes.plot(ratios, friction, dashes, color="0.35", lw=1.0, label=label)
+    axes.set(xlabel=style.UNITS[RATIO], ylabel="friction coefficient", xlim=(0.0, None))
+    if ratios.size and ratios[-1] > MIN_LOGARITHMIC_RATIO * ratios[0]:
+        axes.set(xscale="log", xlim=(ratios[0], ratios[-1]))
+    axes.set_ylim(bottom=0.0)
     axes.grid(lw=0.3)
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     style.legend_beside(axes)
     return figure
+
+
+def correlations(result: Result, ratios: np.ndarray) -> dict[str, np.ndarray]:
+    """Friction coefficients of smooth surfaces by published correlations, by their names."""
+    case, scales = result.case, Scales.of(result.case)
+    u, eta, load = abs(scales.u), case.fluid.viscosity, case.contact.load
+    return {
+        "Xu & Kahraman 2007": xu_kahraman(scales.p0, ratios, u, eta, case.contact.radius, 0.0),
+        "Benedict & Kelley 1961": benedict_kelley(load, ratios * u, 2.0 * u, eta, 0.0),
+    }
 
 
 def traction_curves(results: list[Result]) -> dict[str, np.ndarray]:

@@ -53,6 +53,7 @@ SHORT = {
     "table1_mixed": QUICK,
     "table1_rough": QUICK,
     "table1_smooth": (),
+    "traction": ("mesh.points_per_half_width=50", "series.values=[0.01, 0.1]"),
     "waviness": (*QUICK[:3], "time.travel=1.0"),
 }
 

@@ -59,6 +59,15 @@ def test_traction_curves(series):
     assert cold.get_linestyle() == "--"
 
 
+def test_published_correlations_beside_one_traction_curve(tmp_path):
+    paths = [member(tmp_path / f"{ratio}.h5", ratio, 0.1 * ratio) for ratio in (0.1, 0.5)]
+    lines = {line.get_label(): line for line in drawn("traction", paths).axes[0].get_lines()}
+    low, high = lines["Xu & Kahraman 2007"].get_ydata()
+    assert 0.0 < low < high  # grows with sliding at little heat
+    low, high = lines["Benedict & Kelley 1961"].get_ydata()
+    assert low - high == pytest.approx(0.0127 * np.log10(5.0))
+
+
 def heated(path, steps):
     change_case(make_result(path, steps=steps), HEAT)
     with h5py.File(path, "r+", libver="latest") as file:
