@@ -1,7 +1,7 @@
 """Transient mixed lubrication and contact of rough line contacts on PETSc.
 
 ``load`` a case, ``solve`` it, or iterate over the accepted states of a ``Simulation``; ``read_result`` opens
-a file. ``gears`` computes paths of contact of spur gears. They are imported at first use.
+a file. ``gears`` computes paths of contact of gears. They are imported at first use.
 """
 
 import importlib

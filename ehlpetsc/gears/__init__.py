@@ -1,4 +1,4 @@
-"""Spur gear pairs: path of contact, load sharing, losses, hunting teeth.
+"""Gear pairs: geometry, path of contact, load sharing, losses, hunting teeth, standards.
 
 Geometry alone: no solver, no PETSc. ``ehlpetsc gears CASE.toml`` prints the table of a ``[gears]``
 case and draws it.

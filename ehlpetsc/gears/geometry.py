@@ -15,8 +15,6 @@ import numpy as np
 POINTS = ("A", "B", "C", "D", "E")
 TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
 EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
-# compliance q' of ISO 6336-1, method B: 1, 1/z1, 1/z2, x1, x1/z1, x2, x2/z2, x1^2, x2^2 [mm um/N]
-COMPLIANCE = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
 
 
 def involute(angle: float) -> float:
@@ -201,23 +199,6 @@ class GearPair:
         return self.torque / self.face_width / self.base_radii[0]
 
     @property
-    def single_stiffness(self) -> float:
-        r"""Maximum stiffness c' of a tooth pair per face width [Pa] of ISO 6336-1: steel discs.
-
-        :math:`c'=0.8\,C_B\cos\beta/q'` with the virtual tooth numbers in q', and less below 100 N/mm.
-        """
-        if self.mesh_stiffness is not None:
-            return self.mesh_stiffness
-        beta, (x1, x2) = math.radians(self.helix_angle), self.shifts
-        n1, n2 = (z / (math.cos(self.base_helix_angle) ** 2 * math.cos(beta)) for z in self.teeth)
-        terms = (1.0, 1.0 / n1, 1.0 / n2, x1, x1 / n1, x2, x2 / n2, x1 * x1, x2 * x2)
-        q = sum(c * term for c, term in zip(COMPLIANCE, terms, strict=True))
-        rack = 1.0 + 0.5 * (1.2 - self.addendum - self.tip_clearance)
-        rack *= 1.0 - 0.02 * (20.0 - self.pressure_angle)
-        tangential = 2.0 * self.torque / (self.transverse_module * self.teeth[0] * self.face_width)
-        return 0.8e9 * rack * math.cos(beta) / q * min(1.0, tangential / 100e3) ** 0.25
-
-    @property
     def points(self) -> dict[str, float]:
         """Positions of A, B, C, D and E [m]: dict of str to float.
 
@@ -256,25 +237,6 @@ class GearPair:
         """
         a, (r_1, r_2), length = self.points["A"], self.base_radii, self.line_of_action
         return (rho**2 - a**2) / (2.0 * r_1), ((length - a) ** 2 - (length - rho) ** 2) / (2.0 * r_2)
-
-    def corner_gap(self, rho: np.ndarray) -> np.ndarray:
-        r"""Gap of unloaded flanks along the line of action [m]: 0 from A to E, inf where there is no flank.
-
-        Beyond, a sharp tip of one gear is at :math:`(s,\gamma)` about the centre of the other, whose flank
-        there is an involute of base radius r at :math:`\psi`: the gap is :math:`r(\gamma-\psi)`.
-        """
-        points, length, angle = self.points, self.line_of_action, self.working_angle
-        (r1, r2), gap = self.base_radii, np.zeros_like(rho)
-        ends = ((points["A"], rho, r1, r2, 1), (length - points["E"], length - rho, r2, r1, 0))
-        for end, here, flank, base, side in ends:
-            beyond, tip = np.maximum(end - here, 0.0), 0.5 * self.tip_diameter[side]
-            turned = angle - math.acos(base / tip) - beyond / base
-            x, y = self.centre_distance - tip * np.cos(turned), tip * np.sin(turned)
-            with np.errstate(invalid="ignore"):
-                roll = np.sqrt((x * x + y * y) / flank**2 - 1.0)
-            psi = (end - beyond) / flank - angle - roll + np.arctan(roll)
-            gap += np.where(beyond > 0.0, np.nan_to_num(flank * (np.arctan2(y, x) - psi), nan=np.inf), 0.0)
-        return gap
 
     @property
     def edge_radius(self) -> float:

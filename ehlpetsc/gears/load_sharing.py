@@ -1,7 +1,7 @@
 r"""Load of one tooth pair over the load of the mesh.
 
 The flanks of loaded teeth meet before A and part after E, as the other pair bends: a tip edge touches there
-off the line of action (`GearPair.corner_gap`). All pairs that may touch, with stiffness k and gap g along the
+off the line of action (`corner_gap`). All pairs that may touch, with stiffness k and gap g along the
 line of action, approach each other by :math:`\delta` and carry :math:`k\max(\delta-g,0)`, in sum the load.
 
 ``stiffness``
@@ -28,11 +28,31 @@ import numpy as np
 if TYPE_CHECKING:
     from ehlpetsc.gears.geometry import GearPair
 
+# compliance q' of ISO 6336-1, method B: 1, 1/z1, 1/z2, x1, x1/z1, x2, x2/z2, x1^2, x2^2 [mm um/N]
+COMPLIANCE = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
 RULES = ("thirds", "tip-relief", "stiffness")
 SLICES = 41  # of a helical pair
 EDGE_SAMPLES = 2001
 NEVER = 1.0  # m: gap of flanks that do not touch
 END_STIFFNESS = 0.55  # of a pair at A and E, over that in the middle
+
+
+def single_stiffness(pair: GearPair) -> float:
+    r"""Maximum stiffness c' of a tooth pair per face width [Pa] of ISO 6336-1: steel discs.
+
+    :math:`c'=0.8\,C_B\cos\beta/q'` with the virtual tooth numbers in q', and less below 100 N/mm; constants
+    as in public code (GEARpie), the rest from memory.
+    """
+    if pair.mesh_stiffness is not None:
+        return pair.mesh_stiffness
+    beta, (x1, x2) = math.radians(pair.helix_angle), pair.shifts
+    n1, n2 = (z / (math.cos(pair.base_helix_angle) ** 2 * math.cos(beta)) for z in pair.teeth)
+    terms = (1.0, 1.0 / n1, 1.0 / n2, x1, x1 / n1, x2, x2 / n2, x1 * x1, x2 * x2)
+    q = sum(c * term for c, term in zip(COMPLIANCE, terms, strict=True))
+    rack = 1.0 + 0.5 * (1.2 - pair.addendum - pair.tip_clearance)
+    rack *= 1.0 - 0.02 * (20.0 - pair.pressure_angle)
+    tangential = 2.0 * pair.torque / (pair.transverse_module * pair.teeth[0] * pair.face_width)
+    return 0.8e9 * rack * math.cos(beta) / q * min(1.0, tangential / 100e3) ** 0.25
 
 
 def share(pair: GearPair, rho: np.ndarray) -> np.ndarray:
@@ -45,16 +65,36 @@ def share(pair: GearPair, rho: np.ndarray) -> np.ndarray:
 
 def gap(pair: GearPair, rho: np.ndarray) -> np.ndarray:
     """Gap of unloaded flanks [m]: tip relief, and beyond A and E the way of an edge."""
-    return pair.corner_gap(rho) + pair.tip_relief * (1.0 - np.minimum(*_inwards(pair, rho)))
+    return corner_gap(pair, rho) + pair.tip_relief * (1.0 - np.minimum(*_inwards(pair, rho)))
+
+
+def corner_gap(pair: GearPair, rho: np.ndarray) -> np.ndarray:
+    r"""Gap of unloaded flanks along the line of action [m]: 0 from A to E, inf where there is no flank.
+
+    Beyond, a sharp tip of one gear is at :math:`(s,\gamma)` about the centre of the other, whose flank
+    there is an involute of base radius r at :math:`\psi`: the gap is :math:`r(\gamma-\psi)`.
+    """
+    points, length, angle = pair.points, pair.line_of_action, pair.working_angle
+    (r1, r2), found = pair.base_radii, np.zeros_like(rho)
+    ends = ((points["A"], rho, r1, r2, 1), (length - points["E"], length - rho, r2, r1, 0))
+    for end, here, flank, base, side in ends:
+        beyond, tip = np.maximum(end - here, 0.0), 0.5 * pair.tip_diameter[side]
+        turned = angle - math.acos(base / tip) - beyond / base
+        x, y = pair.centre_distance - tip * np.cos(turned), tip * np.sin(turned)
+        with np.errstate(invalid="ignore"):
+            roll = np.sqrt((x * x + y * y) / flank**2 - 1.0)
+        psi = (end - beyond) / flank - angle - roll + np.arctan(roll)
+        found += np.where(beyond > 0.0, np.nan_to_num(flank * (np.arctan2(y, x) - psi), nan=np.inf), 0.0)
+    return found
 
 
 def stiffness(pair: GearPair, rho: np.ndarray) -> np.ndarray:
     """Stiffness of a tooth pair per face width [Pa]."""
     if pair.rule == "tip-relief":
-        return np.full_like(rho, pair.single_stiffness)
+        return np.full_like(rho, single_stiffness(pair))
     points = pair.points
     xi = np.clip((rho - points["A"]) / (points["E"] - points["A"]), 0.0, 1.0)
-    return pair.single_stiffness * (END_STIFFNESS + 4.0 * (1.0 - END_STIFFNESS) * xi * (1.0 - xi))
+    return single_stiffness(pair) * (END_STIFFNESS + 4.0 * (1.0 - END_STIFFNESS) * xi * (1.0 - xi))
 
 
 def _inwards(pair: GearPair, rho: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -92,7 +132,7 @@ def _thirds(pair: GearPair, rho: np.ndarray) -> np.ndarray:
     points = pair.points
 
     def beyond(at: np.ndarray) -> np.ndarray:
-        loaded = 1.0 - pair.corner_gap(at) * pair.single_stiffness / pair.normal_load
+        loaded = 1.0 - corner_gap(pair, at) * single_stiffness(pair) / pair.normal_load
         return np.where((at < points["A"]) | (at > points["E"]), np.maximum(loaded, 0.0) / 3.0, 0.0)
 
     alone = (rho > points["B"]) & (rho < points["D"])

@@ -10,7 +10,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
-from ehlpetsc.gears.load_sharing import edge_contact, share
+from ehlpetsc.gears.load_sharing import edge_contact, share, single_stiffness
 
 PATH_INTERVALS = 2000  # equal intervals of the path, in addition to its points
 
@@ -113,13 +113,13 @@ def describe(path: Path) -> list[str]:
         f"centre distance {1e3 * pair.centre_distance:.3f} mm, tip diameters {tips} mm, "
         f"profile shift {x1:.4f} and {x2:.4f}",
         f"load {1e-3 * pair.normal_load:.1f} kN/m of the mesh, load sharing: {pair.rule}",
-        f"c' {1e-9 * pair.single_stiffness:.2f} N/(mm µm): one pair bends by "
-        f"{1e6 * pair.normal_load / pair.single_stiffness:.1f} µm",
+        f"c' {1e-9 * single_stiffness(pair):.2f} N/(mm µm): one pair bends by "
+        f"{1e6 * pair.normal_load / single_stiffness(pair):.1f} µm",
         f"a pinion tooth meets {pair.partners} of {pair.teeth[1]} wheel teeth; "
         f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
     ]
     if pair.tip_relief > 0.0:
-        kappa = pair.single_stiffness * pair.tip_relief / pair.normal_load
+        kappa = single_stiffness(pair) * pair.tip_relief / pair.normal_load
         lines.append(f"tip relief {1e6 * pair.tip_relief:.1f} µm, c' C_a/w' = {kappa:.2f}")
     for (name, (way, carried)), where, gear in zip(
         edge_contact(pair).items(), ("before", "after"), ("wheel", "pinion"), strict=True
