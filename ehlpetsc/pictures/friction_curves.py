@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import LogLocator
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.friction_correlations import benedict_kelley, xu_kahraman
@@ -132,6 +133,7 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
     _hersey_axis(axes[0], results)
     if np.isfinite([point.scalars["mean_gap_ratio"][0] for point in points]).any():
         axes[2].set_yscale("log")
+        axes[2].yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes[2].set_xlabel(style.UNITS[SPEED])
     label = f"{main}:\nmean over time" if others else "mean over time"
     band = Patch(color=style.SINGLE, alpha=0.2, lw=0, label=f"{BAND[0]:g} to {BAND[1]:g} % of the time")
@@ -139,7 +141,9 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
     style.legend_beside(axes[1], [line, band])
     note = f"not shown, ended too early: {', '.join(early)}" if early else ""
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results), note)
-    axes[2].xaxis.set_major_formatter("{x:g}")
+    for axis in (axes[2].xaxis, axes[1].yaxis, axes[2].yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
     return figure
 
 
@@ -233,5 +237,5 @@ def _mark_maximum(axes: Axes, ratios: np.ndarray, friction: np.ndarray, colour: 
         return
     at = friction.argmax()
     axes.plot(ratios[at], friction[at], "o", ms=9, mfc="none", color=colour)
-    below = dict(xytext=(4, -7), textcoords="offset points", va="top", fontsize="small", color=colour)
-    axes.annotate(f"{friction[at]:.4f} at {ratios[at]:g}", (ratios[at], friction[at]), **below)
+    above = dict(xytext=(0, 7), textcoords="offset points", ha="center", fontsize="small", color=colour)
+    axes.annotate(f"{friction[at]:.4f} at {ratios[at]:g}", (ratios[at], friction[at]), **above)
