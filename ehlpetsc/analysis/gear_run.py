@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from ehlpetsc.gears.standards import Rating
 
 SCALARS = (  # scalar of the steps, factor, label
-    ("p_max", 1e-9, "maximum pressure\n[GPa]"),
-    ("film_central", 1e6, "mean film of\nthe contact [µm]"),
+    ("p_max", 1e-9, "maximum\npressure [GPa]"),
+    ("film_central", 1e6, "mean film\n[µm]"),
     ("h_min", 1e6, "minimum film\n[µm]"),
     ("lambda_ratio", 1.0, "lambda ratio"),
     ("friction_coefficient", 1.0, "friction\ncoefficient"),

@@ -66,7 +66,7 @@ class Path:
 
 
 def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
-    """Path of contact of a spur gear pair, or of its keys; raises `CaseError` for an impossible geometry.
+    """Path of contact of a gear pair, or of its keys; raises `CaseError` for an impossible geometry.
 
     Examples
     --------

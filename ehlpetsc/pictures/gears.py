@@ -30,8 +30,8 @@ MAX_DEPTHS = 4
 OF_FLANKS = {f"temperature_{side}_max": style.SURFACES[side] for side in "12"}
 STANDARD = dict(color="0.4", linestyle=":", linewidth=1.2)
 STAGES = (  # figure of a run, label
-    ("mean film", "mean film of\nthe contact [µm]"),
-    ("mean friction coefficient", "mean friction\ncoefficient"),
+    ("mean film", "mean film\n[µm]"),
+    ("mean friction coefficient", "friction\ncoefficient"),
     ("mean share of the load on the solids", "share of load\non the solids"),
 )
 
@@ -146,7 +146,7 @@ def draw_stages(runs: list[GearRun], target: Path) -> None:
                 torque, [np.nanmean(run.standards[name]) for run in runs], "s", **STANDARD, markersize=3
             )
         axis.set_ylabel(label, fontsize=FONT)
-        axis.set_ylim(bottom=0.0)
+        axis.set_ylim(0.0, 1.1 * axis.dataLim.y1)
     for side, flank in zip("12", flanks, strict=False):
         damage = [row[f"maximum damage of the {flank}"] for row in figures]
         axes[-1].semilogy(torque, damage, "o-", color=style.SURFACES[side], markersize=4, label=flank)
