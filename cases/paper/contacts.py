@@ -38,10 +38,11 @@ def contact_length(result: Result) -> float:
     return float((dt * nodes).sum() / dt.sum() * np.diff(result.x).mean())
 
 
-def draw(results: list[Result], names: list[str]) -> Figure:
+def draw(results: list[Result]) -> Figure:
     """Q along the contact: above as counted, below its polynomial."""
     figure, (upper, lower) = style.new_figure(2, 1, (8.4, 5.6), sharex=True)
-    for result, name, colour in zip(results, names, style.shades(len(results)), strict=True):
+    colours, names, key = style.series_colours(results)
+    for result, name, colour in zip(results, names, colours, strict=True):
         x, counted = result.x / result.attrs["a"], rate(result)
         inside = np.abs(x) <= 1.0
         fit = np.polynomial.Polynomial.fit(x[inside], counted[inside], ORDER)
@@ -50,7 +51,8 @@ def draw(results: list[Result], names: list[str]) -> Figure:
         lower.plot(x[inside], fit(x[inside]), color=colour, lw=1.4, label=label)
     upper.set(ylabel="contacts per ms", xlim=(-1.5, 1.5), ylim=(0.0, None))
     lower.set(ylabel=f"polynomial of order {ORDER}", xlabel=style.ACROSS, ylim=(0.0, None))
-    style.legend_beside(lower, title="mean in abs(x) < a [1/ms]")
+    varied = f"{style.UNITS.get(key, key)}: " if key else ""
+    style.legend_beside(lower, title=f"{varied}mean\nin abs(x) < a [1/ms]")
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure
 
@@ -69,7 +71,7 @@ def main(words: list[str] | None = None) -> None:
             means = (mean_rate(result), mean_rate(result, -1.0, -0.5), mean_rate(result, 0.0))
             length, highest = contact_length(result) / result.attrs["a"], 1e-9 * result.steps("p_max").max()
             print(f"{name:30} {means[0]:8.2f} {means[1]:8.2f} {means[2]:8.2f} {length:9.5f} {highest:9.3f}")
-        style.save(draw(results, names), chosen.output)
+        style.save(draw(results), chosen.output)
 
 
 if __name__ == "__main__":
