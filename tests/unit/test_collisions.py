@@ -101,9 +101,8 @@ def test_contacts_from_flags_equal_contacts_from_the_bound(tmp_path, bound, prec
 
 
 def test_contacts_of_a_layer_begin_at_ten_megapascals():
-    contact = SimpleNamespace(
-        youngs_modulus=(200e9, 100e9), poisson_ratio=(0.3, 0.2), asperity_height=50e-9, asperity_stiffness=0.1
-    )
+    layer = dict(asperity_height=50e-9, asperity_stiffness=0.1, asperity_hardness=None, adsorbed_film=0.0)
+    contact = SimpleNamespace(youngs_modulus=(200e9, 100e9), poisson_ratio=(0.3, 0.2), **layer)
     modulus = 1.0 / (0.91 / 200e9 + 0.96 / 100e9)
     pressure = 0.1 * modulus * np.exp(-2.0 * layer_film(contact) / 50e-9)
     assert pressure == pytest.approx(10e6, rel=1e-9)
