@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.life.history import LifeHistory
     from ehlpetsc.run.ranks import PollingStop
-    from ehlpetsc.run.series import Member
 
 
 WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
@@ -67,21 +66,16 @@ def _number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _stem(output: Path) -> Path:
-    return output.with_name(output.name.removesuffix(".h5").removesuffix(".life") + ".h5")
-
-
 def run_regimes(
     case: Case,
     output: str | Path | None = None,
     *,
-    overwrite: bool = False,
-    unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
     stop: Any = None,
+    **options: bool,
 ) -> Path:
-    """Run a life for each member of a case's series.
+    """Run a life for each member of a case's series; returns the index.
 
     Parameters
     ----------
@@ -89,16 +83,12 @@ def run_regimes(
         With tables [life] and [series].
     output
         Its stem begins the files' names; by default ``CASE.life.h5``.
-    overwrite, unresolved
-        As of `run_life`.
     comm
         Each of its ranks solves a life at a time.
     show
         Receives a line for each completed life, on the first rank.
-
-    Returns
-    -------
-    The index.
+    options
+        `overwrite` and `unresolved` of `run_life`.
 
     Raises
     ------
@@ -109,83 +99,65 @@ def run_regimes(
     need_solver()
     from mpi4py import MPI
 
-    from ehlpetsc.run.ranks import on_root
+    from ehlpetsc.case.combinations import keys_of
+    from ehlpetsc.life.checks import check_case
+    from ehlpetsc.results.index import Index
+    from ehlpetsc.run.ranks import WorkQueue, on_root
+    from ehlpetsc.run.series import members_of
 
     import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they split
-    comm = comm or MPI.COMM_SELF
-    lives = _Lives(
-        case, Path(f"{Path(case.path).stem}.life.h5" if output is None else output), overwrite, unresolved
+    comm, path = comm or MPI.COMM_SELF, Path(f"{Path(case.path).stem}.h5" if output is None else output)
+    stem = path.with_name(path.name.removesuffix(".h5").removesuffix(".life") + ".h5")
+    members = members_of(case, stem)
+    for member in members:
+        check_case(member.case)
+    files = [member.output.with_name(f"{member.output.stem}.life.h5") for member in members]
+    keys = keys_of(tomllib.loads(case.text)["series"])
+    index = Index(stem.with_suffix(".life.series.json"), case, "members", keys=keys)
+    index.begin(
+        {"value": member.value, "file": file.name, "state": "waiting"}
+        for member, file in zip(members, files, strict=True)
     )
-    on_root(comm, lives.index.acquire, False)
+
+    def record(report: tuple[int, dict]) -> None:
+        number, row = report
+        index.rows[number] |= row
+        with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
+            index.write()
+        count = sum(row["state"] != "waiting" for row in index.rows)
+        if show:
+            show(f"{count} of {len(members)}: {members[number].name}: {_words(index.rows[number])}")
+
+    def run(number: int, group: MPI.Comm, stop: PollingStop) -> dict:
+        return _run_life(members[number].case, files[number], comm=group, stop=stop, **options)
+
+    on_root(comm, index.acquire, False)
     try:
-        return lives.run(comm, show or (lambda text: None), stop)
+        on_root(comm, index.write)
+        queue = WorkQueue(comm, 1, range(len(members)), record)
+        states = queue.compute(run, stop, lambda: {row["state"] for row in index.rows})
+        on_root(comm, index.write)
     finally:
-        lives.index.release()
+        index.release()
+    if {"waiting", "stopped"} & states:
+        raise Stopped
+    return index.path
 
 
-class _Lives:
-    def __init__(self, case: Case, output: Path, overwrite: bool, unresolved: bool) -> None:
-        from ehlpetsc.case.combinations import keys_of
-        from ehlpetsc.life.checks import check_case
-        from ehlpetsc.results.index import Index
-        from ehlpetsc.run.series import members_of
+def _run_life(case: Case, path: Path, **options: Any) -> dict:
+    """Run the life of a member; returns its state and figures."""
+    from ehlpetsc.life.driver import run_life
+    from ehlpetsc.life.history import read_life
 
-        if case.life is None:
-            raise CaseError([f"{case.path}: no [life] table; allowed: a case with one"])
-        keys = keys_of(tomllib.loads(case.text)["series"])
-        self.overwrite, self.unresolved = overwrite, unresolved
-        self.index = Index(_stem(output).with_suffix(".life.series.json"), case, "members", keys=keys)
-        self.members = members_of(case, _stem(output))
-        for member in self.members:
-            check_case(member.case)
-        self.index.begin(
-            {"value": member.value, "file": self.file(member).name, "state": "waiting"}
-            for member in self.members
-        )
-
-    @staticmethod
-    def file(member: Member) -> Path:
-        return member.output.with_name(f"{member.output.stem}.life.h5")
-
-    def run(self, comm: MPI.Comm, show: Callable[[str], None], stop: Any) -> Path:
-        from ehlpetsc.run.ranks import WorkQueue, on_root
-
-        rows = self.index.rows
-
-        def record(report: tuple[int, dict]) -> None:
-            number, row = report
-            rows[number] |= row
-            with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
-                self.index.write()
-            count = sum(row["state"] != "waiting" for row in rows)
-            show(f"{count} of {len(rows)}: {self.members[number].name}: {_words(rows[number])}")
-
-        on_root(comm, self.index.write)
-        queue = WorkQueue(comm, 1, range(len(self.members)), record)
-        states = queue.compute(self._run_life, stop, lambda: {row["state"] for row in rows})
-        on_root(comm, self.index.write)
-        if {"waiting", "stopped"} & states:
-            raise Stopped
-        return self.index.path
-
-    def _run_life(self, number: int, group: MPI.Comm, stop: PollingStop) -> dict:
-        from ehlpetsc.life.driver import run_life
-        from ehlpetsc.life.history import read_life
-
-        member = self.members[number]
-        path = self.file(member)
-        try:
-            life = run_life(
-                member.case, path, overwrite=self.overwrite, unresolved=self.unresolved, comm=group, stop=stop
-            )
-            return {"state": "done"} | outcome(life)
-        except Stopped:
-            return {"state": "stopped"}
-        except NotConverged as error:
-            state = {"state": "not converged", "reason": str(error)}
-            return state | (outcome(read_life(path)) if path.exists() else {})
-        except (CaseError, OutputError, PostError, UsageError) as error:
-            return {"state": "bad input", "reason": str(error)}
+    try:
+        return {"state": "done"} | outcome(run_life(case, path, **options))
+    except Stopped:
+        return {"state": "stopped"}
+    except NotConverged as error:
+        state = {"state": "not converged", "reason": str(error)}
+        return state | (outcome(read_life(path)) if path.exists() else {})
+    except (CaseError, OutputError, PostError, UsageError) as error:
+        return {"state": "bad input", "reason": str(error)}
 
 
 def _words(row: dict) -> str:
