@@ -108,19 +108,6 @@ def test_contacts_of_a_layer_begin_at_ten_megapascals():
     assert pressure == pytest.approx(10e6, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    "film, jumps",
-    [
-        ([4, 3, 2, 1, 0], [0, 0, 0]),  # a straight line
-        ([3, 2, 1, 0.5, 0], [0, -0.5, 0]),  # shallower at the end
-        ([4, 3, 2.5, 0, 0], [-0.5, 4]),  # half the slope, then all at once
-    ],
-)
-def test_slope_jumps_at_contact(film, jumps):
-    values = np.arange(len(film), 0, -1.0)
-    np.testing.assert_allclose(collisions.slope_jumps(values, film, film.index(0)), jumps, atol=1e-12)
-
-
 def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
     dips = [(-0.02, 20e-6, 6e-6, 0.3001), (0.02, 20e-6, 6e-6, 0.3001)]
     at = SPEED * 20e-6 / A

@@ -25,38 +25,28 @@ disable-component-update disable-sync window-size=1200,2400 virtual-time-budget=
 VISITOR = (Path(__file__).parents[1] / "data" / "report_visitor.js").read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module")
-def found(tmp_path_factory):
+@pytest.fixture
+def found(tmp_path):
     """What a visitor sees who slides, clicks into the map and zooms, without a network."""
-    folder = tmp_path_factory.mktemp("report")
-    path = with_solids(make_result(folder / "r.h5"))
+    path = with_solids(make_result(tmp_path / "r.h5"))
     assert plot.main([str(path), "--report"]) == 0
     page = path.with_suffix(".html")
     text = page.read_text(encoding="utf-8").replace("<head>", f"<head><script>{VISITOR}</script>")
     page.write_text(text, encoding="utf-8")
-    options = [*FLAGS, f"user-data-dir={folder / 'profile'}", "host-resolver-rules=MAP * ~NOTFOUND"]
+    options = [*FLAGS, f"user-data-dir={tmp_path / 'profile'}", "host-resolver-rules=MAP * ~NOTFOUND"]
     command = [BROWSER, *(f"--{option}" for option in options), page.as_uri()]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     (answer,) = re.findall("<output>(.*?)</output>", done.stdout)
     return json.loads(answer)
 
 
-def test_report_opens_at_the_highest_pressure(found):
+def test_slider_map_and_zoom_of_the_page(found):
     assert found["errors"] == []
     assert found["first"]["pressure"] == pytest.approx(1.4)
     assert found["first"]["when"] == "step 0, 0 µs, travel 0.00 a"
-
-
-def test_slider_selects_the_instant_and_marks_the_map(found):
     assert found["second"]["when"].startswith("step 1, ") and found["second"]["line"] == 1.0
     assert found["second"]["pressure"] < found["first"]["pressure"]
-
-
-def test_click_in_the_map_selects_the_instant(found):
     assert found["clicked"]["when"].startswith("step 20, ") and found["clicked"]["line"] == 20.0
-
-
-def test_zoom_is_shared_by_time_charts(found):
     (low, high), (first, second) = found["zoomed"], found["linked"]
     assert -1.0 < low < -0.5 < 0.5 < high < 1.0  # the middle half of -1.6 to 1.4
     assert first == second and first == pytest.approx([10.0, 30.0], abs=1.0)
