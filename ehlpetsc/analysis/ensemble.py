@@ -70,29 +70,21 @@ def run_scalars(result: Result) -> dict[str, float]:
         reduce = EXTREMES.get(name)
         scalars[name] = float(reduce(values)) if reduce else mean(result, name, weights)
     post = damage_beside(result)
-    return scalars | _damage(post) | _flash_temperatures(post) if post else scalars
+    return scalars | _damage(post) if post else scalars
 
 
 def _damage(post: PostResult) -> dict[str, float]:
-    """Quantiles of damage over the points of each surface, at every depth."""
-    quantiles = {}
+    """Quantiles of damage, maximum and median flash temperature [K], over the points of each surface."""
+    found = {}
     for surface in post.surfaces:
         for depth, values in zip(post.z, post.passed(surface), strict=True):
             for quantile in QUANTILES if values.size else ():
-                name = f"damage_{surface} z/a={depth:g} q={quantile:g}"
-                quantiles[name] = float(np.quantile(values, quantile))
-    return quantiles
-
-
-def _flash_temperatures(post: PostResult) -> dict[str, float]:
-    """Maximum and median flash temperature [K] over the points of each surface; {} without heat."""
-    scalars = {}
-    for side, temperatures in post.temperatures.items():
-        flash = temperatures.flash[np.isfinite(temperatures.flash)]
-        if flash.size:
-            scalars[f"flash_temperature_{side} largest"] = float(flash.max())
-            scalars[f"flash_temperature_{side} q=0.5"] = float(np.median(flash))
-    return scalars
+                found[f"damage_{surface} z/a={depth:g} q={quantile:g}"] = float(np.quantile(values, quantile))
+        flash = post.temperatures[surface].flash if surface in post.temperatures else np.array([np.nan])
+        if np.isfinite(flash).any():
+            found[f"flash_temperature_{surface} largest"] = float(np.nanmax(flash))
+            found[f"flash_temperature_{surface} q=0.5"] = float(np.nanmedian(flash))
+    return found
 
 
 def _units(name: str) -> str:

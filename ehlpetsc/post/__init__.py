@@ -1,34 +1,12 @@
 """Stresses, fatigue damage and its statistics from result files or arrays; needs no PETSc and no MPI."""
 
-from importlib import import_module
+# ruff: noqa: F401 - the interface
 
-_HOMES = {
-    "Criteria": "criteria.laws",
-    "Damage": "fatigue.accumulate",
-    "Material": "fatigue.strain_life",
-    "PlaneDamage": "criteria.critical_plane",
-    "WeibullFit": "fatigue.statistics",
-    "critical_plane": "criteria.critical_plane",
-    "cycles_to_failure": "fatigue.strain_life",
-    "damage": "fatigue.accumulate",
-    "dang_van": "criteria.dang_van",
-    "equivalent_range": "fatigue.strain_life",
-    "out_of_plane": "stresses.half_plane",
-    "rainflow": "fatigue.cycles",
-    "strain_range": "fatigue.strain_life",
-    "stress": "stresses.half_plane",
-    "von_mises": "stresses.half_plane",
-    "weibull_fit": "fatigue.statistics",
-}
-__all__ = list(_HOMES)
-
-
-def __getattr__(name: str) -> object:
-    """Import at first use, so that the command can handle a signal before numba is loaded."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+from ehlpetsc.post.criteria.critical_plane import PlaneDamage, critical_plane
+from ehlpetsc.post.criteria.dang_van import dang_van
+from ehlpetsc.post.criteria.laws import Criteria
+from ehlpetsc.post.fatigue.accumulate import Damage, damage
+from ehlpetsc.post.fatigue.cycles import rainflow
+from ehlpetsc.post.fatigue.statistics import WeibullFit, weibull_fit
+from ehlpetsc.post.fatigue.strain_life import Material, cycles_to_failure, equivalent_range, strain_range
+from ehlpetsc.post.stresses.half_plane import out_of_plane, stress, von_mises

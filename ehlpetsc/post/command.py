@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -27,7 +26,6 @@ DESCRIPTION = (
     "Stress histories of body points, rainflow cycles, fatigue damage and its statistics from result files. "
     "Material and depths come from the case in the file, table [post]."
 )
-SEVERITY = (ExitStatus.DONE, ExitStatus.BAD_INPUT, ExitStatus.BUG, ExitStatus.STOPPED)
 PASSES_INDEX = ".passes.json"
 
 
@@ -71,19 +69,16 @@ def main(words: Sequence[str]) -> int:
         return ExitStatus.BAD_INPUT
     except UsageError as fault:
         parser.error(str(fault))
-    statuses, done = [], []
-    for path in files:
-        statuses.append(_status(partial(_process, path, arguments, files), path, _output(path, arguments)))
-        if statuses[-1] == ExitStatus.STOPPED:
-            break
-        done += [path] if statuses[-1] == ExitStatus.DONE else []
-    else:
-        for index in [path for path in arguments.results if done and path.endswith(PASSES_INDEX)]:
-            statuses.append(_status(partial(_print_passes, index), index, index))
-        if arguments.pictures is not None and done:
-            work = partial(_draw, done, arguments)
-            statuses.append(_status(work, "pictures", arguments.pictures or "pictures"))
-    return max(statuses, key=SEVERITY.index)
+    statuses = [
+        _status(partial(_process, path, arguments, files), path, _output(path, arguments)) for path in files
+    ]
+    done = [path for path, status in zip(files, statuses, strict=True) if status == ExitStatus.DONE]
+    for index in [path for path in arguments.results if done and path.endswith(PASSES_INDEX)]:
+        statuses.append(_status(partial(_print_passes, index), index, index))
+    if arguments.pictures is not None and done:
+        work = partial(_draw, done, arguments)
+        statuses.append(_status(work, "pictures", arguments.pictures or "pictures"))
+    return max(statuses)
 
 
 def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
@@ -111,22 +106,18 @@ def _status(work: Callable[[], None], path: str, output: str) -> int:
         for line in str(fault).splitlines():
             _say(line if line.startswith(str(path)) else f"{path}: {line}")
         return ExitStatus.BAD_INPUT
-    except BrokenPipeError:  # closed by the reader, as `| head`
-        sys.stdout = open(os.devnull, "w")
-        return ExitStatus.STOPPED
+    except BrokenPipeError:
+        raise
     except OSError as fault:
         _say(not_written(fault, fault.filename or output))
         return ExitStatus.BAD_INPUT
-    except KeyboardInterrupt:
-        _say(f"interrupted: {output} is not written")
-        return ExitStatus.STOPPED
     return ExitStatus.DONE
 
 
-def _progress(done: int, total: int) -> None:
+def _progress(text: str) -> None:
     """Rewrite the progress in place, on terminals only."""
     if sys.stderr.isatty():
-        print(f"\r{done} of {total} depths", end="\n" * (done >= total), file=sys.stderr, flush=True)
+        print(text, end="\r", file=sys.stderr, flush=True)
 
 
 def _output(path: str, chosen: argparse.Namespace) -> str:

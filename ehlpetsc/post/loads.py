@@ -91,9 +91,8 @@ class Loads:
                     f'no dataset {name} of frames: list "{name}" in output.fields of the case, run it again'
                 )
         if self.time.size < 2 or self.case.time is None:
-            stored = f"holds {self.time.size} stored frame{'s' * (self.time.size != 1)}"
             raise PostError(
-                f"it {stored if self.case.time else 'is a steady run'}: damage needs the stress history, "
+                f"stored frames: {self.time.size}; damage needs the stress history of a run over time, "
                 "a [time] section and output.every = 1"
             )
 

@@ -66,11 +66,11 @@ class Job(NamedTuple):
 def run(
     job: Job,
     report: Callable[[str], None] = lambda text: None,
-    progress: Callable[[int, int], None] = lambda done, of: None,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> None:
     """Compute damage and statistics of one result file and write them to `job.output`, replacing it.
 
-    `report` is called with warnings and notes, `progress` with the finished and all depths of surfaces.
+    `report` is called with warnings and notes, `progress` with the finished part.
 
     Raises
     ------
@@ -90,15 +90,8 @@ def run(
         for note in _notes(job, loads):
             report(note)
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.settings.depths}
-        done = 0
-
-        def advance(count: int) -> None:
-            nonlocal done
-            done += count
-            progress(done, len(prepared.motions) * len(prepared.settings.depths))
-
         for surface in prepared.motions:
-            datasets |= solve(prepared, surface, job.counting, job.criteria, job.jobs, advance)
+            datasets |= solve(prepared, surface, job.counting, job.criteria, job.jobs, progress)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
         attributes = attributes_of(prepared) | job.counting._asdict()
         attributes |= {"settings": "\n".join(job.settings), "fingerprint": identity}
@@ -130,11 +123,11 @@ def solve(
     counting: Counting,
     criteria: tuple[str, ...] = (),
     jobs: int = 1,
-    advance: Callable[[int], None] = lambda count: None,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> dict[str, np.ndarray]:
     """Damage, cycles, peak range and criteria of a surface (depths, points) by name in the file.
 
-    nan for incomplete points. `jobs` is the number of threads, `advance` is called with finished depths.
+    nan for incomplete points. `jobs` is the number of threads.
     """
     depths = prepared.settings.depths
     blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(jobs, len(depths))))
@@ -142,7 +135,7 @@ def solve(
     found = []
     for values in ThreadPoolExecutor(jobs).map(work, blocks) if jobs > 1 else map(work, blocks):
         found.append(values)
-        advance(len(values[f"damage/{surface}"]))
+        progress(f"surface {surface}: {len(found)} of {len(blocks)} layers")
     return {name: np.concatenate([values[name] for values in found]) for name in found[0]}
 
 

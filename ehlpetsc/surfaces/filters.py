@@ -7,8 +7,6 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # relative rounding of the abscissas of equally spaced points in a file
-MAX_EXACT_LENGTH = 100_000  # points: longer transforms are padded to a fast length
-MIN_PADDING = 10_000  # points
 MIN_SPACINGS = 2  # of the shortest wave in a profile
 MIN_THINNED_POINTS = 200_000  # points; a spline through fewer takes negligible time
 MAX_POINTS_PER_CELL = 16  # points per cell of the mesh, or per shortest cut-off
@@ -53,7 +51,7 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
     ProfileError
         x is not equally spaced, or the cut-off is longer than the profile or shorter than its waves.
     """
-    from scipy.fft import dct, idct, next_fast_len
+    from scipy.fft import dct, idct
 
     length, step = x[-1] - x[0], (x[-1] - x[0]) / (x.size - 1)
     if np.ptp(np.diff(x)) > 2 * SPACING_TOLERANCE * step:
@@ -66,16 +64,9 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
             f"{key} = {cutoff:g} m; allowed: at least {MIN_SPACINGS} spacings of its points, {limit:g} m; "
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
-    size, beyond = (x.size, int(2.0 * cutoff / step) + MIN_PADDING)  # the weights of the filter vanish beyond
-    if (
-        size > MAX_EXACT_LENGTH and beyond < size
-    ):  # lengths with a large prime factor cost six times the memory
-        size = next_fast_len(size - 1 + beyond, real=True) + 1
-        size = size if size - x.size < x.size else x.size
-    spectrum = dct(np.concatenate([z, z[-2 : -2 - (size - x.size) : -1]]), type=1, overwrite_x=True)
-    exponent = np.arange(size) * (cutoff / (2.0 * step * (size - 1)))
-    spectrum *= np.exp2(-np.square(exponent, out=exponent), out=exponent)
-    return idct(spectrum, type=1, overwrite_x=True)[: x.size]
+    spectrum = dct(z, type=1)
+    exponent = np.arange(z.size) * (cutoff / (2.0 * length))
+    return idct(spectrum * np.exp2(-np.square(exponent)), type=1)
 
 
 def thinned(X: np.ndarray, z: np.ndarray, shortest: float) -> tuple[np.ndarray, np.ndarray]:

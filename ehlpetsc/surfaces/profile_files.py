@@ -102,35 +102,24 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
             f'columns; write unit = "{named[-1]}" for the heights'
             + (f' and x_unit = "{named[0]}"' if named[0] != named[-1] else "")
         )
-    factor = UNITS[layout.unit or "m"]
-    chosen = _chosen(columns, layout)
-    if len(chosen) == 1:
-        return layout.spacing * np.arange(chosen[0].size), factor * chosen[0]
-    return UNITS[layout.x_unit or layout.unit or "m"] * chosen[0], factor * chosen[1]
-
-
-def _chosen(columns: np.ndarray, layout: Layout) -> np.ndarray:
-    """Columns of x and z, or of z alone."""
     count = len(columns)
-    if layout.columns is not None:
-        if max(layout.columns) > count:
-            raise ProfileError(f"columns = {list(layout.columns)}: the file has {count}")
-        chosen = columns[[c - 1 for c in layout.columns]]
-    elif count > 2:
+    chosen = layout.columns or tuple(range(1, count + 1))
+    if max(chosen) > count:
+        raise ProfileError(f"columns = {list(chosen)}: the file has {count}")
+    if len(chosen) > 2:
         raise ProfileError(
             f"{count} columns; write columns = [1, 2] for x and z, counted from 1, or columns = [2] and "
             "spacing for heights alone; where commas are decimal, semicolons or tabs must part the numbers"
         )
-    else:
-        chosen = columns
-    if len(chosen) == 1 and layout.spacing is None:
-        raise ProfileError("heights alone: write spacing = distance of the points in m")
-    if len(chosen) == 2 and layout.spacing is not None:
+    if (len(chosen) == 1) != (layout.spacing is not None):
         raise ProfileError(
-            "spacing is given, but x too: leave spacing out, or write columns = [2] for the heights alone, "
-            'or decimal = "," where the comma is decimal'
+            "heights alone need spacing = distance of the points in m, x and z none: write columns = [2] "
+            'for the heights alone, or decimal = "," where the comma is decimal'
         )
-    return chosen
+    z = UNITS[layout.unit or "m"] * columns[chosen[-1] - 1]
+    if len(chosen) == 1:
+        return layout.spacing * np.arange(z.size), z
+    return UNITS[layout.x_unit or layout.unit or "m"] * columns[chosen[0] - 1], z
 
 
 def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:

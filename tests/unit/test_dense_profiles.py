@@ -60,16 +60,6 @@ def test_levelling_of_a_dense_profile_removes_a_line_only():
     np.testing.assert_allclose(filters.levelled(X, z), z - fit, atol=1e-20)
 
 
-@pytest.mark.parametrize("cutoff", [2e-7, 1e-6, 1e-5, 3e-3])
-def test_filter_of_long_profiles_equals_that_of_short_ones(monkeypatch, cutoff):
-    """The length is brought to one without large prime factors, mirrored points behind the end."""
-    z = np.random.default_rng(1).normal(size=100_004)
-    X = 1e-7 * np.arange(z.size)
-    long = filters.low_pass(X, z, cutoff)
-    monkeypatch.setattr(filters, "MAX_EXACT_LENGTH", 10**9)
-    np.testing.assert_allclose(long, filters.low_pass(X, z, cutoff), rtol=0.0, atol=1e-7)
-
-
 def dense(folder, n, step):
     X = step * np.arange(n)
     z = 3e-7 * np.sin(2 * np.pi * X / 1e-4) + 2e-9 * np.random.default_rng(0).normal(size=n)

@@ -171,19 +171,13 @@ NEGLIGIBLE_RANGE = (
 
 
 @compiled(error_model="python", nogil=True)
-def _sum(weights: tuple, scale: float, offset: float, stress: np.ndarray, out: np.ndarray) -> None:
-    a, b, c = weights
-    for k in range(stress.shape[1]):
-        value = a * float(stress[0, k]) + b * float(stress[1, k]) + c * float(stress[2, k])
-        out[k] = offset + scale * value
-
-
-@compiled(error_model="python", nogil=True)
 def _on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
     """Fill in the shear stress, as an equivalent stress, and the normal stress."""
-    (theta, phi, psi), nu = angles, law[0]
-    _sum(shear_weights(theta, phi, psi, nu), 3**0.5, 0.0, stress, work[2])
-    _sum(normal_weights(theta, phi, nu), 1.0, law[1] * residual_share(theta, phi), stress, work[3])
+    (theta, phi, psi), nu, size = angles, law[0], stress.shape[1]
+    a, b, c = shear_weights(theta, phi, psi, nu)
+    work[2][:size] = 3**0.5 * (a * stress[0] + b * stress[1] + c * stress[2])
+    a, b, c = normal_weights(theta, phi, nu)
+    work[3][:size] = law[1] * residual_share(theta, phi) + (a * stress[0] + b * stress[1] + c * stress[2])
 
 
 @compiled(error_model="python", nogil=True)

@@ -107,31 +107,24 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 @compiled(error_model="python", nogil=True)
-def utilisation(
-    stress: np.ndarray, points: np.ndarray, nu: float, residual: float, slope: float, limit: float
-) -> float:
-    """U of a history (3, samples) with its `points` of :mod:`ehlpetsc.post.fatigue.cycles`; `slope` is a."""
-    centre, _ = smallest_ball(points)
-    root, largest = sqrt(3.0), 0.0
-    for k in range(stress.shape[1]):
-        u = abs(points[0, k] - centre[0])
-        d, t = (points[1, k] - centre[1]) / root, (points[2, k] - centre[2]) / root
-        inside = sqrt(d * d + t * t)  # the deviator is (u/3 + d, -2u/3, u/3 - d) and t
-        shear = max(inside, (u + inside) / 2)
-        hydrostatic = ((1 + nu) * (float(stress[0, k]) + float(stress[1, k])) + 2 * residual) / 3
-        largest = max(largest, shear + slope * max(hydrostatic, 0.0))
-    return largest / limit
-
-
-@compiled(error_model="python", nogil=True)
 def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, out: np.ndarray) -> None:
-    stress, lengths = histories
+    """Set out (points, 1) to U of histories (points, 3, samples) with their lengths; limits a and tau_w."""
+    stresses, lengths = histories
     slope, limit = limits
-    points = np.empty((3, stress.shape[2]))
-    for p in range(stress.shape[0]):
-        history = stress[p, :, : lengths[p]].copy()
-        equivalent_points(history, nu, points)
-        out[p, 0] = utilisation(history, points[:, : lengths[p]], nu, residual, slope, limit)
+    root = sqrt(3.0)
+    for p in range(stresses.shape[0]):
+        stress = stresses[p, :, : lengths[p]].copy()
+        points = np.empty(stress.shape)
+        equivalent_points(stress, nu, points)
+        centre, _ = smallest_ball(points)
+        largest = 0.0
+        for k in range(stress.shape[1]):
+            u = abs(points[0, k] - centre[0])
+            d, t = (points[1, k] - centre[1]) / root, (points[2, k] - centre[2]) / root
+            inside = sqrt(d * d + t * t)  # the deviator is (u/3 + d, -2u/3, u/3 - d) and t
+            hydrostatic = ((1 + nu) * (stress[0, k] + stress[1, k]) + 2 * residual) / 3
+            largest = max(largest, max(inside, (u + inside) / 2) + slope * max(hydrostatic, 0.0))
+        out[p, 0] = largest / limit
 
 
 class LimitCounter:

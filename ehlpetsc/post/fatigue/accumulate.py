@@ -82,11 +82,6 @@ _squared = compiled(von_mises_squared, error_model="python", nogil=True)
 
 
 @compiled(error_model="python", nogil=True)
-def _squared_range(dsx: float, dsz: float, dtxz: float, nu: float) -> float:
-    return _squared(dsx, nu * (dsx + dsz), dsz, dtxz)
-
-
-@compiled(error_model="python", nogil=True)
 def _sum_cycles(
     stress: np.ndarray, nu: float, counts: tuple, cycles: np.ndarray, law: tuple
 ) -> tuple[float, float, float]:
@@ -97,7 +92,8 @@ def _sum_cycles(
     for k in range(n):
         i, j = cycles[k, 0], cycles[k, 1]
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
-        squared = _squared_range(xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i]), nu)
+        dsx, dsz = xj - xi, zj - zi
+        squared = _squared(dsx, nu * (dsx + dsz), dsz, float(stress[2, j]) - float(stress[2, i]))
         if squared <= 0:
             continue
         if morrow:
