@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from support.made_loads import Scene, write
 
-from ehlpetsc.case.loading import load
 from ehlpetsc.post import Material, cycles_to_failure, damage, strain_range
 from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.cycles import loop_of
@@ -81,15 +80,6 @@ def test_loop_of_an_inner_cycle_and_of_the_whole():
     assert loop_of(series, 10, 8, 0, True)[1] == 10
     assert loop_of(series, 10, 9, 1, True)[1] == 9  # round the end: all but 12
     assert loop_of(series, 10, 0, 1, False) == (0, 8)
-
-
-def test_neuber_rule_is_the_default():
-    """Of the function, of a case and of the command; the case of the paper keeps the direct entry."""
-    wave = 1e9 * np.sin(np.linspace(0, 2 * np.pi, 41))
-    found = [damage(0 * wave, wave, 0 * wave, STEEL, **rule).damage for rule in ({}, {"strain": "neuber"})]
-    assert found[0] == found[1] < 0.5 * damage(0 * wave, wave, 0 * wave, STEEL, strain="direct").damage
-    assert load("cases/running_in.toml").post.strain == "neuber"
-    assert load("cases/table1_damage.toml").post.strain == "direct"
 
 
 def test_command_overrides_rule_and_steel(tmp_path, capsys):

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from scipy.stats import spearmanr
-from support import ROOT, is_line_with, refused
+from support import is_line_with, refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.pictures import damage as gallery
@@ -60,17 +60,6 @@ def test_result_has_the_fixed_names(result, scene, capsys):
         assert np.isnan(file["damage/2"][:, ~passed]).all() and np.isfinite(file["damage/2"][:, passed]).all()
         s = file["damage/s"][passed]
         assert s[-1] <= scene.x[0] + 1e-12 and s[0] + scene.u2 * scene.time[-1] >= scene.x[-1] - 1e-12
-
-
-@pytest.mark.slow
-def test_post_imports_no_petsc_mpi_solver_or_matplotlib(result):
-    code = (
-        f"import sys; from ehlpetsc.post.command import main; assert main([{str(result)!r}]) == 0; "
-        "assert 'matplotlib' not in sys.modules; import ehlpetsc.pictures.damage; "
-        f"bad = [m for m in sys.modules if m.startswith({FORBIDDEN!r})]; "
-        "assert not bad, bad"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True)
 
 
 def arrays(path):

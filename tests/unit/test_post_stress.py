@@ -196,18 +196,3 @@ def test_batches_and_shapes():
     single = stress(x, 0.2, p[1, 0], p[1, 0], 0.3)
     for many, one in zip(whole, single, strict=True):
         assert many[1, 0, 1] == pytest.approx(one, abs=1e-13)
-
-
-@pytest.mark.parametrize(
-    "change, text",
-    [
-        ({"x": [0.0, 1.0, 3.0]}, "uniformly"),
-        ({"z": -0.1}, "depths"),
-        ({"pressure": [1.0, 2.0]}, "^pressure and shear "),
-        ({"poisson_ratio": 0.6}, "Poisson"),
-    ],
-)
-def test_faults_are_named(change, text):
-    given = {"x": [0.0, 1.0, 2.0], "z": 0.1, "pressure": [0.0, 1.0, 0.0], "shear": None, "poisson_ratio": 0.3}
-    with pytest.raises(ValueError, match=text):
-        stress(**(given | change))
