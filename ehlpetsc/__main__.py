@@ -169,7 +169,7 @@ def _after_error(error: BaseException, stop: EarlyStop) -> int:
     """Report an error, or the stop that caused it; returns the exit status."""
     if stop.is_requested or isinstance(error, KeyboardInterrupt):  # an import may have raised another error
         if packages.first_rank():
-            print("ehlpetsc: stopped; nothing was written", file=sys.stderr)
+            print("ehlpetsc: stopped; files written before are complete", file=sys.stderr)
         return ExitStatus.STOPPED
     traceback.print_exception(error)
     sys.stdout.flush()

@@ -14,11 +14,12 @@ SECTIONS = {
         "cases/gears",
         "cases/life",
         "ehlpetsc/run/README",
+        "cases/own_laws",
         "ehlpetsc/results/README",
         "ehlpetsc/post/README",
         "cases/profiles/README",
     ),
-    "Reference": ("cases/keys",),
+    "Reference": ("cases/keys", ".github/site/python"),
     "Theory": (
         "ehlpetsc/model",
         "ehlpetsc/nonlinear/README",
@@ -58,7 +59,8 @@ mathjax2_config = {
 project, author, release = "ehlpetsc", "", __version__
 html_title, html_theme, html_show_copyright, html_show_sphinx = f"ehlpetsc {release}", "furo", False, False
 html_copy_source = html_show_sourcelink = False
-extensions = ["myst_parser", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+autodoc_typehints, autodoc_member_order = "signature", "bysource"
 root_doc = FRONT
 include_patterns = [f"{page}.md" for page in PAGES]
 myst_enable_extensions = ["dollarmath"]

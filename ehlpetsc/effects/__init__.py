@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.environment import of_user
 from ehlpetsc.effects.heat.effect import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
 from ehlpetsc.effects.roughness import RoughSurfaces
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from ehlpetsc.effects.effect import Effect, Scene
 
 
-EFFECTS = (RoughSurfaces, PlasticDeformation, Wear, Heat)
+EFFECTS = (RoughSurfaces, PlasticDeformation, Wear, Heat, *of_user("EFFECTS"))
 
 
 def effects_of(scene: Scene, records: Collection[str] = ()) -> list[Effect]:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.base.declarations import Key, Refused
+from ehlpetsc.base.environment import of_user
 
 SLOTS = 10  # constants that compiled loops get of any law
 KELVIN = 273.15  # K at 0 degrees Celsius
@@ -420,6 +421,7 @@ LAWS = {
         _complete_yasutomi,
         of_temperature=True,
     ),
+    **dict(of_user("LAWS")),
 }
 _ln_viscosity = switched(LAWS, 2)
 

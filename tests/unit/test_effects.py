@@ -1,5 +1,7 @@
 """An effect with a scalar of state and a key is one file and one line; effects on oil and friction."""
 
+import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,69 +15,46 @@ from support.running import BARE, SCRIPT
 
 from ehlpetsc.effects.effect import Effect
 
-EFFECT = '''
-from dataclasses import replace
-from typing import NamedTuple
-
-from ehlpetsc.effects.effect import Effect
-from ehlpetsc.base.declarations import KeyTable, Required
-from ehlpetsc.base.declarations import StepScalar
+PAGE = CASES / "own_laws.md"
 
 
-class Supply(NamedTuple):
-    film: float
-
-
-class Starving(Effect):
-    """Oil film at the inlet that each half-width of travel makes thinner by a fraction."""
-
-    name = "starving"
-    record = Supply
-    table = KeyTable("starving", "left out: constant supply", {"loss": Required("in a half-width", "", 0, 1)})
-    scalars = {"supply": StepScalar("m", "oil film at the inlet", over_run="last")}
-
-    def start(self, before=None):
-        return Supply(0.15e-6)
-
-    def inputs(self, record, inputs, step):
-        return replace(inputs, inlet_film=self.after(record, step) / self.scene.scales.h)
-
-    def accept(self, record, solution, step):
-        return Supply(self.after(record, step))
-
-    def after(self, record, step):
-        travelled = abs(step.conditions.entrainment) * (step.dt or 0.0) / self.scene.scales.a
-        return record.film * (1.0 - self.scene.case.starving.loss) ** travelled
-
-    def observe(self, record, solution, step):
-        return {}, {"supply": record.film}
-'''
-RUN = """
-import ehlpetsc.effects as effects
-from starving import Starving
-effects.EFFECTS = (*effects.EFFECTS, Starving)
-import sys, ehlpetsc
-from ehlpetsc.case import key_page
-assert "in a half-width" in key_page.keys()
-case = ehlpetsc.load(sys.argv[1], {"starving": {"loss": 0.3}, "time": {"travel": 2.25, "courant": 0.5},
-    "mesh.points_per_half_width": 32, "mesh.inlet": -2.0})
-result = ehlpetsc.solve(case, output="starved.h5")
-supply, film = result["steps/supply"], result["steps/film_central"]
-print(supply[0], supply[-1] / supply[0], film[-1] / film[0])
-"""
-
-
-def test_an_effect_is_one_file_and_one_line(tmp_path):
-    (tmp_path / "starving.py").write_text(EFFECT)
-    path = BARE | SCRIPT
-    path["PYTHONPATH"] = f"{tmp_path}:{path['PYTHONPATH']}" if path.get("PYTHONPATH") else str(tmp_path)
-    command = [sys.executable, "-c", RUN, str(CASES / "table1_smooth.toml")]
-    done = subprocess.run(command, cwd=tmp_path, env=path, capture_output=True, text=True)
+def call(folder, *words, **names):
+    """Output of Python in a folder with the code of the page."""
+    codes = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    for name, text in zip(("my_laws", "my_effects", "script"), codes, strict=True):
+        law = '"fluid.law": "saturating",'
+        (folder / f"{name}.py").write_text(text.replace(law, "") if name == "script" else text)
+    shutil.copy(CASES / "table1_smooth.toml", folder)
+    command = [sys.executable, *words]
+    variables = BARE | SCRIPT | names | {"XDG_CACHE_HOME": str(folder)}
+    done = subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    first, left, film = map(float, done.stdout.split()[-3:])
-    assert first == pytest.approx(0.15e-6)
-    assert left == pytest.approx(0.7**2, rel=0.05)  # the faster surface travels 1.125 as far
+    return done.stdout
+
+
+def test_effect_of_the_page_works_as_it_is(tmp_path):
+    """The supply falls by the loss of the key, the film with it."""
+    of_user = {"EHLPETSC_EFFECTS": "my_effects"}
+    printed = call(tmp_path, "script.py", **of_user).rpartition("supply ")[2]
+    supply, film = map(float, re.findall(r"\d\.\d+", printed))
+    assert supply == pytest.approx(0.7**2, rel=0.05)  # the faster surface travels 1.125 as far
     assert film < 0.995
+    assert "starving.loss: in a half-width" in call(tmp_path, "-m", "ehlpetsc", "keys", "loss", **of_user)
+    assert "starved.h5" in call(tmp_path, "-m", "ehlpetsc", "summary", "starved.h5", **of_user)
+
+
+@pytest.mark.slow
+def test_law_of_the_page_works_as_it_is(tmp_path):
+    """A law that saturates far above p0 is that of Barus."""
+    coarse = ["mesh.points_per_half_width=20", "mesh.inlet=-2.0"]
+    words = ["-m", "ehlpetsc", "table1_smooth.toml"]
+    films = []
+    for law in ("barus", "saturating"):
+        keys = [*coarse, f"fluid.law={law}"] + ["fluid.saturation_pressure=1e12"] * (law == "saturating")
+        sets = [word for key in keys for word in ("--set", key)]
+        printed = call(tmp_path, *words, "-o", f"{law}.h5", *sets, EHLPETSC_LAWS="my_laws")
+        films.append(float(re.search(r"h_min=(\S+)", printed)[1]))
+    assert films[1] == pytest.approx(films[0], rel=0.01) and films[1] != films[0]
 
 
 class Additive(Effect):
