@@ -86,5 +86,5 @@ def test_folder_removed_during_a_run_is_an_error(tmp_path):
     shutil.rmtree(folder)
     _, output, errors = ended(process)
     assert process.returncode == 2
-    assert f"{folder}/r.h5: " in errors and "removed" in errors
+    assert f"{folder}/r.h5: " in errors and "No such file or directory" in errors
     assert not os.path.exists(folder)

@@ -75,7 +75,7 @@ def test_profile_of_many_points_is_solved_in_memory():
         ({"z": [0.0] * 5, "x": [0.0, 1.0, 2.0, 3.0]}, "x has 4 values, z 5"),
         ({"z": [0.0] * 5, "spacing": 1e-6, "columns": [1]}, "columns: "),
         ({"z": [0.0, 1e-7, np.nan, 0.0], "spacing": 1e-6}, r"surface\.1\.z = \[0\.0, 1e-07, NaN, 0\.0\]: "),
-        ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "falls after x = 2e-06"),
+        ({"x": [0.0, 2e-6, 1e-6, 3e-6], "z": [0.0] * 4}, "x = 1e-06 follows x = 2e-06"),
     ],
 )
 def test_invalid_profile_arrays_are_refused(surface, fault):
