@@ -101,13 +101,15 @@ def across(y: float, d: float) -> tuple[float, float, float, float, float]:
         rate_by_y = y * (1 / 3 - t * (1 / 45 - t * (2 / 945 - t / 4725)))
     else:
         rate_by_y = coth - 1.0 / y
-    ratio = (less - e * np.expm1(-d)) * (less - e * np.expm1(d)) * over  # (cosh(y) - cosh(d))/sinh(y)
+    up = np.expm1(d)
+    below = -up / (1.0 + up)  # exp(-d) - 1
+    ratio = (less - e * below) * (less - e * up) * over  # (cosh(y) - cosh(d))/sinh(y)
     return (
         y + np.log(0.5 * down / y),
         rate_by_y,
         0.5 * y * ratio,
         0.5 * (ratio + y * (1.0 - ratio * coth)),
-        -y * e * np.sinh(d) * over,
+        -0.5 * y * e * (up - below) * over,
     )
 
 
@@ -181,11 +183,13 @@ def _mean_between_equal_walls(y: float) -> tuple[float, float]:
         tail = t * (34 / 2835 - t * (124 / 31185 - t * (2764 / 2027025 - t * (43688 / 91216125))))
         value = t * (2 / 3 - t * (2 / 15 - t * (4 / 105 - tail)))
     else:
-        w = np.log(1.0 + np.exp(-y))
+        e = np.exp(-y)
+        w = np.log(1.0 + e)
         t = w * w
         tail = t * (1 / 3600 - t * (1 / 211680 - t * (1 / 10886400 - t / 526901760)))
         dilogarithm = -w * (1.0 + w * (1 / 4 + w * (1 / 36 - tail)))  # Li2(-exp(-y))
         value = s + 2.0 * w - (0.8224670334241132 + dilogarithm) / s  # pi^2/12
+        return value, (1.0 - e) / (1.0 + e) - value / y
     return value, np.tanh(s) - value / y
 
 

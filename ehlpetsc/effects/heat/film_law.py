@@ -50,8 +50,8 @@ MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 30  # of Newton's method, before bisection
 BISECTIONS = 200
 MAX_CHANGE = 60.0  # K in an iteration
-QUADRATIC = 1e-4  # K: change in an iteration of Newton's method, after which it is accurate to 1e-9 K
-QUADRATIC_Y = 1e-5  # the same of y
+QUADRATIC = 1e-3  # K: change in an iteration of Newton's method, after which it is accurate to 1e-7 K
+QUADRATIC_Y = 1e-4  # the same of y
 MAX_SPLIT_CHANGE = 1e-6  # of d
 MIN_SLOPE = 1e-12  # 1/K
 MIN_HEATING = 1e-12  # of b: less does not heat the film
@@ -268,6 +268,7 @@ def film_temperature(
     t, y = base, profile
     temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
     t_p, t_h, change, low, high = 0.0, 0.0, 0.0, 0.0, 0.0
+    tau, by_x, by_limit, is_heated = 0.0, 0.0, 0.0, False
     for case in (PARABOLA, INSULATED, APART):
         exchange, alpha = exchange_law(case, r, walls)
         if heat == 0.0:
@@ -277,14 +278,15 @@ def film_temperature(
             t_r = -by_r / (a + exchange)
             t_p, t_h = -t_r * r * k_slope, t_r * over_k
         else:
-            energy_t, low, high = t, ROELANDS_ZERO + 1.0, 1e5
+            energy_t, low, high, is_heated = t, ROELANDS_ZERO + 1.0, 1e5, False
             for k in range(ITERATIONS + BISECTIONS):
                 d = _split(case, energy_t, r, walls, exchange, alpha, beta)
                 x = ln_rate + ln_eta - beta * (t - reference)
                 if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
                     y = resolved_stress(y, x, heating, d, flow, limit)[0]
-                tau, by_x, by_limit = flow_stress(x, flow, limit)
-                is_heated = heating * tau > MIN_HEATING
+                if not is_heated or y <= abs(d):  # otherwise the stress follows with the heating
+                    tau, by_x, by_limit = flow_stress(x, flow, limit)
+                    is_heated = heating * tau > MIN_HEATING
                 f_y, lr_y, f1, f1_t, mean, mean_y = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
                 if not is_heated:
                     y = abs(d)
