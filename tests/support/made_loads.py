@@ -47,13 +47,8 @@ class Scene:
         self, per_width=50, steps=None, ratio=0.5, travel=6.0, mean=25.0, courant=0.5, ripple=3e6, seed=0
     ):
         self.x = A * np.arange(-2.5 * per_width, 1.5 * per_width + 0.5) / per_width
-        self.points, self.dx, self.mean, self.ratio, self.ripple = (
-            per_width,
-            A / per_width,
-            mean,
-            ratio,
-            ripple,
-        )
+        self.points, self.dx, self.mean, self.ratio = per_width, A / per_width, mean, ratio
+        self.ripple = ripple
         self.courant = courant
         self.u1, self.u2 = mean * (1 + ratio / 2), mean * (1 - ratio / 2)
         dt = courant * self.dx / self.u1
@@ -77,52 +72,22 @@ class Scene:
         return np.array([self.pressure(k) for k in range(self.time.size)])
 
 
-def write(
-    path,
-    scene,
-    *,
-    every=1,
-    depths=(0.0, 0.05, 0.5),
-    post="",
-    steady=False,
-    frames=None,
-    friction=0.05,
-    dtype=float,
-    edit=None,
-):
+def write(path, scene, *, every=1, depths=(0.0, 0.05, 0.5), post="", steady=False, frames=None, edit=None):
     """Write the scene's result file; `edit(file)` may damage it before it is closed."""
-    kept = np.arange(0, scene.time.size, every)[:frames]
-    case = CASE.format(
-        mean=scene.mean,
-        ratio=scene.ratio,
-        points=scene.points,
-        time="" if steady else f"[time]\ntravel = 6.0\ncourant = {scene.courant}",
-        every=every,
-        depths=list(depths),
-        post=post,
-    )
+    kept, friction = np.arange(0, scene.time.size, every)[:frames], 0.05
+    time = "" if steady else f"[time]\ntravel = 6.0\ncourant = {scene.courant}"
+    keys = {"mean": scene.mean, "ratio": scene.ratio, "points": scene.points, "time": time}
+    case = CASE.format(every=every, depths=list(depths), post=post, **keys)
     with h5py.File(path, "w") as file:
-        file.attrs.update(
-            format_version=1,
-            title="made up",
-            case=case,
-            petsc_options="",
-            versions="",
-            ranks=1,
-            a=A,
-            p0=P0,
-            h_scale=A * A / 0.0191,
-            u1=scene.u1,
-            u2=scene.u2,
-            status="done",
-        )
+        file.attrs.update(format_version=1, title="made up", case=case, status="done", ranks=1)
+        file.attrs.update(a=A, p0=P0, h_scale=A * A / 0.0191, u1=scene.u1, u2=scene.u2)
         file["x"], file["time"], file["step"] = scene.x, scene.time[kept], kept
         file["steps/time"], file["steps/step"] = scene.time, np.arange(scene.time.size)
         file["contact_count"] = np.zeros(scene.x.size, int)
         p, nx = scene.pressures[kept], scene.x.size
         loads = {"pressure": p, "shear_stress_2": friction * p, "shear_stress_1": -friction * p}
         for name, values in loads.items():
-            file.create_dataset(name, data=values.astype(dtype), maxshape=(None, nx), chunks=(8, nx))
+            file.create_dataset(name, data=values, maxshape=(None, nx), chunks=(8, nx))
         for name, u in (("1", scene.u1), ("2", scene.u2)):
             file[f"surface/{name}/s"], file[f"surface/{name}/z"] = scene.profiles[name]
             file[f"surface/{name}"].attrs["speed"] = u

@@ -10,7 +10,7 @@ import pytest
 from support import CASES, COARSE_LIFE, ROOT, is_line_with, refused
 from support.made_results import make_result
 
-from ehlpetsc.analysis import ensemble
+from ehlpetsc.analysis.ensemble import main as ensemble
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.command import main as life
@@ -45,18 +45,6 @@ def foreign(folder, name):
     else:
         path.write_text('{"members": []}' if name.endswith(".json") else PROFILE)
     return path
-
-
-@pytest.mark.parametrize(
-    "name", ["other.h5", "other.restart.h5", "case.toml", "r.series.json", "r.passes.json", "profile.csv"]
-)
-def test_ensemble_overwrites_its_own_tables_only(tmp_path, capsys, name):
-    result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
-    before = other.read_bytes()
-    assert ensemble.main([str(result), "-o", str(other)]) == 2
-    (message,) = capsys.readouterr().err.splitlines()
-    assert f"{other}: " in message and "-o" in message
-    assert other.read_bytes() == before
 
 
 @pytest.mark.parametrize(
@@ -132,11 +120,12 @@ def test_invalid_input_is_refused_in_one_line(tmp_path, monkeypatch, capsys, com
     assert len(os.listdir(tmp_path)) == 4
 
 
-@pytest.mark.parametrize("name", ["other.h5", "other.restart.h5", "case.toml", "profile.csv", "a.png"])
-def test_summary_overwrites_its_own_tables_only(tmp_path, capsys, name):
+@pytest.mark.parametrize("command", [summary, ensemble])
+@pytest.mark.parametrize("name", ["other.h5", "r.series.json", "case.toml", "profile.csv"])
+def test_tables_overwrite_their_own_kind_only(tmp_path, capsys, command, name):
     result, other = make_result(tmp_path / "one.h5"), foreign(tmp_path, name)
     before = other.read_bytes()
-    assert f"{other}: " in sentence(capsys, summary, result, "-o", other)
+    assert f"{other}: " in sentence(capsys, command, result, "-o", other)
     assert other.read_bytes() == before
 
 

@@ -265,9 +265,7 @@ def worst_plane(
     points, indices = spare
     equivalent_points(stress, law[0], points)
     count = turning_samples(points, stress.shape[1], indices)
-    few = np.empty((3, count))
-    for k in range(count):
-        few[:, k] = stress[:, indices[k]]
+    few = stress[:, indices[:count]]
     starts, damages = _coarse(grid, few, law, work)
     worst, theta, phi = 0.0, 0.0, 0.0
     for k in range(2):
