@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 
 SHOWN_INSTANTS = 3  # instants of the life
+SHOWN_DAMAGE = 0.1  # of the largest: cells with as much are within the picture
 MIN_LOG_DAMAGE = -3.0  # log10 of the damage at the lower end of the colours
 
 
@@ -86,8 +87,9 @@ def under_profile(axes: Axes, body: LifeBody) -> ScalarMappable:
     axes.fill_between(s, present, top, color="w", lw=0.0)  # the worn part of a cell that is left
     axes.plot(s, present, "k", lw=0.8)
     axes.locator_params(axis="x", nbins=5)
-    span = max(np.ptp(top), edges[1])
-    axes.set(xlabel="s [µm]", ylabel="height [µm]", ylim=(top.min() - 4.0 * span, top.max() + 0.3 * span))
+    most = body.damage.max(axis=1)
+    deep = 1.5 * edges[1 + np.flatnonzero(most >= SHOWN_DAMAGE * most.max())[-1]]
+    axes.set(xlabel="s [µm]", ylabel="height [µm]", ylim=(top.min() - deep, top.max() + 0.1 * deep))
     return image
 
 
