@@ -171,7 +171,7 @@ def _only_in_one(one: Result, other: Result) -> Iterator[str]:
 def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status."""
     description = "Compare two result files field by field."
-    parser = CommandParser("compare", description)
+    parser = CommandParser("compare", description, "")
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=float, default=RTOL, help="over the scale [%(default)s]")

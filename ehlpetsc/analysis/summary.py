@@ -95,7 +95,7 @@ def main(words: Sequence[str]) -> int:
 
 def table_parser(name: str, description: str) -> CommandParser:
     """Parser of a command that makes a table from results."""
-    parser = CommandParser(name, description)
+    parser = CommandParser(name, description, "output")
     parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
     parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
     return parser

@@ -21,12 +21,13 @@ from ehlpetsc.base.errors import (
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Parser of ``ehlpetsc NAME`` with the options of every command; errors are one line, exit status 2.
+    """Parser of ``ehlpetsc NAME``; errors are one line, exit status 2.
 
-    A command may define ``-o``, ``--set`` or ``--overwrite`` anew, with a help of its own.
+    Of ``-o``, ``--set`` and ``--overwrite`` it has those named in `options`, which a command may define anew
+    with a help of its own.
     """
 
-    def __init__(self, name: str, description: str) -> None:
+    def __init__(self, name: str, description: str, options: str = "output set overwrite") -> None:
         keeps = "\n" in description
         formatter = argparse.RawDescriptionHelpFormatter if keeps else argparse.HelpFormatter
         super().__init__(
@@ -35,10 +36,13 @@ class CommandParser(argparse.ArgumentParser):
             formatter_class=formatter,
             conflict_handler="resolve",
         )
-        self.add_argument("-o", "--output", type=Path, metavar="FILE", help="output")
-        key = "key of the case; may be repeated"
-        self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
-        self.add_argument("--overwrite", action="store_true", help="replace an existing file")
+        if "output" in options:
+            self.add_argument("-o", "--output", type=Path, metavar="FILE", help="output")
+        if "set" in options:
+            key = "key of the case; may be repeated"
+            self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
+        if "overwrite" in options:
+            self.add_argument("--overwrite", action="store_true", help="replace an existing file")
         self.add_argument("--version", action="version", version=f"ehlpetsc {__version__}")
 
     def error(self, message: str) -> NoReturn:

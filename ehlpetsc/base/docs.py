@@ -19,7 +19,7 @@ NEEDED = ("sphinx", "myst_parser", "furo")
 def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     description = "Build the pages as one site, with search and typeset equations, and open it in a browser."
-    parser = CommandParser("docs", description)
+    parser = CommandParser("docs", description, "")
     folder = "build it here, to publish it, and open nothing"
     parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
     chosen = parser.parse_args(words)

@@ -130,7 +130,7 @@ def page() -> str:
 
 def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc keys``; returns its exit status."""
-    parser = CommandParser("keys", "Keys of a case file: meaning, unit, bounds, default.")
+    parser = CommandParser("keys", "Keys of a case file: meaning, unit, bounds, default.", "output overwrite")
     parser.add_argument(
         "key", nargs="?", metavar="TABLE or KEY", help="as fluid or contact.load (default: all)"
     )
@@ -145,7 +145,7 @@ def template(kind: str = EXAMPLES[0]) -> str:
 
 def template_command(words: list[str]) -> int:
     """Run the command ``ehlpetsc template``; returns its exit status."""
-    parser = CommandParser("template", "A commented case file to begin with.")
+    parser = CommandParser("template", "A commented case file to begin with.", "output overwrite")
     parser.add_argument("kind", nargs="?", choices=EXAMPLES, default=EXAMPLES[0])
     chosen = parser.parse_args(words)
     return exit_status("template", lambda: put(template(chosen.kind), chosen))

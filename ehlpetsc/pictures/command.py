@@ -49,7 +49,7 @@ WITHOUT_FRAMES = ("stribeck", "traction", "ensemble")  # kinds that need the sca
 
 def arguments() -> CommandParser:
     """Parser of the command line."""
-    parser = CommandParser("plot", __doc__)
+    parser = CommandParser("plot", __doc__, "output set")
     shown = "results, an index; or one CASE.toml"
     parser.add_argument("results", nargs="+", metavar="RESULT.h5", help=shown)
     parser.add_argument("-o", "--output", type=Path, help="picture [RESULT.png, RESULT.map.png ...]")

@@ -116,6 +116,12 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
     assert is_line_with(message, f"ehlpetsc {name}: ", " --deph;", f"; ehlpetsc {name} -h")
 
 
+@pytest.mark.parametrize("name, option", [("compare", "-o"), ("summary", "--set"), ("keys", "--set")])
+def test_option_without_effect_is_refused(name, option, capsys):
+    words = ["a.h5", "b.h5"][: 2 if name == "compare" else 1]
+    assert f" {option}" in message_of(name, [*words, option, "x"], capsys)
+
+
 STRIBECK = "cases/stribeck.toml"
 
 
