@@ -85,6 +85,8 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
     """Raise UsageError for options that do not fit each other."""
     if chosen.output and len(files) > 1:
         raise UsageError("-o names one file: give one RESULT.h5, or leave it out")
+    if chosen.point and not chosen.point[1] >= 0:
+        raise UsageError(f"--point: the depth z/a = {chosen.point[1]:g} must be 0 or more")
     for setting in chosen.set:
         if not setting.startswith(("post.", "contact.material=")):
             raise UsageError(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")

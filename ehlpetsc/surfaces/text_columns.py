@@ -39,10 +39,10 @@ def text_columns(
         if DATA.fullmatch(text[begin:end].strip()) if header_lines is None else above == header_lines:
             break
         begin, above = end, above + 1
-    header, body = text[:begin], text[begin:]
+    header, body = text[:begin], re.sub("#.*", "", text[begin:])
     body, separator = _with_points(body, decimal)
     columns = np.empty((0, 0))
-    if re.search(r"^[^#]*\d", body, re.MULTILINE):
+    if re.search(r"\d", body):
         try:
             columns = np.loadtxt(io.StringIO(body), delimiter=separator, ndmin=2).T
         except ValueError:
@@ -76,7 +76,7 @@ def _with_points(text: str, decimal: str | None) -> tuple[str, str | None]:
     """Numbers with decimal points, and their separator; None: blanks."""
     separator = next((sign for sign in ";\t" if sign in text), None)
     if separator is None and "," in text and decimal != ",":
-        in_numbers = re.search(r"[^\s#] +[^\s#]", text) and not re.search(r"(?<!\d),|,(?!\d)", text)
+        in_numbers = re.search(r"\S +\S", text) and not re.search(r"(?<!\d),|,(?!\d)", text)
         if decimal or not in_numbers:
             return text, ","
     if decimal is None and "," in text and "." in text:
@@ -86,8 +86,8 @@ def _with_points(text: str, decimal: str | None) -> tuple[str, str | None]:
 
 def _with_missing(text: str, separator: str | None, above: int) -> np.ndarray:
     """Numbers of lines read one by one; nan for words."""
-    rows = {n: line.partition("#")[0].strip() for n, line in enumerate(text.split("\n"), above + 1)}
-    rows = {n: row for n, row in rows.items() if row.strip(",; \t")}
+    lines = enumerate(text.split("\n"), above + 1)
+    rows = {n: line.strip() for n, line in lines if line.strip(",; \t")}
     *_, width = (len(row.split(separator)) for row in rows.values())
     for n, row in rows.items():
         if len(words := row.split(separator)) != width:

@@ -26,6 +26,7 @@ READABLE = {
     "comma": ("# x [m], z [m]\n" + lines("{},{}\n"), {}),
     "tab": (lines("{}\t{}\n"), {}),
     "blanks and comments": ("x z\n" + lines(" {}   {}  # p\n"), {}),
+    "separators in comments": (lines("{}\t{} # p; q, r\n"), {}),
     "comma and blank": (lines("{:.7f}, {:.8f}\n"), {}),
     "semicolon at the end": (lines("{};{};\n"), {}),
     "decimal comma, semicolon": (german(lines("{:.7f};{:.8f}\n")), {}),
