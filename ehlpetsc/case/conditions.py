@@ -40,25 +40,18 @@ def read_table(path: Path, table: KeyTable, names: Columns) -> tuple[dict[str, l
     if not rows:
         raise TableFault("no lines; allowed: a line of column names and one line a time")
     separator = next((sign for sign in ";,\t" if sign in rows[0][1]), None)
-    head, keys, factors = rows[0], None, {}
-    if not _numbers(head[1], separator):
-        factors, rows = _factors(*head, separator, table, names), rows[1:]
-        keys = list(factors)
+    if _numbers(rows[0][1], separator):
+        allowed = ", ".join(spellings[0] for spellings in names.values())
+        raise TableFault(f"line {rows[0][0]}: no column names; allowed: a first line with some of {allowed}")
+    factors = _factors(*rows[0], separator, table, names)
     columns, lines = [], []
-    for number, line in rows:
+    for number, line in rows[1:]:
         values = _numbers(line, separator)
-        if keys is None and len(values) == len(names):
-            keys = list(names)
-        if keys is None:
-            allowed = ", ".join(spellings[0] for spellings in names.values())
-            raise TableFault(f"line {number}: no column names; allowed: a first line with some of {allowed}")
-        if len(values) != len(keys):
-            raise TableFault(f"line {number}: {shown(line)}: allowed: {len(keys)} numbers")
+        if len(values) != len(factors):
+            raise TableFault(f"line {number}: {shown(line)}: allowed: {len(factors)} numbers")
         columns.append(values)
         lines.append(number)
-    return {
-        key: [row[k] * factors.get(key, 1.0) for row in columns] for k, key in enumerate(keys or ())
-    }, lines
+    return {key: [row[k] * size for row in columns] for k, (key, size) in enumerate(factors.items())}, lines
 
 
 def shown(line: str) -> str:
