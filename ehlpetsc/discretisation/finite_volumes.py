@@ -87,17 +87,13 @@ def fluidities(at: np.ndarray, left: int, right: int) -> tuple:
 
 @compiled
 def face_mobilities(
-    at: np.ndarray,
-    left: int,
-    right: int,
-    film: float,
-    gradient: float,
-    table: np.ndarray,
-    stress: float,
-    sliding: float,
-    layer: float,
+    at: np.ndarray, left: int, right: int, table: np.ndarray, gap: tuple
 ) -> tuple[tuple, tuple]:
-    """Mobilities of both nodes of a face and their derivatives, with the factor of the layer."""
+    """Mobilities of both nodes of a face and their derivatives, with the factor of the layer.
+
+    `gap` are film, pressure gradient, stress of the shear law, sliding speed and rms height of the layer.
+    """
+    film, gradient, stress, sliding, layer = gap
     state = film, gradient, *fluidities(at, left, right), stress, sliding / stress
     mobility_l, mobility_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
     if layer == 0.0:
@@ -114,18 +110,7 @@ def scaled(mobility: tuple, factor: float, by_film: float) -> tuple:
 
 
 @compiled
-def flux_through(
-    at: np.ndarray,
-    left: int,
-    table: np.ndarray,
-    per_length: float,
-    per_film: float,
-    stress: float,
-    stress_rise: float,
-    sliding: float,
-    entrainment: float,
-    layer: float,
-) -> tuple:
+def flux_through(at: np.ndarray, left: int, table: np.ndarray, law: tuple) -> tuple:
     """Mass flux through the face right of node `left`, and its derivatives.
 
     Derivatives are with respect to (q, h) of the nodes `left` - 1, `left` and `left` + 1.
@@ -133,25 +118,22 @@ def flux_through(
     Parameters
     ----------
     at : shape (10 or 13, nodes)
-    per_length, per_film
-        p0 over the spacing [Pa/m]; a^2/R [m].
     table
         Of :func:`ehlpetsc.physics.rheology.flow_table`.
-    stress, stress_rise, sliding
-        Stress of the shear law without pressure, infinite: Newtonian, its rise over p0 [Pa]; |u1 - u2| [m/s].
-    entrainment
-        Entrainment speed over that of the scales.
-    layer
-        Rms height of the compliant layer [m], 0 without one.
+    law
+        p0 over the spacing [Pa/m]; a^2/R [m]; stress of the shear law without pressure, infinite: Newtonian,
+        its rise over p0 [Pa]; |u1 - u2| [m/s]; entrainment speed over that of the scales; rms height of the
+        compliant layer [m], 0 without one.
     """
+    per_length, per_film, stress, stress_rise, sliding, entrainment, layer = law
     right, behind = left + ONE, left - ONE if left > 0 else left
     couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     film = 0.5 * (at[H, left] + at[H, right])
     if stress_rise != 0.0:
         stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
-    gap = film, gradient, table, stress, sliding, layer
-    mobility_l, mobility_r = face_mobilities(at, left, right, *gap)
+    gap = film, gradient, stress, sliding, layer
+    mobility_l, mobility_r = face_mobilities(at, left, right, table, gap)
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
     by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
@@ -186,18 +168,7 @@ def flux_through(
 
 
 @compiled
-def balance(
-    at: np.ndarray,
-    first: int,
-    law: tuple,
-    table: np.ndarray,
-    m_old: np.ndarray,
-    extrapolated: np.ndarray,
-    k: float,
-    rate: float,
-    residual: np.ndarray,
-    derivatives: np.ndarray,
-) -> None:
+def balance(at: np.ndarray, first: int, law: tuple, table: np.ndarray, storage: tuple, rows: tuple) -> None:
     """Fill in the mass balance of the cells, outflow - inflow + rate of storage, and its derivatives.
 
     Parameters
@@ -206,23 +177,21 @@ def balance(
         Nodal properties, with one node at least on either side of the cells.
     first
         Index of the first cell's node.
-    law
-        `per_length` to `layer` of :func:`flux_through`.
-    table
-        See there.
-    m_old, extrapolated : shape (cells,)
-        `m` and `extrapolated` of :class:`ehlpetsc.discretisation.reynolds.FilmHistory`.
-    k, rate
-        `k` of the same history; spacing / time step, 0: steady.
-    residual : shape (cells,)
-    derivatives : shape (cells, 8)
-        With respect to q and h of the nodes i-2 .. i+1.
+    law, table
+        As of :func:`flux_through`.
+    storage
+        `m`, `extrapolated`, shape (cells,), and `k` of :class:`.step_inputs.FilmHistory`;
+        spacing / time step, 0: steady.
+    rows
+        Filled in: residual, shape (cells,); derivatives with respect to q and h of the nodes i-2 .. i+1,
+        shape (cells, 8).
     """
+    (m_old, extrapolated, k, rate), (residual, derivatives) = storage, rows
     first = unsigned(first)  # numba takes longer over indices that may be negative
-    inflow = flux_through(at, first - ONE, table, *law)
+    inflow = flux_through(at, first - ONE, table, law)
     for i in range(unsigned(len(residual))):
         node, row = first + i, derivatives[i]
-        outflow = flux_through(at, node, table, *law)
+        outflow = flux_through(at, node, table, law)
         stored, by_m, _ = positive_extrapolation(at[M, node], m_old[i], k)
         residual[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]
@@ -254,16 +223,10 @@ def reynolds_product(
         left = here - ONE if here > 0 else here
         behind = left - ONE if left > 0 else left
         right = here + ONE if here < last else here
-        out[row] = (
-            derivatives[row, 0] * v_q[behind]
-            + derivatives[row, 1] * v_h[behind]
-            + derivatives[row, 2] * v_q[left]
-            + derivatives[row, 3] * v_h[left]
-            + derivatives[row, 4] * v_q[here]
-            + derivatives[row, 5] * v_h[here]
-            + derivatives[row, 6] * v_q[right]
-            + derivatives[row, 7] * v_h[right]
-        )
+        by = derivatives[row]
+        total = by[0] * v_q[behind] + by[1] * v_h[behind] + by[2] * v_q[left] + by[3] * v_h[left]
+        total = total + by[4] * v_q[here] + by[5] * v_h[here]
+        out[row] = total + by[6] * v_q[right] + by[7] * v_h[right]
 
 
 @compiled

@@ -99,7 +99,7 @@ class Reynolds:
         if inputs.heat is not None:
             inputs.heat.fill_properties(q, h, of_density, units, self.nodes, temperatures, at)
             return at
-        nodal(q, h, tuple(viscosity_law(fluid)), of_density, *units, 1.0 / fluid.viscosity, at)
+        nodal(q, h, tuple(viscosity_law(fluid)), of_density, (*units, 1.0 / fluid.viscosity), at)
         return at
 
     def face_law(self, inputs: StepInputs) -> tuple:
@@ -141,7 +141,7 @@ class Reynolds:
         residual = np.empty(self.local.stop - self.local.start)
         derivatives = np.zeros((len(residual), n_dofs(STENCIL)))
         inner = slice(int(self.has_inlet), None)
-        balance(at, first, law, self.flow_table(inputs), *storage, residual[inner], derivatives[inner])
+        balance(at, first, law, self.flow_table(inputs), storage, (residual[inner], derivatives[inner]))
         if self.has_outlet:
             derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
             derivatives[-1, OWN + 2 :] = 0.0
@@ -161,15 +161,7 @@ def _inlet(q: float, h: float, oil_film: float) -> tuple:
 
 @compiled
 def nodal(
-    q: np.ndarray,
-    h: np.ndarray,
-    viscosity: tuple,
-    density: tuple,
-    p0: float,
-    film: float,
-    unit: float,
-    fluidity: float,
-    at: np.ndarray,
+    q: np.ndarray, h: np.ndarray, viscosity: tuple, density: tuple, units: tuple, at: np.ndarray
 ) -> None:
     """Fill in the nodal properties, see :mod:`.finite_volumes`.
 
@@ -178,16 +170,12 @@ def nodal(
     q, h : shape (nodes,)
     viscosity, density
         :class:`ehlpetsc.physics.laws.OilLaw` of both, as tuples, which numba looks up faster.
-    p0, film
-        Scales of pressure [Pa] and film [m].
-    unit
-        1/(u film) [s/m^2].
-    fluidity
-        1/eta0 [1/(Pa s)].
+    units
+        Scales of pressure p0 [Pa] and film [m]; 1/(u film) [s/m^2]; 1/eta0 [1/(Pa s)].
     at : shape (10, nodes)
         An additional node is beyond the outlet, with the film of the last node and no pressure.
     """
-    nodes = len(q)
+    nodes, (p0, film, unit, fluidity) = len(q), units
     for i in range(at.shape[1]):
         here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
         p = fill_mass(i, here, gap, density, p0, film, unit, at)

@@ -91,10 +91,21 @@ class NewtonSolver:
                 self._set_jacobian(self._unconstrained_snes)
 
     def _snes_of_type(self, kind: str) -> PETSc.SNES:
-        system = self.system
-        callbacks = self._function, self._before_step
-        snes = create(system.comm, kind, system.f, *callbacks, self._options.given)
+        """SNES of a type, or of the user's ``-snes_type``; `UsageError` where an option is refused."""
+        snes = PETSc.SNES().create(self.system.comm)
         self._petsc_objects.append(snes)
+        try:
+            snes.setType(kind)
+            snes.setFunction(weakly(self._function), self.system.f)
+            snes.setFromOptions()
+        except PETSc.Error as error:
+            raise_refusal(error, self._options.given)
+        if snes.getType() == "vinewtonssls":
+            raise UsageError(
+                "-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
+                "allowed: vinewtonrsls, and types without bounds where nothing touches"
+            )
+        snes.setLineSearchPreCheck(weakly(self._before_step))
         return snes
 
     def _set_jacobian(self, snes: PETSc.SNES) -> None:
@@ -251,44 +262,6 @@ def release_frames(error: BaseException) -> None:
     Kept alive by a traceback until Python ends, such an object would be destroyed by PetscFinalize, too late.
     """
     traceback.clear_frames(error.__traceback__)
-
-
-def create(
-    comm: PETSc.Comm, kind: str, f: PETSc.Vec, function: Callable, pre_check: Callable, user_options: dict
-) -> PETSc.SNES:
-    """Create a SNES of a type, or of the user's ``-snes_type``.
-
-    Parameters
-    ----------
-    f
-        Vector of the residual.
-    function, pre_check
-        Residual function and pre-check of the line search; SNES does not keep their object alive.
-    user_options
-        Options of the user.
-
-    Raises
-    ------
-    UsageError
-        PETSc refuses an option, or the type is not supported.
-    """
-    snes = PETSc.SNES().create(comm)
-    try:
-        snes.setType(kind)
-        snes.setFunction(weakly(function), f)
-        snes.setFromOptions()
-        if snes.getType() == "vinewtonssls":
-            raise UsageError(
-                "-snes_type vinewtonssls needs the whole deflection in an assembled matrix; "
-                "allowed: vinewtonrsls, and types without bounds where nothing touches"
-            )
-    except (PETSc.Error, UsageError) as error:
-        snes.destroy()
-        if isinstance(error, PETSc.Error):
-            raise_refusal(error, user_options)
-        raise
-    snes.setLineSearchPreCheck(weakly(pre_check))
-    return snes
 
 
 def raise_refusal(error: PETSc.Error, user_options: dict) -> None:

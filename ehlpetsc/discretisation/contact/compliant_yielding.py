@@ -56,10 +56,6 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         """Pressure of the asperities in p0, at most the yield pressure."""
         return super().contact_pressure(np.maximum(w, self.smallest))
 
-    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """Total pressure in p0, at most the yield pressure."""
-        return np.minimum(np.maximum(q, 0.0) + self.contact_pressure(w), self.yield_pressure)
-
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         elastic = super().state(q, np.maximum(w, self.smallest))

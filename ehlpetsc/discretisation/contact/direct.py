@@ -13,11 +13,11 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
+    AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
     BandEntries,
     NodeState,
     SurfaceLoads,
-    full_of_oil,
     limit_cavitation,
 )
 
@@ -40,13 +40,11 @@ class DirectContact(ContactModel):
 
     def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
-        return np.maximum(q, 0.0)
+        return np.maximum(q, self.lowest_pressure)
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
-        return self._state(q, w, full_of_oil(q) * 1.0)
-
-    def _state(self, q: np.ndarray, w: np.ndarray, p_q: np.ndarray) -> NodeState:
+        p_q = np.where(q > self.lowest_pressure - AMBIENT_TOLERANCE, 1.0, 0.0)
         zeros, ones = np.zeros(len(w)), np.ones(len(w))
         return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones, w <= self.lower_bound)
 
@@ -130,14 +128,6 @@ class DryContact(DirectContact):
 
     starts_unconstrained = False
     lowest_pressure = -np.inf
-
-    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
-        return q
-
-    def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """See :class:`.model.ContactModel`."""
-        return self._state(q, w, np.ones(len(q)))
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""

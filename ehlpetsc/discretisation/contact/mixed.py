@@ -81,8 +81,8 @@ class MixedContact(SeparatedContact):
         return self.stiffness * np.maximum(-w, 0.0)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
-        return self._carried(w)
+        """Pressure of the solids in p0, at most the yield pressure."""
+        return np.minimum(self._carried(w), self.yield_pressure)
 
     def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """See :class:`.model.ContactModel`."""
@@ -102,7 +102,7 @@ class MixedContact(SeparatedContact):
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`."""
-        return pressure_change(now, step, self.stiffness)
+        return pressure_change(now, step, self.stiffness, self.yield_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
@@ -142,13 +142,22 @@ def swap_pairs(derivatives: np.ndarray, swapped: np.ndarray, blind: np.ndarray) 
 
 
 @compiled
-def pressure_change(now: np.ndarray, step: np.ndarray, stiffness: float) -> float:
-    """Largest change of total pressure; a node that crosses between gap and contact stops there."""
+def pressure_change(now: np.ndarray, step: np.ndarray, stiffness: float, limit: float) -> float:
+    """Largest change of total pressure, bounded by `limit`; where it stays there, of that of the solids.
+
+    A node that crosses between gap and contact stops there.
+    """
     largest = 0.0
     for i in range(len(now)):
-        q, w, new_q, new_w = now[i, 0], now[i, 1], now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
-        solids = 0.0 if w >= 0.0 else stiffness * (max(-new_w, 0.0) + w)
-        largest = max(largest, abs(max(new_q, 0.0) - max(q, 0.0) + solids))
+        new_q, new_w = now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
+        solids = min(stiffness * max(-now[i, 1], 0.0), limit)
+        new_solids = min(stiffness * max(-new_w, 0.0), limit) if now[i, 1] < 0.0 else 0.0
+        total = min(max(now[i, 0], 0.0) + solids, limit)
+        new_total = min(max(new_q, 0.0) + new_solids, limit)
+        change = abs(new_total - total)
+        if total == limit and new_total == limit:
+            change = abs(new_solids - solids)
+        largest = max(largest, change)
     return largest
 
 

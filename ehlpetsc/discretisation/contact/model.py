@@ -48,8 +48,8 @@ class ContactModel:
         raise NotImplementedError
 
     def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """Total pressure in p0."""
-        return np.maximum(q, 0.0) + self.contact_pressure(w)
+        """Total pressure in p0, at most the yield pressure."""
+        return np.minimum(np.maximum(q, 0.0) + self.contact_pressure(w), self.yield_pressure)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Pressure of the solids in p0."""

@@ -60,8 +60,10 @@ class Yielding(ContactModel):
         Where all nodes that carry yield, no pressure depends on any unknown: the solids are then taken to
         harden a little, by which the next iteration reaches nodes that do not carry yet.
         """
-        yielding, elastic = ranks_sum(self.yielding_and_elastic(state, owned))
-        if not self.is_all_yielding(yielding, elastic):
+        is_yielding, pressure = state.plastic.yielding[owned], state.pressure[owned]
+        is_elastic = ~is_yielding & (pressure > MIN_CARRYING_PRESSURE * self.yield_pressure)
+        yielding, elastic = ranks_sum((is_yielding.sum(), is_elastic.sum()))
+        if not yielding > 0 or elastic >= ELASTIC_NODES:
             return state
         y, per_depth = state.plastic, HARDENING / self.compliance
         return state._replace(
@@ -69,15 +71,6 @@ class Yielding(ContactModel):
             p_w=state.p_w + per_depth * y.depth_w,
             plastic=y._replace(hardening=HARDENING),
         )
-
-    def yielding_and_elastic(self, state: NodeState, nodes: slice) -> tuple[int, int]:
-        """Numbers of nodes that yield, and that carry without yielding."""
-        yielding, pressure = state.plastic.yielding[nodes], state.pressure[nodes]
-        return yielding.sum(), (~yielding & (pressure > MIN_CARRYING_PRESSURE * self.yield_pressure)).sum()
-
-    def is_all_yielding(self, yielding: int, elastic: int) -> bool:
-        """Whether next to no node that carries is elastic, by the numbers of nodes."""
-        return yielding > 0 and elastic < ELASTIC_NODES
 
 
 class YieldingContact(Yielding, MixedContact):
@@ -99,10 +92,6 @@ class YieldingContact(Yielding, MixedContact):
         """See :class:`.model.ContactModel`."""
         return MixedContact(self.boundary_film, self.stiffness)
 
-    def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """Total pressure in p0, at most the yield pressure."""
-        return np.minimum(np.maximum(q, 0.0) + self._carried(w), self.yield_pressure)
-
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         """See :class:`.model.ContactModel`."""
         elastic = super().state(q, w)
@@ -120,19 +109,11 @@ class YieldingContact(Yielding, MixedContact):
         )
         return self.at_yield_pressure(elastic, plastic, solids)
 
-    def contact_pressure(self, w: np.ndarray) -> np.ndarray:
-        """Pressure of the solids in p0, at most the yield pressure."""
-        return np.minimum(self._carried(w), self.yield_pressure)
-
     def reset_yielding(self, q: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`.model.ContactModel`."""
         solids = self.contact_pressure(w)
         q = np.minimum(q, self.yield_pressure - solids)
         return q, np.maximum(w, -self.compliance * self.yield_pressure)
-
-    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
-        """See :class:`.model.ContactModel`."""
-        return pressure_change(now, step, self.stiffness, self.yield_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         """See :class:`.model.ContactModel`."""
@@ -162,24 +143,6 @@ class YieldingContact(Yielding, MixedContact):
         p_c = np.where(by_oil, -oil, np.where(state.plastic.yielding[local][solid], first, elastic))
         solution[solid, 0] = np.where(by_oil, first + oil, oil)
         solution[solid, 1] = -p_c / self.stiffness
-
-
-@compiled
-def pressure_change(now: np.ndarray, step: np.ndarray, stiffness: float, limit: float) -> float:
-    """As in mixed contact, the pressure bounded by `limit`; where it stays there, that of the solids."""
-    largest = 0.0
-    for i in range(len(now)):
-        new_q, new_w = now[i, 0] - step[i, 0], now[i, 1] - step[i, 1]
-        solids = min(stiffness * max(-now[i, 1], 0.0), limit)
-        # a node that comes to touch stops there, as in mixed contact
-        new_solids = min(stiffness * max(-new_w, 0.0), limit) if now[i, 1] < 0.0 else 0.0
-        total = min(max(now[i, 0], 0.0) + solids, limit)
-        new_total = min(max(new_q, 0.0) + new_solids, limit)
-        change = abs(new_total - total)
-        if total == limit and new_total == limit:
-            change = abs(new_solids - solids)
-        largest = max(largest, change)
-    return largest
 
 
 @compiled

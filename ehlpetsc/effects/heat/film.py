@@ -194,7 +194,7 @@ def faces(
         stress = no_pressure
         if stress_rise != 0.0:
             stress += 0.5 * stress_rise * (at[P, i] + at[P, i + 1])
-        left, right = face_mobilities(at, i, i + 1, film, slope, table, stress, sliding, layer)
+        left, right = face_mobilities(at, i, i + 1, table, (film, slope, stress, sliding, layer))
         couette[i + 1] = entrainment * drawn
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
