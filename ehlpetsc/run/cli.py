@@ -98,14 +98,14 @@ def parse(words: list[str]) -> argparse.Namespace:
     for name, option in OPTIONS.items():
         parser.add_argument(f"--{name.replace('_', '-')}", **option.parsed)
     chosen, others = parser.parse_known_args([_long(word) for word in words])
-    chosen.case, chosen.petsc = _without_case(others)
+    case, petsc = _without_case(others)
     before = "value"
-    for word, value in itertools.pairwise([*chosen.petsc, ""]):
-        _check(word, value, before, chosen.case)
+    for word, value in itertools.pairwise([*petsc, ""]):
+        _check(word, value, before, case)
         before = word
     if chosen.scheme:  # read by the solver, from PETSc's table
-        chosen.petsc += ["-ehl_scheme", chosen.scheme]
-    return chosen
+        petsc += ["-ehl_scheme", chosen.scheme]
+    return argparse.Namespace(**vars(chosen), case=case, petsc=petsc)
 
 
 def _long(word: str) -> str:
