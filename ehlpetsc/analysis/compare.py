@@ -123,18 +123,16 @@ def _field(result: Result, name: str, times: np.ndarray, x: np.ndarray) -> np.nd
 
 def _difference(name: str, units: str, blocks: Iterable[list[np.ndarray]], x: np.ndarray) -> Difference:
     """Difference of a quantity from blocks of the values (times, x) in both files, and their times."""
-    found, square, count = Difference(name, units), 0.0, 0
+    square, count, scale, largest, place = 0.0, 0, 0.0, 0.0, (np.nan, np.nan)
     for *values, times in blocks:
         deviation = np.abs(values[0] - values[1])
         deviation[np.isnan(values[0]) & np.isnan(values[1])] = 0.0
         square, count = square + float(np.sum(deviation**2)), count + deviation.size
-        found.scale = max(found.scale, *(float(np.nanmax(np.abs(v), initial=0.0)) for v in values))
+        scale = max(scale, *(float(np.nanmax(np.abs(v), initial=0.0)) for v in values))
         frame, node = np.unravel_index(deviation.argmax(), deviation.shape)  # a nan counts as the maximum
-        if not deviation[frame, node] <= found.max and not np.isnan(found.max):
-            found.max = float(deviation[frame, node])
-            found.time, found.x = float(times[frame]), float(x[node])
-    found.rms = float(np.sqrt(square / count))
-    return found
+        if not deviation[frame, node] <= largest and not np.isnan(largest):
+            largest, place = float(deviation[frame, node]), (float(x[node]), float(times[frame]))
+    return Difference(name, units, scale, largest, float(np.sqrt(square / count)), *place)
 
 
 def table(differences: Iterable[Difference], a: float, rtol: float, atol: float) -> str:
