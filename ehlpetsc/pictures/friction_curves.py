@@ -90,7 +90,7 @@ def curves_by_contact(results: list[Result]) -> dict[str, list[Result]]:
     for result in results:
         case, contact = result.case, result.case.contact
         if contact.asperity_height:
-            law = f"layer of {1e9 * contact.asperity_height:g} nm"
+            law = f"layer of {1e9 * contact.asperity_height:g} nm,\nbeta = {contact.asperity_stiffness:.2g}"
         else:
             film = contact.boundary_film
             law = f"rigid, boundary film {1e9 * film:g} nm" if film else "direct contact"
