@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
 from typing import Any
@@ -11,6 +12,8 @@ import numpy as np
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import extrapolated
 from ehlpetsc.physics.operation import Conditions
+
+Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
 
 
 class FilmHistory:

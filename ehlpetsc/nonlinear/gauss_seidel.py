@@ -30,7 +30,6 @@ distributed: every rank computes all nodes.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,7 +39,7 @@ from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.deflection import SymmetricToeplitz
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
@@ -91,11 +90,7 @@ class GaussSeidelSolver:
         return self.rows
 
     def solve(
-        self,
-        guess: Unknowns,
-        inputs: StepInputs,
-        max_it: int | None = None,
-        watch: Callable[[], object] | None = None,
+        self, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
     ) -> tuple[Unknowns, int]:
         """As :meth:`.newton.NewtonSolver.solve`; iterations are evaluations of the coefficients."""
         q, h, h00 = guess.q.copy(), np.maximum(guess.w, self.bound), guess.h00

@@ -17,7 +17,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import SolveFailed, UsageError
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 from ehlpetsc.nonlinear.options import RunOptions, refusal
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
@@ -60,7 +60,7 @@ class NewtonSolver:
         self.system, self.problem = system, system.problem
         self._options = options or RunOptions()
         self._petsc_objects = owned(self)
-        self._watch: Callable[[], object] | None = None
+        self._watch: Watch = None
         self._needs_renewal = False
         self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
         # other line searches may end at another point than the last trial point
@@ -151,11 +151,7 @@ class NewtonSolver:
         return self.system.residual()
 
     def solve(
-        self,
-        guess: Unknowns,
-        inputs: StepInputs,
-        max_it: int | None = None,
-        watch: Callable[[], object] | None = None,
+        self, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
     ) -> tuple[Unknowns, int]:
         """Solution from an initial guess, and the number of iterations; raise `SolveFailed` without one.
 

@@ -14,7 +14,6 @@ Conditions on the rows of :mod:`ehlpetsc.discretisation.ehl_problem` at the solu
 A solution whose pressure or contact is cut off by an end of the domain is refused too.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
@@ -22,14 +21,12 @@ import numpy as np
 
 from ehlpetsc.base.errors import NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 
 SUM_ROUNDING = 1.0 + 1e-6  # factor on tolerances: sums in another order differ by rounding
 VOID_TOLERANCE = 1e-9  # excess of a void fraction over 1 that is rounding
 MAX_END_PRESSURE = 0.01  # p0
-
-Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
 
 
 class Solver(Protocol):
