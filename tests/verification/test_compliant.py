@@ -84,8 +84,7 @@ SMOOTHED = {  # waves down to 100 um and a layer of 60 nm: what a/25 resolves
 def test_share_friction_and_lengths_converge():
     """Second order on a/25, a/50 and a/100; the limit by Richardson's extrapolation.
 
-    On a/100, a/200 and a/400 the orders are 1.97, 1.98 and 1.97 and the limits .3250, .0362 and .0896. Waves
-    down to 25 um under a layer of 20 nm take a/400 for the same.
+    On a/100, a/200 and a/400 all orders are 1.98 and the limits .2948, .03367 and .0813.
     """
     meshes = [SMOOTHED | {"mesh.points_per_half_width": points} for points in (25, 50, 100)]
     runs = [run(RESOLVED | mesh, {"snes_atol": 1e-9}, sigma=60e-9) for mesh in meshes]
@@ -93,14 +92,15 @@ def test_share_friction_and_lengths_converge():
         assert found["retries"].sum() == 0 and found["newton"][1:].mean() < 7.0
         assert found["load_error"].max() < 1e-10 and found["mass_error"].max() < 1e-6
     means = {name: [found[name][found["filled"]].mean() for found in runs] for name in runs[0]}
-    limits = {"contact_share": 0.3250, "friction_coefficient": 0.0362, "contact_length": 0.0896 * A}
+    limits = {"contact_share": 0.2948, "friction_coefficient": 0.03367, "contact_length": 0.0813 * A}
     for name, limit in limits.items():
         observed, extrapolated = order(*means[name])
         assert observed > 1.7, name
         assert extrapolated == pytest.approx(limit, rel=0.005), name
-    for name, finest in (("contact_length_10mpa", 2.0096), ("contact_length_100mpa", 1.7058)):  # on a/400
+    finest = (("contact_length_10mpa", 2.0000, 0.01), ("contact_length_100mpa", 1.6582, 0.012))  # on a/400
+    for name, length, tolerance in finest:
         assert means[name][0] > means[name][1] > means[name][2]
-        assert means[name][2] / A == pytest.approx(finest, rel=0.01), name
+        assert means[name][2] / A == pytest.approx(length, rel=tolerance), name
 
 
 def test_default_stiffness_is_the_slope_of_the_longest_wave():
