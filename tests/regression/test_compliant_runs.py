@@ -18,7 +18,7 @@ QUICK = ("mesh.inlet=-1.4", "mesh.points_per_half_width=50", "time.travel=0.6", 
 @pytest.fixture(scope="module")
 def case(tmp_path_factory):
     """A case of one speed: the file of the Stribeck curve without its series."""
-    given = load(ROOT / "cases" / "stribeck.toml", {"series": None, "motion.entrainment_speed": 0.5})
+    given = load(ROOT / "cases" / "stribeck.toml", {"series": None, "motion.entrainment_speed": 0.05})
     text = given.text.replace('"profiles/', f'"{ROOT}/cases/profiles/')
     path = tmp_path_factory.mktemp("case") / "layer.toml"
     path.write_text(text)
@@ -69,5 +69,5 @@ def test_explain_names_no_fault(case, tmp_path):
     done = run("explain", case, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "Refused" not in done.stdout
-    # half of 10 nm times ln(E*/p), E* = 113.7 GPa
-    assert re.search(r" 10 MPa .* 46\.7 nm .* p0 .* 23\.7 nm", done.stdout)
+    # 10 nm/6 times ln(1 + (beta E*/p)^3), beta E* = 2 pi 10 nm/8 um of 113.7 GPa
+    assert re.search(r" 10 MPa .* 22\.5 nm .* p0 .* 0\.898 nm", done.stdout)

@@ -7,6 +7,7 @@ from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
 from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.contact.yielding import limit_yield_switch
+from ehlpetsc.physics.asperities import LayerLaw
 
 
 def pairs(*values):
@@ -60,14 +61,7 @@ def test_contact_precedes_yielding_in_a_step():
 
 def test_compliant_node_changes_follow_from_its_unknown_pair():
     """Full of oil (p, h), under a void (q, h), and (p, q) where asperities are stiff there."""
-    layer = Layer(
-        decay=1e-3,
-        prefactor=100.0,
-        slope_modulus=1.0,
-        hardness=10.0,
-        contact_pressure=1e-2,
-        high_pressure=0.1,
-    )
+    layer = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2, high_pressure=0.1)
     model, w = CompliantContact(layer), np.array([5e-3, 20e-3, 2e-3])
     nodes = model.state(np.array([0.5, -0.3, -0.3]), w)
     q_change, w_change = np.array([0.1, 0.2, -0.1]), np.array([1e-4, -2e-4, 3e-5])
