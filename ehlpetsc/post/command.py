@@ -50,7 +50,7 @@ def _parser() -> CommandParser:
     add("--jobs", type=int, default=1, metavar="N", help="threads (default 1)")
     pictures = "also draw PNG and SVG, in FOLDER or beside the result"
     add("--pictures", nargs="?", const="", metavar="FOLDER", help=pictures)
-    point = "body point of the history picture (default: that of the largest damage)"
+    point = "body point of the history picture (default: that of the maximum damage)"
     add("--point", nargs=2, type=float, metavar=("S/A", "Z/A"), help=point)
     frame = "stored frame of the stress picture (default: the middle one)"
     add("--frame", type=int, metavar="K", help=frame)

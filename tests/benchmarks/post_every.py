@@ -2,8 +2,7 @@
 
 RESULT.h5 is stored with every = 1; its frames are thinned, each way from two first frames. Prints per surface
 and depth the median over the points of the share lost, and the share of the mean damage, in the end of both
-surfaces together: these medians of cases/table1_damage.toml are the figures that ehlpetsc post
-names in its warning.
+surfaces together; those of cases/table1_damage.toml are in the page of post.
 """
 
 import os

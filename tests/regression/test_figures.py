@@ -1,7 +1,7 @@
 """The paper's figures of contact in short forms: what each of them shows must hold.
 
 The mesh is coarser and the roughness has only just come into the contact; the figures of the full lengths are
-in cases/README.md.
+in cases/paper.md.
 """
 
 import json
