@@ -1,6 +1,7 @@
 """Runs with heat: oil balance of the stored state, heat of rubbing solids, next to no heat."""
 
 from dataclasses import replace
+from itertools import islice
 from types import SimpleNamespace
 
 import numpy as np
@@ -35,16 +36,25 @@ class StoredTemperature:
         at[volumes.THERMAL], at[volumes.LN_THERMAL_P :] = np.exp(0.5 * (cold - hot)), 0.0
 
 
-@pytest.mark.parametrize("beta", [None, 0.04], ids=["roelands", "exponential"])
-def test_oil_balance_of_the_stored_state(beta):
+@pytest.mark.parametrize(
+    "name, keys",
+    [
+        ("table1_heat.toml", MESH | {"time.travel": 0.4}),
+        ("table1_heat.toml", MESH | {"time.travel": 0.4, "heat.viscosity_temperature": 0.04}),
+        ("fzg.toml", {"mesh.points_per_half_width": 25}),
+    ],
+    ids=["roelands", "exponential", "gears"],
+)
+def test_oil_balance_of_the_stored_state(name, keys):
     """Mass defect by stored pressure, film, void fraction and temperature, over the oil that is carried."""
-    case = load(CASES / "table1_heat.toml", MESH | {"time.travel": 0.4, "heat.viscosity_temperature": beta})
+    case = load(CASES / name, keys)
     simulation = Simulation(case)
-    for accepted in simulation:
+    for accepted in islice(simulation, 200):
         state = simulation.solution
         temperature = StoredTemperature(case, accepted.film_temperature, simulation.scales.p0)
         inputs = replace(state.solution.inputs, heat=temperature)
-        reynolds = Reynolds(simulation.scales, 1.0, 0, simulation.scales.nx)
+        layer = case.contact.asperity_height or 0.0
+        reynolds = Reynolds(simulation.scales, 1.0, 0, simulation.scales.nx, layer=layer)
         nodes = state.solution.nodes
         defect, _ = reynolds.evaluate(nodes.reynolds_unknown, nodes.film, inputs)
         carried = state.m[np.abs(simulation.scales.x) <= 1.0].mean()
