@@ -140,10 +140,22 @@ settings_of_ranks() {
     cores=$(lscpu --parse=CORE | grep -v '^#' | sort -u | wc -l)
     if [ "$1" -le "$cores" ] && printf '%s\n' 6.6 "$(uname -r)" | sort -C -V; then yields=0; fi
     if [ "$1" -gt 1 ] && [ "$1" = "$cores" ]; then policy=core; fi
-    export OMPI_MCA_mpi_yield_when_idle=$yields OMPI_MCA_hwloc_base_binding_policy=$policy
+    : "${users_yield=${OMPI_MCA_mpi_yield_when_idle-}}" # as it was before the first call
+    export OMPI_MCA_mpi_yield_when_idle=${users_yield:-$yields} OMPI_MCA_hwloc_base_binding_policy=$policy
     export PRTE_MCA_hwloc_default_binding_policy=$policy
     [ "$1" -le "$cores" ] ||
         export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+}
+
+# Leave out the comment of Open MPI 5 on an exit status that the run has explained
+without_comment() {
+    trap '' INT TERM HUP USR1
+    exec awk '/^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
+        /^-+$/ && length > 70 && held == "" { held = $0 "\n"; next }
+        /^-+$/ && length > 70 { if (held !~ /prterun[ \n]+(detected|noticed)/) printf "%s%s\n", held, $0; held = ""; next }
+        held != "" { held = held $0 "\n"; next }
+        { print; fflush() }
+        END { printf "%s", held }'
 }
 
 # mpirun loses what comes before its ranks are there; the run takes the same request twice as one
@@ -161,16 +173,20 @@ stopped_early() {
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it passes on, and they stop after the current step.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_ranks() {
-    local status=0 asked="" job
+    local status=0 asked="" job comments filter
     settings_of_ranks "$ranks"
-    setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null &
+    exec {comments}> >(without_comment >&2)
+    filter=$!
+    setsid setpriv --pdeathsig TERM "$mpirun" -n "$ranks" "$python" -m ehlpetsc "$@" </dev/null 2>&$comments &
     job=$!
+    exec {comments}>&-
     trap 'asked=1; ask_until_heard $job & trap "kill -TERM $job" INT TERM' INT TERM HUP USR1
     wait $job || status=$?
     while kill -0 $job 2>/dev/null; do # a signal ends wait, not mpirun
         status=0
         wait $job || status=$?
     done
+    wait $filter || true
     # of SIGUSR1 only mpirun and a Python die that have hardly begun: the run takes it as a request
     if [ -n "$asked" ] && [ $status = 138 ]; then stopped_early; fi
     exit $status
