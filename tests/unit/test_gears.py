@@ -198,7 +198,7 @@ OWN = {key: FZG[key] for key in ("module", "teeth", "face_width", "torque", "spe
 
 
 def test_profile_shift_gives_the_play_free_pair():
-    """FZG C-GF: 91.5 mm, tips of 82.46 and 118.36 mm; a pair of one's own by DIN 3960, by hand."""
+    """FZG C-GF: 91.5 mm, tips of 82.46 and 118.36 mm; another pair checked against DIN 3960."""
     pair = GearPair(**OWN, profile_shift=(0.1817, 0.1715))
     assert pair.centre_distance == pytest.approx(91.5e-3, abs=1e-6)
     assert pair.tip_diameter == pytest.approx((82.46e-3, 118.36e-3), abs=0.01e-3)
@@ -219,7 +219,7 @@ def test_profile_shift_gives_the_play_free_pair():
 
 
 def test_helical_slice():
-    """Without helix the spur pair; of all slices the loads are the total; radius and overlap by hand."""
+    """Without helix the spur pair; of all slices the loads are the total; radius and overlap by formula."""
     spur, narrow = (
         GearPair(**OWN, profile_shift=(0.0, 0.0), load_sharing="stiffness", helix_angle=b) for b in (0, 1e-6)
     )
@@ -260,7 +260,7 @@ def rated(*keys):
 
 
 def test_standards_for_fzg_c_at_stage_9():
-    """302 N m, 2250 1/min, VG 100 at 90 degrees: each number by hand, at C where it is one of the path."""
+    """302 N m, 2250 1/min, VG 100 at 90 degrees: each standard's number, at C if it varies."""
     rating = rated()
     at, path, found = rating.path.index("C"), rating.path, values_of(rating)
     assert rating.roughness == pytest.approx(0.25e-6, rel=1e-6)
