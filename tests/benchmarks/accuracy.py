@@ -29,13 +29,8 @@ from ehlpetsc.results.post_result import PostResult, post_path
 
 MESH, STEP, NEAR = "mesh.points_per_half_width", "time.courant", "mesh.near_field"
 NEWTON, KRYLOV = "snes_atol", "ksp_rtol"
-NAMES = {
-    MESH: "mesh",
-    STEP: "time step",
-    NEAR: "near field",
-    NEWTON: "Newton tolerance",
-    KRYLOV: "Krylov tolerance",
-}
+NAMES = {MESH: "mesh", STEP: "time step", NEAR: "near field"}
+NAMES |= {NEWTON: "Newton tolerance", KRYLOV: "Krylov tolerance"}
 TOLERANCES = {NEWTON: (1e-2, 1e-3, 1e-4, 1e-5, 1e-7), KRYLOV: (1e-1, 1e-2, 1e-4, 1e-6, 1e-8)}
 REFERENCE_TOLERANCES = {NEWTON: 1e-9, KRYLOV: 1e-10}
 MEASURES = {
@@ -72,14 +67,13 @@ def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool
     time = load(case, overrides).time
     every = max(round(time.travel * values[MESH] / values[STEP]), 1) if time and not damage else 1
     stored = [f"output.every={every}", f"output.fields={list(fields)}".replace("'", '"')]
-    output = folder / "run.h5"
-    result = ehlpetsc.solve(
-        load(case, [*overrides, *keys, *stored]), output, options, overwrite=True, progress=False
-    )
+    output, given = folder / "run.h5", load(case, [*overrides, *keys, *stored])
+    result = ehlpetsc.solve(given, output, options, overwrite=True, progress=False)
     steps, x = result.steps, result.x / result.attrs["a"]
     h, dt = result.frame("film_thickness", -1), steps("dt")
+    cost = {"wall_s": float(steps("wall").sum()), "newton": int(steps("newton").sum()), "steps": len(dt) - 1}
     return Measured(
-        {"wall_s": float(steps("wall").sum()), "newton": int(steps("newton").sum()), "steps": len(dt) - 1},
+        cost,
         x,
         h,
         float(steps("h_min").min()),
@@ -92,12 +86,8 @@ def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool
 
 def _damage(path: Path) -> float:
     """log10 of the maximum damage on surface 2."""
-    subprocess.run(
-        [sys.executable, "-m", "ehlpetsc", "post", str(path), "--surface", "2"],
-        check=True,
-        stdout=subprocess.DEVNULL,
-        cwd=ROOT,
-    )
+    words = [sys.executable, "-m", "ehlpetsc", "post", path, "--surface", "2", "--overwrite"]
+    subprocess.run(words, check=True, stdout=subprocess.DEVNULL, cwd=ROOT)
     return float(np.log10(PostResult(post_path(path)).passed("2").max()))
 
 
@@ -157,13 +147,8 @@ def table(
 
 
 def _row(varied: str, value: object, cost: dict[str, float], found: dict[str, float]) -> dict:
-    row = dict.fromkeys(COLUMNS, np.nan) | {
-        "varied": varied,
-        "value": value,
-        "converged": "yes",
-        **cost,
-        **found,
-    }
+    row = dict.fromkeys(COLUMNS, np.nan) | {"varied": varied, "value": value, "converged": "yes"}
+    row |= {**cost, **found}
     print(text(row), flush=True)
     return row
 
@@ -180,15 +165,13 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
     shown = [name for name in MEASURES if any(row[name] > 0.0 for row in rows[1:])]
     figure = Figure(figsize=(3.4 * len(shown), 6.6), layout="constrained")
     axes = figure.subplots(2, len(shown), sharey="col", squeeze=False)
+    costs = {"wall_s": "wall time [s]", "newton": "Newton iterations"}
     for column, name in zip(axes.T, shown, strict=True):
-        for panel, cost, label in zip(
-            column, ("wall_s", "newton"), ("wall time [s]", "Newton iterations"), strict=True
-        ):
+        for panel, (cost, label) in zip(column, costs.items(), strict=True):
             for marker, varied in zip("osD^v", dict.fromkeys(row["varied"] for row in others), strict=False):
-                chosen = sorted(
-                    (row for row in others if row["varied"] == varied), key=lambda row: row["value"]
-                )
-                values = [(row[cost], max(row[name], 1e-8)) for row in chosen if row["converged"] == "yes"]
+                chosen = [row for row in others if row["varied"] == varied and row["converged"] == "yes"]
+                chosen.sort(key=lambda row: row["value"])
+                values = [(row[cost], max(row[name], 1e-8)) for row in chosen]
                 panel.loglog(*np.transpose(values), marker=marker, ms=4, lw=0.8, label=varied)
             panel.loglog(base[cost], max(base[name], 1e-8), "k*", ms=11, label="the case as it is")
             panel.axhline(reference[name], color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
@@ -206,18 +189,14 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
 
 def main() -> None:
     """Run the command."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("case", type=Path)
-    parser.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="for all runs")
-    parser.add_argument(
-        "--meshes", type=int, nargs="+", default=[50, 100, 200, 400], help="points per half-width"
-    )
-    parser.add_argument("--courant", type=float, nargs="+", default=[0.5, 1.0, 2.0, 4.0])
-    parser.add_argument(
-        "--damage", action="store_true", help="damage of surface 2, which must pass the whole mesh"
-    )
+    form = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=form)
+    add = parser.add_argument
+    add("case", type=Path)
+    add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help="for all runs")
+    add("--meshes", type=int, nargs="+", default=[50, 100, 200, 400], help="points per half-width")
+    add("--courant", type=float, nargs="+", default=[0.5, 1.0, 2.0, 4.0])
+    add("--damage", action="store_true", help="damage of surface 2, which must pass the whole mesh")
     chosen = parser.parse_args()
     rows = table(chosen.case, chosen.set, chosen.meshes, chosen.courant, chosen.damage)
     with open(f"{chosen.case.stem}.accuracy.csv", "w", newline="") as file:

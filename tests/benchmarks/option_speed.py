@@ -1,9 +1,8 @@
 """PETSc options on the measured contact: ``python3 tests/benchmarks/option_speed.py [--ranks N]``.
 
-Time steps of cases/table1_rough.toml with both surfaces rough in half of the contact, each run from the same
-restart file, with one option changed: wall clock time of the steps over that of the defaults, runs in turns,
-medians; Newton's iterations, halved steps, and the greatest change of pressure in p0. With more than one rank
-the preconditioners that PETSc has for it take the options' place.
+Steps of cases/table1_rough.toml with both surfaces rough in half of the contact, all from a restart file,
+each with one option changed (on more ranks: a preconditioner): wall time over that of the defaults, runs
+in turns, medians; Newton iterations, halved steps, maximum change of pressure in p0.
 """
 
 import argparse
@@ -23,31 +22,19 @@ from ehlpetsc.results.reader import read_result
 
 BEGIN = 2.5  # half widths travelled before
 NEAR = "--set mesh.near_field=8"  # what is best without the far field in the preconditioner
-ONE_RANK = (
+LU, PARTS = "-pc_type lu", "-pc_type bjacobi -sub_pc_type"
+ONE_RANK = [
     "",
-    "-snes_atol 1e-3",
-    "-snes_atol 1e-7",
-    "-snes_atol 1e-10",
+    *(f"-snes_atol {size}" for size in ("1e-3", "1e-7", "1e-10")),
     "-ksp_rtol 1e-2",
     "-ksp_rtol 1e-8",
-    f"-pc_type lu {NEAR}",
-    "-pc_type lu",
-    "-pc_type lu --set mesh.near_field=20",
-    f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}",
-    f"-pc_type ilu -pc_factor_levels 1 {NEAR}",
-    "-ksp_type gmres",
-    "-ksp_type bcgs",
-    "-snes_linesearch_type bt",
-    "-snes_linesearch_type l2",
-)
-MORE_RANKS = (
-    "",
-    f"-pc_type bjacobi -sub_pc_type lu {NEAR}",
-    f"-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu {NEAR}",
-    f"-pc_type lu -pc_factor_mat_solver_type mumps {NEAR}",
-    f"-pc_type lu -pc_factor_mat_solver_type superlu_dist {NEAR}",
-    f"-pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 1 {NEAR}",
-)
+]
+ONE_RANK += [f"{LU} {NEAR}", LU, f"{LU} --set mesh.near_field=20", f"-pc_type ilu -pc_factor_levels 1 {NEAR}"]
+ONE_RANK += [f"{LU} -pc_factor_mat_solver_type mumps {NEAR}", "-ksp_type gmres", "-ksp_type bcgs"]
+ONE_RANK += ["-snes_linesearch_type bt", "-snes_linesearch_type l2"]
+MORE_RANKS = ["", f"{PARTS} lu {NEAR}", f"-pc_type asm -pc_asm_overlap 8 -sub_pc_type lu {NEAR}"]
+MORE_RANKS += [f"{LU} -pc_factor_mat_solver_type {name} {NEAR}" for name in ("mumps", "superlu_dist")]
+MORE_RANKS += [f"{PARTS} ilu -sub_pc_factor_levels 1 {NEAR}"]
 
 
 def start(case, folder):

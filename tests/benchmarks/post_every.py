@@ -22,18 +22,16 @@ DEPTHS = (0.0, 0.01, 0.03, 0.1, 0.5)
 FRAMED = ("time", "step", "pressure", "shear_stress_2", "shear_stress_1")
 
 
-def thin(source, target, every, start):
-    """Copy of a result with every so manieth frame."""
-    with h5py.File(source) as old, h5py.File(target, "w") as new:
+def processed(source, folder, every, start):
+    """Post-processing result of every so manieth frame."""
+    path = Path(folder) / "thinned.h5"
+    with h5py.File(source) as old, h5py.File(path, "w") as new:
         new.attrs.update(old.attrs)
         for name in ("x", "contact_count", "steps", "surface"):
             old.copy(name, new)
         for name in FRAMED:
             new[name] = old[name][start::every]
-
-
-def processed(path, output):
-    """Post-processing result of a file."""
+    output = Path(folder) / f"{every}_{start}.post.h5"
     run(Job(str(path), str(output), depths=DEPTHS))
     return PostResult(output)
 
@@ -46,34 +44,24 @@ def pairs(whole, part, surface, depth):
 
 
 def lost(full, kept):
-    """Shares of the damage lost: of the median point, and of the mean."""
-    return np.median(1 - kept / full), 1 - kept.mean() / full.mean()
+    """Shares of the damage lost [%]: of the median point, and of the mean."""
+    return 100 * np.median(1 - kept / full), 100 * (1 - kept.mean() / full.mean())
 
 
-def main(source):
-    """Print the table."""
-    with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
-        whole = processed(source, Path(folder) / "1.post.h5")
-        for every in (2, 4, 8):
-            parts = []
-            for start in (0, every // 2):
-                path = Path(folder) / f"{every}_{start}.h5"
-                thin(source, path, every, start)
-                parts.append(processed(path, f"{path}.post"))
-                path.unlink()
-            for k, depth in enumerate(DEPTHS):
-                found = [[pairs(whole, part, name, k) for name in whole.surfaces] for part in parts]
-                for j, name in enumerate(whole.surfaces):
-                    show(every, f"{name} surface", depth, [lost(*of_part[j]) for of_part in found])
-                show(every, "both surfaces", depth, [lost(*np.concatenate(each, axis=1)) for each in found])
-
-
-def show(every, what, depth, losses):
-    """Print a line: the mean over the two ways to thin."""
-    point, mean = 100 * np.mean(losses, axis=0)
-    place = f"every {every}, {what}, z/a = {depth:<4g}"
-    print(f"{place}: {point:5.1f} % of a point's damage, {mean:5.1f} % of the mean")
+def main(source, folder):
+    """Print the table; each share is the mean over the two first frames."""
+    whole = processed(source, folder, 1, 0)
+    for every in (2, 4, 8):
+        parts = [processed(source, folder, every, start) for start in (0, every // 2)]
+        for k, depth in enumerate(DEPTHS):
+            found = {name: [pairs(whole, part, name, k) for part in parts] for name in whole.surfaces}
+            found["both"] = [np.concatenate(each, axis=1) for each in zip(*found.values(), strict=True)]
+            for name, of_parts in found.items():
+                point, mean = np.mean([lost(*each) for each in of_parts], axis=0)
+                place = f"every {every}, surface {name}, z/a = {depth:<4g}"
+                print(f"{place}: {point:5.1f} % of a point's damage, {mean:5.1f} % of the mean")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
+        main(sys.argv[1], folder)

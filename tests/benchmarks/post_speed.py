@@ -18,8 +18,8 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 from support.made_loads import Scene, write
 
 from ehlpetsc.post import Material
@@ -64,13 +64,11 @@ def histories(points, samples):
     rng = np.random.default_rng(0)
     t = np.arange(samples)
     base = -1e9 * np.sqrt(np.clip(1 - ((t - samples / 2) / (samples / 3)) ** 2, 0, None))
-    phase = rng.uniform(0, 2 * np.pi, (3, points, 1))
-    ripple = (
-        0.3 * np.sin(t / 30 + phase[0]) + 0.1 * np.sin(t / 7 + phase[1]) + 0.3 * np.sin(t / 110 + phase[2])
-    )
-    return np.stack([base * (1 + 0.7 * ripple), base * (1 + ripple), -0.3 * base * ripple], axis=1).astype(
-        np.float32
-    )
+    phases = rng.uniform(0, 2 * np.pi, (3, points, 1))
+    waves = zip((0.3, 0.1, 0.3), (30, 7, 110), phases, strict=True)
+    ripple = sum(size * np.sin(t / length + phase) for size, length, phase in waves)
+    parts = base * (1 + 0.7 * ripple), base * (1 + ripple), -0.3 * base * ripple
+    return np.stack(parts, axis=1).astype(np.float32)
 
 
 def counting_speed(points=2000, samples=6000):
@@ -87,46 +85,30 @@ def counting_speed(points=2000, samples=6000):
         return
     few = stress[:10, 1].astype(float).tolist()
     plain = 10 * samples / best(lambda: [list(extract_cycles(row)) for row in few], 2) / 1e6
-    print(
-        f"PyPI rainflow, counting alone: {plain:.2f} million samples a second, "
-        f"ratio {rates['sz'] / plain:.0f}"
-    )
+    print(f"PyPI rainflow, counting alone: {plain:.2f} million a second, ratio {rates['sz'] / plain:.0f}")
 
 
-def post(path, jobs):
-    """Wall and processor time (user and system) of one run of the command, s."""
-    output = path.with_name("out.post.h5")
-    command = [sys.executable, "-m", "ehlpetsc", "post", path, "-o", output, "--surface", "2"]
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    root = Path(__file__).resolve().parents[2]
-    subprocess.run([*command, "--jobs", str(jobs)], check=True, capture_output=True, cwd=root)
-    wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
-    output.unlink()
-    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
-def run_speed(folder):
-    path = Path(folder) / "speed.h5"
+def run_speed(path):
+    """Wall and processor time of the command on one thread and on two, in turns."""
     scene = Scene(per_width=400, ratio=0.6087, steps=24800)
     write(path, scene, depths=(0.0, 0.01, 0.05, 0.5))
     print(f"file: {path.stat().st_size / 1e6:.0f} MB, {scene.time.size} frames of {scene.x.size} nodes")
-    walls, works = {1: [], 2: []}, {1: [], 2: []}
-    for jobs in (1, 2) * 5:  # in turns: the load of the machine changes
-        wall, work = post(path, jobs)
-        walls[jobs].append(wall)
-        works[jobs].append(work)
-        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e6
-        print(
-            f"--jobs {jobs}: {wall:.1f} s, processor {work:.1f} s, memory up to {peak:.2f} GB so far",
-            flush=True,
-        )
-    pairs = ", ".join(f"{one / two:.2f}" for one, two in zip(walls[1], walls[2], strict=True))
-    share = np.median(works[1]) / np.median(walls[1])
+    command = [sys.executable, "-m", "ehlpetsc", "post", path, "--surface", "2", "--overwrite", "--jobs"]
+    times = {1: [], 2: []}  # wall, processor
+    for jobs in (1, 2) * 5:
+        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+        subprocess.run([*command, str(jobs)], check=True, capture_output=True, cwd=ROOT)
+        wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+        work = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        times[jobs].append((wall, work))
+        peak = after.ru_maxrss / 1e6
+        print(f"--jobs {jobs}: {wall:.1f} s, processor {work:.1f} s, memory up to {peak:.2f} GB", flush=True)
+    pairs = ", ".join(f"{one[0] / two[0]:.2f}" for one, two in zip(times[1], times[2], strict=True))
+    one, two = (np.median(times[jobs], axis=0) for jobs in (1, 2))
     print(
-        f"speed-up of two threads over one, pair by pair: {pairs}; "
-        f"one had {100 * share:.0f} % of a processor\n"
-        f"processor time of two over one: {np.median(works[2]) / np.median(works[1]):.2f} (1: nothing lost)"
+        f"speed-up of two threads over one, pair by pair: {pairs}; one had {100 * one[1] / one[0]:.0f} % of a"
     )
+    print(f"processor; processor time of two over one: {two[1] / one[1]:.2f} (1: nothing lost)")
 
 
 if __name__ == "__main__":
@@ -137,4 +119,4 @@ if __name__ == "__main__":
     counting_speed()
     if chosen.full:
         with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
-            run_speed(folder)
+            run_speed(Path(folder) / "speed.h5")

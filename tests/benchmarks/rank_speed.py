@@ -1,12 +1,8 @@
 """One contact on several ranks: ``python3 tests/benchmarks/rank_speed.py [--meshes 200] [--ranks 1 2 4]``.
 
-The measured surfaces where both fill the contact's front half, the mesh as fine as asked for. The same steps
-on each number of ranks, in turns, `--repeats` times; of each
-
-* milliseconds of an iteration of SNES, and of the whole step with its predictor and observables, medians;
-* how many times as fast the first number of ranks asked for is than this;
-* Newton and Krylov iterations: the same on any number of ranks;
-* the largest memory that a rank has used.
+The measured surfaces where both fill the contact's front half. The same steps on each number of ranks, in
+turns, `--repeats` times: medians of the time of an iteration of SNES and of the whole step, the speed-up over
+the first number of ranks, iterations (equal on any number), and the maximum memory of a rank.
 """
 
 import argparse
@@ -70,14 +66,8 @@ def inside(points):
     comm.Barrier()
     whole = time.perf_counter() - begun
     memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, MPI.MAX)
-    figures = {
-        "nodes": solver.system.n,
-        "snes": 1e3 * spent[0] / newton,
-        "step": 1e3 * whole / newton,
-        "newton": newton,
-        "krylov": krylov[0],
-        "memory": memory,
-    }
+    figures = {"nodes": solver.system.n, "newton": newton, "krylov": krylov[0], "memory": memory}
+    figures |= {"snes": 1e3 * spent[0] / newton, "step": 1e3 * whole / newton}
     if comm.rank == 0:
         print(json.dumps(figures), flush=True)
 
@@ -103,18 +93,13 @@ def main():
 
 def print_row(points, taken):
     """One line for each number of ranks."""
-    base = None
+    base = [one["snes"] for one in next(iter(taken.values()))]
     for ranks, figures in taken.items():
-        median = {name: statistics.median(f[name] for f in figures) for name in figures[0]}
-        base = base or [f["snes"] for f in figures]
-        ratio = statistics.median(b / f["snes"] for b, f in zip(base, figures, strict=True))
-        print(
-            f"a/{points}, {median['nodes']:.0f} nodes, {ranks} ranks: "
-            f"SNES {median['snes']:.2f} ms an iteration, step {median['step']:.2f} ms; "
-            f"{ratio:.2f} times as fast; {median['newton']:.0f} Newton and {median['krylov']:.0f} Krylov "
-            f"iterations; {median['memory']:.0f} MB",
-            flush=True,
-        )
+        median = {name: statistics.median(one[name] for one in figures) for name in figures[0]}
+        faster = statistics.median(b / one["snes"] for b, one in zip(base, figures, strict=True))
+        print(f"a/{points}, {median['nodes']:.0f} nodes, {ranks} ranks, {faster:.2f} times as fast:", end=" ")
+        print(f"{median['snes']:.2f} ms a SNES iteration, {median['step']:.2f} with the whole step;", end=" ")
+        print(f"{median['newton']:.0f} Newton, {median['krylov']:.0f} Krylov, {median['memory']:.0f} MB")
 
 
 if __name__ == "__main__":
