@@ -186,19 +186,20 @@ class _Life:
         return self.history.done < self.jumps.passes and self.history.solved < self.case.life.max_solved
 
     def _solve(self, stop: Callable | None) -> Round:
-        """The next round."""
+        """The next round: of a single position while passes yield, as each changes the next."""
         from ehlpetsc.life.rounds import Round
 
         solve = partial(self._solve_pass, self._plastic())
-        return Round(self.ranks.solve(self._next_positions(), solve, stop), self.positions.passes_2)
-
-    def _next_positions(self) -> list[int]:
-        """Positions of the next round: a single one while passes yield, as each changes the next."""
-        count, rows = self.positions.count, self.history.rows
+        every, rows = list(range(self.positions.count)), self.history.rows
         yields = self.case.contact.yield_pressure is not None
-        if yields and (not rows or self.jumps.is_yielding(rows[-1]["yielded"])):
-            return [self.history.solved % count]
-        return list(range(count))
+        is_single = yields and (not rows or self.jumps.is_yielding(rows[-1]["yielded"]))
+        positions = [self.history.solved % len(every)] if is_single else every
+        solved_round = Round(self.ranks.solve(positions, solve, stop), self.positions.passes_2)
+        rest = [position for position in every if position not in positions]
+        if rest and not self.jumps.is_yielding(solved_round.yielded):  # a jump takes the mean of all
+            rest_passes = self.ranks.solve(rest, solve, stop)
+            solved_round = solved_round._replace(passes=[*solved_round.passes, *rest_passes])
+        return solved_round
 
     def _solve_pass(
         self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: Callable | None

@@ -153,3 +153,16 @@ def test_continued_life_equals_an_uninterrupted_one(tmp_path):
                 assert body.wear == pytest.approx(other.wear, rel=1e-9)
                 assert body.damage == pytest.approx(other.damage, rel=1e-9)
     assert len(once.bodies[0][1].s) > len(once.bodies[0][0].s) - 20
+
+
+def test_yield_pressure_that_no_pass_reaches_leaves_a_life_as_it_is(tmp_path):
+    """Also the first round solves all positions of surface 2."""
+    keys, lives = {"time.pass_shift": 50e-6, "life.partners": 2}, []
+    for yielding in ({}, {"contact.yield_pressure": 1e11}):
+        path = tmp_path / f"{len(lives)}.life.h5"
+        lives.append(run_life(case(keys | yielding), path, most=2, unresolved=True))
+    elastic, hard = lives
+    assert hard("solved").tolist() == elastic("solved").tolist() == [2, 2]
+    assert hard("passes") == pytest.approx(elastic("passes"), rel=1e-6)
+    for name in ("damage_1", "damage_2", "wear_volume_2"):
+        assert hard(name) == pytest.approx(elastic(name), rel=1e-6), name
