@@ -16,7 +16,7 @@ temperature a hot node can be the more fluid one although its pressure is higher
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled, unsigned
+from ehlpetsc.base.compiled import compiled, inlined, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.physics.asperities import flow_factor
 from ehlpetsc.physics.laws import relative_density
@@ -62,7 +62,7 @@ def extrapolated(m: np.ndarray, behind: np.ndarray, k: float) -> np.ndarray:
     return out
 
 
-@compiled
+@inlined
 def fill_mass(
     i: int, q: float, h: float, density: tuple, p0: float, film: float, unit: float, at: np.ndarray
 ) -> float:

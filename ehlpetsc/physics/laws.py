@@ -11,6 +11,7 @@ import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -77,35 +78,49 @@ class OilLaw(NamedTuple):
     temperature: float = STANDARD_TEMPERATURE  # at which `fluid.viscosity` holds [K]
 
 
+@cache
 def n_constants(function: Callable[..., Derivatives], state: int) -> int:
     """Number of constants of a law of `state` variables."""
     return len(inspect.signature(function).parameters) - state
 
 
-def switched(laws: Mapping[str, Law], state: int) -> Callable[..., Derivatives]:
-    """Compiled function of (kind, p, constants) or (kind, p, T, constants) over all laws of a table."""
+def switched(laws: Mapping[str, Law], state: int, pair: bool = False) -> Callable[..., Derivatives]:
+    """Compiled function of (kind, (p,) or (p, T), constants) over a table of laws; pair: (p, T, T)."""
     functions = [law.function for law in laws.values()]
     call: Callable[..., Derivatives] | None = None
     for kind in reversed(range(len(functions))):
-        call = _or_else(functions[kind], kind, call, state)
+        call = _or_else(functions[kind], kind, call, state, pair)
     return call
 
 
 def _or_else(
-    function: Callable[..., Derivatives], kind: int, other: Callable[..., Derivatives] | None, state: int
+    function: Callable[..., Derivatives],
+    kind: int,
+    other: Callable[..., Derivatives] | None,
+    state: int,
+    pair: bool,
 ) -> Callable[..., Derivatives]:
     count, law = n_constants(function, state), inlined(function, cache=False)
+    if pair:  # in one branch: what depends on p alone is computed once
+
+        def here(at: tuple, c: tuple[float, ...]) -> Derivatives:
+            return law(at[0], at[1], *c[:count]), law(at[0], at[2], *c[:count])
+
+    else:
+
+        def here(at: tuple, c: tuple[float, ...]) -> Derivatives:
+            return law(*(at + c[:count]))
+
+    here = inlined(here, cache=False)
     if other is None:
 
         def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
-            return law(*(at + c[:count]))
+            return here(at, c)
 
     else:
 
         def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
-            if k == kind:
-                return law(*(at + c[:count]))
-            return other(k, at, c)
+            return here(at, c) if k == kind else other(k, at, c)
 
     return inlined(call, cache=False)
 
@@ -145,12 +160,10 @@ def power_law(
     * Walther: :math:`c[P-1]+\ln\nu(T)-\ln\nu(T_0)`, see :func:`walther`;
     * both: :math:`c[P-1]+P\,(\ln\nu(T)-\ln\nu(T_0))`, Walther's at ambient pressure, as Roelands' under it.
     """
-    if z == 1.0:  # the difference would lose digits
-        power, by_p, rise = 1.0 + p / reference, 1.0 / reference + 0.0 * p, p / reference
-    else:
-        base = 1.0 + p / reference
-        power = base**z
-        by_p, rise = z * power / (base * reference), power - 1.0
+    base = 1.0 + p / reference
+    power = base**z  # in no branch, so that a compiler can share it between temperatures
+    by_p = z * power / (base * reference)
+    rise = p / reference if z == 1.0 else power - 1.0  # which would lose digits
     if thermal == ROELANDS:
         theta = ((T - ROELANDS_ZERO) / (t0 - ROELANDS_ZERO)) ** (-first)
         ln_eta = factor * (rise * theta + (theta - 1.0))
@@ -423,13 +436,19 @@ LAWS = {
     ),
     **dict(of_user("LAWS")),
 }
-_ln_viscosity = switched(LAWS, 2)
+_ln_viscosity, _ln_viscosities = switched(LAWS, 2), switched(LAWS, 2, pair=True)
 
 
 @inlined
 def ln_viscosity(law: tuple, p: float, T: float) -> Derivatives:
     """ln(eta/eta0) at one state with its derivatives by p [1/Pa] and T [1/K]; law as of `viscosity_law`."""
     return _ln_viscosity(law[0], (p, T), law[1])
+
+
+@inlined
+def ln_viscosities(law: tuple, p: float, T: float, other: float) -> tuple[Derivatives, Derivatives]:
+    """:func:`ln_viscosity` at two temperatures, in little more time."""
+    return _ln_viscosities(law[0], (p, T, other), law[1])
 
 
 def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
@@ -444,11 +463,6 @@ def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tup
     """ln(eta/eta0), by default at the reference temperature, and its derivative by p [1/Pa]."""
     law = viscosity_law(fluid, heat)
     return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
-
-
-def slope_by_temperature(p: np.ndarray, T: np.ndarray, fluid: Any, heat: Any) -> np.ndarray:
-    """d ln(eta)/dT [1/K]."""
-    return LAWS[fluid.law](p, T, viscosity_law(fluid, heat).constants)[2]
 
 
 def is_linear_in_temperature(law: OilLaw) -> bool:

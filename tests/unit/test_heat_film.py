@@ -32,11 +32,11 @@ WALLS = (372.0, 368.0, 1.4e-8, 1.9e-8)
 A, B, G, SPREAD = 2e4, 2e4 * 365.0, 3e7, 2.0
 
 
-SECANT, REFERENCE = 385.0, 375.0
+MIDDLE, REFERENCE = 395.0, 375.0
 
 
 def solved(p=0.8e9, h=3e-7, left=0.9, walls=WALLS, law=LAW, guess=370.0):
-    return film_temperature(guess, 0.0, p, h, left, A, B, G, SPREAD, SECANT, REFERENCE, walls, law)
+    return film_temperature(guess, 0.0, p, h, left, A, B, G, SPREAD, MIDDLE, REFERENCE, walls, law)
 
 
 LAWS = {
@@ -64,11 +64,12 @@ def test_shear_stress_of_a_film_without_transport(law):
     """That of the closed form between the walls, whose temperatures follow from the fluxes."""
     a, walls = 1e-6, (372.0, 372.0, 1.4e-8, 1.4e-8)
     t, _, _, q1, q2, shear, *_ = film_temperature(
-        370.0, 0.0, 0.8e9, 3e-7, 1.0, a, a * 363.0, 0.0, SPREAD, SECANT, REFERENCE, walls, law
+        370.0, 0.0, 0.8e9, 3e-7, 1.0, a, a * 363.0, 0.0, SPREAD, MIDDLE, REFERENCE, walls, law
     )
     wall = 372.0 + 1.4e-8 * q1
-    _, _, slope = ln_viscosity(law.viscosity, 0.8e9, SECANT)
-    eta = ln_viscosity(law.viscosity, 0.8e9, REFERENCE)[0] + slope * (wall - REFERENCE)
+    ln_eta, middle = (ln_viscosity(law.viscosity, 0.8e9, t)[0] for t in (REFERENCE, MIDDLE))
+    slope = (middle - ln_eta) / (MIDDLE - REFERENCE)
+    eta = ln_eta + slope * (wall - REFERENCE)
     rise = law.conductivity_pressure * 0.8e9 / (1.0 + law.conductivity_saturation * 0.8e9)
     grown = (1.0 + law.stress_pressure * 0.8e9) * (1.0 + law.stress_temperature * (REFERENCE - 363.0))
     film = film_stress(

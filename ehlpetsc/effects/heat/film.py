@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     LN_ETA_P,
@@ -26,9 +26,9 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
     positive_extrapolation,
 )
-from ehlpetsc.effects.heat.film_law import A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
 from ehlpetsc.effects.heat.half_spaces import BodyStep
-from ehlpetsc.physics.laws import ln_viscosity
+from ehlpetsc.physics.laws import ln_viscosities
 from ehlpetsc.physics.rheology import MIN_RATE, stress_spread
 
 
@@ -114,24 +114,29 @@ def heated_nodal(
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
         of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
         left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, viscosity, base[i], profile[i] = film_temperature(
+        t, t_p, t_h, _, _, _, line, base[i], profile[i] = film_temperature(
             base[i], profile[i], p, at[H, i], left, *of_node
         )
-        _fill_fluidity(i, p, t, viscosity, t_p, t_h, law, p0, film, at)
+        zero = law.viscosity[2]
+        if law.is_linear:  # in T: no second power of the pressure
+            (ln_eta, beta, by_p), start = line, of_nodes[REFERENCE, i]
+            viscosity = ln_eta - beta * (t - start), by_p, -beta
+            at_zero = ln_eta - beta * (zero - start), by_p, -beta
+        else:
+            viscosity, at_zero = ln_viscosities(law.viscosity, p, t, zero)
+        _fill_fluidity(i, viscosity, at_zero, t_p, t_h, law, p0, film, at)
         mean[i] = t
     if at.shape[1] > nodes:
         p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
-        t = mean[nodes - 1]
-        viscosity = ln_viscosity(law.viscosity, p, t)
-        _fill_fluidity(nodes, p, t, viscosity, 0.0, 0.0, law, p0, film, at)
+        viscosities = ln_viscosities(law.viscosity, p, mean[nodes - 1], law.viscosity[2])
+        _fill_fluidity(nodes, *viscosities, 0.0, 0.0, law, p0, film, at)
 
 
-@compiled
+@inlined
 def _fill_fluidity(
     i: int,
-    p: float,
-    t: float,
     viscosity: tuple[float, float, float],
+    at_reference: tuple[float, float, float],
     t_p: float,
     t_h: float,
     law: FilmLaw,
@@ -140,11 +145,7 @@ def _fill_fluidity(
     at: np.ndarray,
 ) -> None:
     """Fill in the fluidity of node i at the reference temperature, and the factor on it by the film's."""
-    ln_eta, by_p, by_t = viscosity
-    if law.is_linear:  # linear in T: no second power of the pressure
-        ln_eta_0, by_p_0 = ln_eta - by_t * (t - law.viscosity[2]), by_p
-    else:
-        ln_eta_0, by_p_0, _ = ln_viscosity(law.viscosity, p, law.viscosity[2])
+    (ln_eta, by_p, by_t), (ln_eta_0, by_p_0, _) = viscosity, at_reference
     at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta_0) / law.eta0, p0 * by_p_0
     at[THERMAL, i] = np.exp(0.5 * (ln_eta_0 - ln_eta))
     at[LN_THERMAL_P, i] = 0.5 * p0 * (by_p_0 - by_p - by_t * t_p)

@@ -41,6 +41,7 @@ from ehlpetsc.physics.laws import (
     SLOTS,
     conductivity,
     is_linear_in_temperature,
+    ln_viscosities,
     ln_viscosity,
     viscosity_law,
 )
@@ -54,11 +55,12 @@ QUADRATIC = 1e-3  # K: change in an iteration of Newton's method, after which it
 QUADRATIC_Y = 1e-4  # the same of y
 MAX_SPLIT_CHANGE = 1e-6  # of d
 MIN_SLOPE = 1e-12  # 1/K
+MIN_RISE = 0.1  # K of the secant
 MIN_HEATING = 1e-12  # of b: less does not heat the film
 MIN_STRESS = 0.1  # of the shear law's stress, over that at the reference temperature
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
-A, B, G, SPREAD, W1, W2, R1, R2, SECANT, REFERENCE = range(10)  # rows of FilmHeat.of_nodes
+A, B, G, SPREAD, W1, W2, R1, R2, MIDDLE, REFERENCE = range(10)  # rows of FilmHeat.of_nodes
 BASE, PROFILE, MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
 PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
@@ -177,7 +179,7 @@ def _resistivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
 def fixed_at(i: int, of_nodes: np.ndarray, law: FilmLaw) -> tuple:
     """Arguments of :func:`film_temperature` at node i from `g` on, by :class:`.film.FilmHeat`."""
     walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i]
-    return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[SECANT, i], of_nodes[REFERENCE, i], walls, law
+    return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[MIDDLE, i], of_nodes[REFERENCE, i], walls, law
 
 
 @inlined
@@ -188,15 +190,16 @@ def _split(kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: 
 
 
 @inlined
-def _line(p: float, secant: float, reference: float, law: FilmLaw) -> tuple[float, float, float, float]:
-    """ln(eta/eta0) at the temperature `reference` and its secant, -d/dT [1/K]; both derivatives by p."""
-    value, by_p, slope = ln_viscosity(law.viscosity, p, reference)
+def _line(p: float, middle: float, reference: float, law: FilmLaw) -> tuple[float, float, float, float]:
+    """ln(eta/eta0) at `reference`, its secant to the temperature `middle`, -d/dT [1/K]; both by p."""
     if law.is_linear:
+        value, by_p, slope = ln_viscosity(law.viscosity, p, reference)
         return value, max(-slope, MIN_SLOPE), by_p, 0.0
-    _, _, slope = ln_viscosity(law.viscosity, p, secant)
-    step = 1e-6 * p + 1.0
-    _, _, further = ln_viscosity(law.viscosity, p + step, secant)
-    return value, max(-slope, MIN_SLOPE), by_p, (slope - further) / step
+    rise = max(middle - reference, MIN_RISE)
+    (value, by_p, _), (further, further_by_p, _) = ln_viscosities(
+        law.viscosity, p, reference, reference + rise
+    )
+    return value, max((value - further) / rise, MIN_SLOPE), by_p, (by_p - further_by_p) / rise
 
 
 @inlined
@@ -210,7 +213,7 @@ def film_temperature(
     b: float,
     g: float,
     spread: float,
-    secant: float,
+    middle: float,
     reference: float,
     walls: tuple[float, float, float, float],
     law: FilmLaw,
@@ -229,10 +232,9 @@ def film_temperature(
         Heat that does not depend on the temperature [W/m^2].
     spread
         :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress.
-    secant, reference
-        Temperatures of the last level [K]: the slope of ln(eta) at the first is :math:`\beta`, its secant
-        from :math:`T_s` to the middle; the second is :math:`T_s`, with the viscosity of its law. Around it
-        this law is exponential, which leaves one solution.
+    middle, reference
+        Temperatures of the last level [K], in the middle of the film and :math:`T_s`: :math:`\beta` is the
+        secant of ln(eta) between them. Around the second the law is exponential, which leaves one solution.
     walls
         W1, W2 [K], R1, R2 [m^2 K/W].
 
@@ -242,8 +244,8 @@ def film_temperature(
         Mean across the film [K] and its derivatives [K/Pa], [K/m].
     q1, q2, shear_heat
         Heat fluxes into both surfaces and Phi [W/m^2].
-    viscosity
-        Of :func:`.laws.ln_viscosity` at that temperature.
+    line
+        ln(eta/eta0) at `reference`, :math:`\beta` [1/K], derivative of the first by p [1/Pa].
     base, profile
         :math:`T_s` [K] and y.
     """
@@ -259,11 +261,11 @@ def film_temperature(
     flow = FlowLaw(kind, stress, n, width)
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
-    ln_rate, limit, ln_eta, beta, eta_p, beta_p = 0.0, np.inf, 0.0, 1.0, 0.0, 0.0
+    ln_rate, limit = 0.0, np.inf
+    ln_eta, beta, eta_p, beta_p = _line(p, middle, reference, law)
     if heat > 0.0:
         ln_rate = np.log(law.sliding * law.eta0 / (flow.stress * sheared)) - spread
         limit = np.inf if law.limit == np.inf else law.limit * p
-        ln_eta, beta, eta_p, beta_p = _line(p, secant, reference, law)
     heating = 0.125 * beta * law.sliding * r * max(left, MIN_CONDUCTING_FRACTION)
     t, y = base, profile
     temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
@@ -356,8 +358,4 @@ def film_temperature(
             break
         if case == INSULATED and energy_t >= min(w1, w2):
             break
-    if law.is_linear and heat > 0.0:
-        eta = ln_eta - beta * (temperature - reference), eta_p, -beta
-    else:
-        eta = ln_viscosity(law.viscosity, p, temperature)
-    return temperature, t_p, t_h, q1, q2, phi, eta, t, y
+    return temperature, t_p, t_h, q1, q2, phi, (ln_eta, beta, eta_p), t, y

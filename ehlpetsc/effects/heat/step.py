@@ -12,12 +12,12 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces
-from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, FilmLaw, G, film_law
+from ehlpetsc.effects.heat.film_law import MEAN, MIN_SLOPE, R1, R2, SPREAD, W1, W2, FilmLaw, G, film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.physics.flash_temperature import Solid
-from ehlpetsc.physics.laws import slope_by_temperature
+from ehlpetsc.physics.laws import LAWS, viscosity_law
 
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution
@@ -93,19 +93,23 @@ class HeatStep:
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
         of_nodes = np.array(
-            (*rows, *rubbed, *responses, self._secant(record, inputs.fluid, law), record.base)
+            (*rows, *rubbed, *responses, self._middle(record, inputs.fluid, law), record.base)
         )
         guess = np.array((record.base, record.profile, record.film))
         return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
 
-    def _secant(self, record: HeatRecord, fluid: Any, law: FilmLaw) -> np.ndarray:
-        """Temperatures [K] at which the slope of ln(eta) is its secant from the walls to the middle."""
+    def _middle(self, record: HeatRecord, fluid: Any, law: FilmLaw) -> np.ndarray:
+        r"""Temperatures in the middle of the film [K], where :math:`\ln\eta` is lower by 2 ln(cosh(y/2))."""
+        at = record.base
         if law.is_linear:
-            return record.base
-        rise, at = np.log(np.cosh(0.5 * record.profile)), record.base
-        for _ in range(2):
-            at = record.base - rise / slope_by_temperature(record.pressure, at, fluid, self.heat)
-        return at
+            return at
+        constants, viscosity = viscosity_law(fluid, self.heat).constants, LAWS[fluid.law]
+        drop = 2.0 * np.log(np.cosh(0.5 * record.profile))
+        value, _, slope = viscosity(record.pressure, at, constants)
+        bottom = value - drop
+        at = at - drop / np.minimum(slope, -MIN_SLOPE)
+        value, _, slope = viscosity(record.pressure, at, constants)
+        return at + (bottom - value) / np.minimum(slope, -MIN_SLOPE)
 
     def solve(
         self, record: HeatRecord, solution: Solution, step: Step
