@@ -6,6 +6,7 @@ The record is saved in restart files by its field names; only the effect reads i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -58,8 +59,8 @@ class Scene:
 
     @property
     def rq(self) -> float:
-        """Combined root mean square roughness [m]; 0: smooth."""
-        return self.roughness.rq if self.roughness else 0.0
+        """See :func:`combined_rq`."""
+        return combined_rq(self.case, self.roughness)
 
     @cached_property
     def mesh_on_bodies(self) -> MeshOnBodies:
@@ -69,6 +70,11 @@ class Scene:
 
         speeds = directed_speeds(self.case, self.scales)
         return MeshOnBodies(self.scales, self.positions.offsets(speeds))
+
+
+def combined_rq(case: Case, roughness: Roughness | None) -> float:
+    """Root mean square height of both profiles and the layer of asperities [m]; 0: smooth."""
+    return math.hypot(roughness.rq if roughness else 0.0, case.contact.asperity_height or 0.0)
 
 
 class Step(NamedTuple):

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from ehlpetsc import __version__
+from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
@@ -26,8 +27,8 @@ STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 
 def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected smooth minimum film over the combined root mean square height."""
-    film = film_formulas.smooth_films(case.fluid, s.E, s.conditions)[1]
-    return film / rough.rq if rough.rq > 0 else math.inf
+    film, rq = film_formulas.smooth_films(case.fluid, s.E, s.conditions)[1], combined_rq(case, rough)
+    return film / rq if rq > 0 else math.inf
 
 
 def run_time(case: Case, s: Scales, rough: Roughness | None) -> float:
@@ -89,12 +90,13 @@ def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
 
 def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
-    if case.fluid is None or not rough or rough.rq <= 0.0:
+    rq = combined_rq(case, rough)
+    if case.fluid is None or rq <= 0.0:
         return []
     ratio = lambda_ratio(case, s, rough)
     return [
-        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rough.rq:.3g} um over the combined "
-        f"Rq {1e6 * rough.rq:.3g} um, {_regime(ratio)}"
+        f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rq:.3g} um over the combined "
+        f"Rq {1e6 * rq:.3g} um, {_regime(ratio)}"
     ]
 
 

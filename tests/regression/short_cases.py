@@ -47,7 +47,10 @@ SHORT = {
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
     "running_in": (*QUICK, "time.travel=1.2", "time.passes=2", "contact.yield_pressure=1.1e9"),
-    "stribeck": (*QUICK, "series.values=[5.0, 0.05]"),
+    "stribeck": (
+        *(*QUICK, "series.values=[5.0, 0.05]", "contact.asperity_height=10e-9"),
+        *("surface.1.short_cutoff=8e-6", "surface.2.short_cutoff=8e-6"),
+    ),
     "table1_damage": QUICK,
     "table1_heat": QUICK,
     "table1_mixed": QUICK,

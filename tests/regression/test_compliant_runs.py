@@ -69,5 +69,6 @@ def test_explain_names_no_fault(case, tmp_path):
     done = run("explain", case, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "Refused" not in done.stdout
-    # 10 nm/6 times ln(1 + (beta E*/p)^3), beta E* = 2 pi 10 nm/8 um of 113.7 GPa
-    assert re.search(r" 10 MPa .* 22\.5 nm .* p0 .* 0\.898 nm", done.stdout)
+    # 76.2 nm/6 times ln(1 + (beta E*/p)^3), beta E* = 2 pi 76.2 nm/25 um of 113.7 GPa
+    assert re.search(r" 10 MPa .* 205 nm .* p0 .* 30\.9 nm", done.stdout)
+    assert "combined Rq 0.112 um" in done.stdout  # the waves on the mesh, 0.082 um, and the layer

@@ -56,6 +56,12 @@ def test_unresolved_asperities_are_given_with_their_height_fraction():
     assert line.startswith("mesh: ") and " 51.1 % of surface.1 and 51.1 % of surface.2 " in line
 
 
+def test_a_flattened_layer_has_a_limit_line():
+    (line,) = limit_lines("stribeck", h_min=0.7e-9)
+    assert line.startswith("layer: flattened from 76.2 nm to a film of 0.7 nm")
+    assert limit_lines("stribeck", h_min=0.8e-9) == []
+
+
 TOTALS = {"p_max": 1e9, "oil_pressure": 1e9, "mass_error": 0.0, "nodes_below_1nm": 0}
 HEAT = "heat.bulk_temperature=363.0"
 

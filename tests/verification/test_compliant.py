@@ -34,9 +34,9 @@ def layer_pressure(state, simulation, sigma=SIGMA):
     return 0.5 * simulation.scales.E * flattened ** (-1.0 / 3.0)
 
 
-def run(more, options=None, **kind):
+def run(more, options=None, given=None, **kind):
     """All states of a case but the fields: per-step scalars by name, and the time the contact is filled."""
-    simulation, rows = ehlpetsc.Simulation(case(more, **kind), options=options), []
+    simulation, rows = ehlpetsc.Simulation(given or case(more, **kind), options=options), []
     names = ("contact_share", "friction_coefficient", "contact_length", "newton", "retries", "load_error")
     names += ("mass_error", "contact_length_10mpa", "contact_length_100mpa")
     for state in simulation:
@@ -100,6 +100,21 @@ def test_share_friction_and_lengths_converge():
     for name, length in (("contact_length_10mpa", 2.0000), ("contact_length_100mpa", 1.6582)):  # on a/400
         assert means[name][0] > means[name][1] > means[name][2]
         assert means[name][2] / A == pytest.approx(length, rel=0.005), name
+
+
+@pytest.mark.parametrize("speed, friction, share", [(0.05, 0.0788, 0.788), (5.0, 0.0230, 0.102)])
+def test_friction_of_the_stribeck_case_converges_with_its_default_layer(speed, friction, share):
+    """Measured height, default stiffness: order 1.4 or more; reference on a/800."""
+    means = []
+    for points in (50, 100, 200):
+        scene = {"mesh.points_per_half_width": points, "motion.entrainment_speed": speed, "series": None}
+        found = run(None, given=load(CASES / "stribeck.toml", scene))
+        assert found["retries"].sum() == 0 and found["mass_error"].max() < 1e-6
+        means.append(
+            [found[name][found["filled"]].mean() for name in ("friction_coefficient", "contact_share")]
+        )
+    assert min(order(*values)[0] for values in zip(*means, strict=True)) > 1.4
+    np.testing.assert_allclose(means[-1], [friction, share], rtol=0.02)
 
 
 def test_default_stiffness_is_the_slope_of_the_longest_wave():

@@ -21,6 +21,7 @@ ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
+FLATTENED = 0.01  # film over the rms height of the layer: below it the mesh does not resolve the film
 MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
 
 
@@ -35,6 +36,7 @@ def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str
     if "p_max" not in totals:  # no step was taken
         return []
     messages = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
+    messages += [_layer(case.contact, totals)]
     if case.fluid:
         messages += [_friction(case, totals), _viscosity(case.fluid, totals)]
         messages += [_balance(case, totals), _molecules(totals)]
@@ -48,6 +50,17 @@ def _yield(case: Case, totals: dict[str, float]) -> str | None:
         f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
         f"{1e-9 * ASPERITY_YIELD_PRESSURE:g} to 8 GPa, and these solids are elastic; "
         "in mixed contact yield_pressure lets them flow"
+    )
+
+
+def _layer(contact: Any, totals: dict[str, float]) -> str | None:
+    height = contact.asperity_height
+    if height is None or totals["h_min"] - contact.adsorbed_film >= FLATTENED * height:
+        return None
+    return (
+        f"layer: flattened from {1e9 * height:.3g} nm to a film of {1e9 * totals['h_min']:.2g} nm: "
+        "friction and load on the solids depend on the mesh there; a longer short_cutoff with "
+        'asperity_height = "measured" gives a thicker layer'
     )
 
 
