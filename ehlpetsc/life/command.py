@@ -26,7 +26,6 @@ def arguments() -> CommandParser:
     )
     parser.add_argument("--after", type=int, metavar="ROW", help="continue after this row, from 1")
     parser.add_argument("--no-picture", action="store_true", help="do not draw")
-    parser.add_argument("--movie", metavar="FILE", help="profile and damage over the life: .gif, .mp4, .webm")
     return parser
 
 
@@ -42,30 +41,24 @@ def _run(chosen: Namespace) -> None:
     if path.suffix != ".h5":
         path, is_root = _run_lives(chosen)
     elif not chosen.no_picture:
-        _check_pictures(chosen, path, [path])
+        _check_picture(path, [path])
     if is_root and path.suffix == ".h5" and not chosen.no_picture:
-        _draw(chosen, path)
+        _draw(path)
 
 
-def _draw(chosen: Namespace, path: Path) -> None:
+def _draw(path: Path) -> None:
     from ehlpetsc.life.history import read_life
-    from ehlpetsc.pictures.lives import draw, save_movie
+    from ehlpetsc.pictures.lives import draw
 
-    life, target = read_life(path), path.with_suffix(".png")
-    draw(life, target)
+    target = path.with_suffix(".png")
+    draw(read_life(path), target)
     print(target)
-    if chosen.movie:
-        save_movie(life, Path(chosen.movie))
-        print(chosen.movie)
 
 
-def _check_pictures(chosen: Namespace, path: Path, inputs: list[Path]) -> None:
-    """Check the paths of the picture and the movie of a life."""
-    from ehlpetsc.results.output_guard import MOVIES, PICTURES, check_derived
+def _check_picture(path: Path, inputs: list[Path]) -> None:
+    from ehlpetsc.results.output_guard import PICTURES, check_derived
 
     check_derived(path.with_suffix(".png"), inputs, PICTURES)
-    if chosen.movie:
-        check_derived(Path(chosen.movie), inputs, MOVIES, "--movie")
 
 
 def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
@@ -92,12 +85,12 @@ def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
     options = {name: getattr(chosen, name) for name in ("overwrite", "unresolved")}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
     if case.series:
-        if chosen.after or chosen.movie:
-            raise UsageError("--after, --movie: of a life; allowed with a series: left out")
+        if chosen.after:
+            raise UsageError("--after: of a life; allowed with a series: left out")
         output = run_regimes(case, output, **options)
     else:
         if output.name and not chosen.no_picture:
-            on_root(comm, _check_pictures, chosen, output, inputs_of(case))
+            on_root(comm, _check_picture, output, inputs_of(case))
         run_life(case, output, after=chosen.after, **options)
     show(str(output))
     return output, comm.rank == 0

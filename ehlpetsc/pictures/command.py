@@ -3,7 +3,7 @@ OUTPUT.series.json, OUTPUT.passes.json; or the profiles of a CASE.toml as they w
 
 Pressure and film of one frame, by default that with the maximum load on the solids from when both profiles
 fill the contact or, without load on solids, the maximum pressure; several results at the same travel in one
-picture. The file name after -o determines the format (png, svg, pdf, eps ...; of a movie gif, mp4, webm).
+picture. The file name after -o determines the format (png, svg, pdf, eps ...).
 Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
@@ -26,9 +26,9 @@ from ehlpetsc.pictures.case_profiles import draw_case
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
 from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures, save_movie
 from ehlpetsc.pictures.report import save_report
-from ehlpetsc.pictures.series import draw_ensemble, draw_running_in
+from ehlpetsc.pictures.series import draw_running_in
 from ehlpetsc.results.index import in_order, open_all
-from ehlpetsc.results.output_guard import MOVIES, PAGES, PICTURES, check_derived
+from ehlpetsc.results.output_guard import PAGES, PICTURES, check_derived
 from ehlpetsc.results.reader import Result
 
 FIGURES = {
@@ -37,14 +37,13 @@ FIGURES = {
     "stribeck": (draw_stribeck, "friction over speed, of a series over it"),
     "traction": (draw_traction, "friction over slide/roll ratio, of a series"),
     "temperatures": (draw_temperatures, "of film and surfaces, of one with [heat]"),
-    "ensemble": (draw_ensemble, "scalars of runs that differ in their seeds"),
     "running_in": (draw_running_in, "surfaces and pressure pass by pass"),
 }
 OTHERS = {  # that are no pictures: ending, allowed files, help
     "report": (".html", PAGES, "all of one result as one HTML page"),
-    "movie": (".gif", MOVIES, "pressure and film over time, as a GIF, MP4, WebM"),
+    "movie": (".gif", (".gif",), "pressure and film over time, as a GIF"),
 }
-WITHOUT_FRAMES = ("stribeck", "traction", "ensemble")  # kinds that need the scalars of the steps alone
+WITHOUT_FRAMES = ("stribeck", "traction")  # kinds that need the scalars of the steps alone
 
 
 def arguments() -> CommandParser:

@@ -85,7 +85,7 @@ def draw_runs(runs: list[GearRun], target: Path, *, names: Sequence[str]) -> Non
     rows = [row for row in SCALARS if row[0] in names]
     figure, axes = _panels(len(rows), runs[0].title if len(runs) == 1 else "")
     for axis, (name, factor, label) in zip(axes, rows, strict=True):
-        colours = [OF_FLANKS.get(name, style.SINGLE)] if len(runs) == 1 else _colours(len(runs))
+        colours = [OF_FLANKS.get(name, style.SINGLE)] if len(runs) == 1 else style.shades(len(runs))
         for run, colour in zip(runs, colours, strict=True):
             values, position = factor * run.scalars[name], 1e3 * run.position
             axis.plot(position, values, color=colour, alpha=0.25, linewidth=0.3)
@@ -120,7 +120,7 @@ def draw_damage(runs: list[GearRun], target: Path) -> None:
                 label = f"{1e6 * first.depths[depth]:.0f} µm"
                 look = dict(color=colour, linewidth=0.5, label=label)
                 axis.semilogy(1e3 * first.arcs[k], first.damage[k][depth], **look)
-        for run, colour in zip(runs, _colours(len(runs)), strict=True) if len(runs) > 1 else ():
+        for run, colour in zip(runs, style.shades(len(runs)), strict=True) if len(runs) > 1 else ():
             if run.damage.damage[k] is not None:
                 deepest = np.nan_to_num(run.damage.damage[k]).max(axis=0)
                 look = dict(color=colour, linewidth=0.5, label=run.title)
@@ -172,11 +172,6 @@ def _finish(figure: Figure, axes: np.ndarray, target: Path, label: str = POSITIO
     figure.align_ylabels(list(axes))
     axes[-1].set_xlabel(label, fontsize=FONT)
     style.save(figure, target, chosen=Namespace(size=None, no_title=False, dpi=DPI))
-
-
-def _colours(count: int) -> list:
-    """Colours of several runs."""
-    return [style.SINGLE, style.SECOND] if count == 2 else style.shades(count)
 
 
 def _legend_above(axis: Axes, columns: int) -> None:

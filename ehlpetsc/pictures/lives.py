@@ -1,4 +1,4 @@
-"""Picture of a life and its movie."""
+"""Picture of a life."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.over_time import grab, recording
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -91,51 +90,3 @@ def under_profile(axes: Axes, body: LifeBody) -> ScalarMappable:
     deep = 1.5 * edges[1 + np.flatnonzero(most >= SHOWN_DAMAGE * most.max())[-1]]
     axes.set(xlabel="s [µm]", ylabel="height [µm]", ylim=(top.min() - deep, top.max() + 0.1 * deep))
     return image
-
-
-FRAMES_PER_ROUND = 3  # frames that a round is shown
-
-
-def save_movie(life: LifeHistory, path: Path) -> None:
-    """Write the movie.
-
-    Parameters
-    ----------
-    path
-        GIF, or MP4 and WebM where ffmpeg is installed.
-
-    Raises
-    ------
-    OutputError
-    """
-    if not life.rows:
-        raise OSError(f"{path}: not written, no pass is solved yet")
-    figure = Figure(figsize=(9.0, 6.5), layout="constrained")
-    grid = figure.subplots(3, 1, height_ratios=(3, 3, 2))
-    with recording(figure, path) as writer:
-        for row in range(len(life.rows)):
-            _draw(figure, grid, life, row)
-            for _ in range(FRAMES_PER_ROUND):
-                grab(figure, writer)
-
-
-def _draw(figure: Figure, grid: np.ndarray, life: LifeHistory, row: int) -> None:
-    for axes in grid:
-        axes.clear()
-    for k, axes in enumerate(grid[:2]):
-        image = under_profile(axes, life.bodies[row][k])
-        axes.set_title(f"surface {k + 1}", fontsize="small")
-    if row == 0:
-        figure.colorbar(image, ax=list(grid[:2]), label="log10 D")
-    passes = life("passes")
-    for side, colour in style.SURFACES.items():
-        for name, words, dashes in (("damage", "maximum D", "-"), ("pitted_share", "pitted share", "--")):
-            label = f"{words}, surface {side}"
-            grid[2].plot(passes, life(f"{name}_{side}"), dashes, color=colour, lw=1.0, label=label)
-    grid[2].axvline(passes[row], color="k", lw=0.8)
-    top = 1.05 * max(
-        1.0, *(np.max(life(f"{name}_{k}")) for name in ("damage", "pitted_share") for k in (1, 2))
-    )
-    grid[2].set(xlabel="passes", ylabel="D, share", ylim=(0.0, min(top, 2.0)))
-    grid[2].legend(fontsize="x-small", loc="upper left")
-    figure.suptitle(f"{_title(life)}: {passes[row]:,} passes", fontsize=10)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
@@ -177,8 +175,6 @@ def _only(results: list[Result], option: str) -> Result:
 MAX_FRAMES = 150
 RATE = 15  # frames per second
 DPI = 80
-EVEN_SIZE = ["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p"]  # of players
-CODECS = {".mp4": "libx264", ".webm": "libvpx-vp9"}
 
 
 def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
@@ -187,7 +183,8 @@ def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -
     chosen = np.unique(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int))
     figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
     window, limits = frames.window(results, options), _limits(results, chosen)
-    with recording(figure, path) as writer:
+    writer = PillowWriter(fps=RATE)
+    with replacing(path, keep_ending=True) as temporary, writer.saving(figure, temporary, DPI):
         for index in chosen:
             for panel in axes:
                 panel.clear()
@@ -196,29 +193,10 @@ def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -
             style.set_title(figure, *frames.panel_title(results, indices))
             for panel, limit in zip(axes, limits, strict=True):
                 panel.set_ylim(0.0, limit)
-            grab(figure, writer)
-
-
-@contextlib.contextmanager
-def recording(figure: Figure, path: Path) -> Iterator[AbstractMovieWriter]:
-    """Context manager of the writer of a movie, by the ending of its name; see `grab`."""
-    ending = path.suffix.lower()
-    if ending in CODECS and not FFMpegWriter.isAvailable():
-        raise OutputError(f"{path}: {ending} needs ffmpeg, which is not installed; without it, allowed: .gif")
-    if ending in CODECS:
-        writer = FFMpegWriter(fps=RATE, codec=CODECS[ending], extra_args=EVEN_SIZE)
-    else:
-        writer = PillowWriter(fps=RATE)
-    with replacing(path, keep_ending=True) as temporary, writer.saving(figure, temporary, DPI):
-        yield writer
-
-
-def grab(figure: Figure, writer: AbstractMovieWriter) -> None:
-    """Add a frame; the layout of the first one holds for all, so that the axes do not move."""
-    if figure.get_layout_engine() is not None:
-        figure.draw_without_rendering()
-        figure.set_layout_engine("none")
-    writer.grab_frame()
+            if index == 0:  # one layout for all frames
+                figure.draw_without_rendering()
+                figure.set_layout_engine("none")
+            writer.grab_frame()
 
 
 def _limits(results: list[Result], chosen: np.ndarray) -> tuple[float, float]:

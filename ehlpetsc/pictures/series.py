@@ -1,4 +1,4 @@
-"""Pictures of several runs: ensembles over seeds, and the passes of running-in."""
+"""Picture of the passes of running-in."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ import argparse
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from ehlpetsc.analysis.ensemble import Ensemble, deviation, ensembles
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
@@ -17,72 +15,9 @@ from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
 
-PANEL_SIZE = (3.1, 2.4)  # inches, of ensembles
-COLUMNS = 3
-PANELS = {  # of ensembles, by scalar: label, factor from SI units
-    "friction_coefficient": ("friction coefficient", 1.0),
-    "film_central": ("mean central film [µm]", 1e6),
-    "mean_gap_ratio": ("mean gap over the combined Rq", 1.0),
-    "h_min": ("minimum film [µm]", 1e6),
-    "p_max": ("maximum pressure [GPa]", 1e-9),
-    "contacts": ("nodes in contact", 1.0),
-    "contact_share": ("share of the load\non the solids", 1.0),
-    "contact_length": ("length in contact [µm]", 1e6),
-    "thin_length": ("length of thin film [µm]", 1e6),
-}
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
-
-
-def draw_ensemble(results: list[Result], _options: argparse.Namespace | None) -> Figure:
-    """Runs, mean and deviation of each scalar over the key that differs apart from seeds."""
-    all_ensembles = ensembles(results)
-    names = [name for name in PANELS if all(name in ensemble.scalars for ensemble in all_ensembles)]
-    if not names:
-        raise OutputError("no scalar that all runs have")
-    rows = -(-len(names) // COLUMNS)
-    size = (PANEL_SIZE[0] * COLUMNS + 1.2, PANEL_SIZE[1] * rows)
-    figure, axes = style.new_figure(rows, COLUMNS, size, squeeze=False)
-    at, label = _abscissae(all_ensembles)
-    span = np.ptp(at) or 1.0
-    for panel, name in zip(axes.flat, names, strict=False):
-        for x, ensemble in zip(at, all_ensembles, strict=True):
-            _draw_ensemble(panel, x, 0.03 * span, PANELS[name][1] * ensemble.scalars[name])
-        panel.set_ylabel(PANELS[name][0], fontsize="small")
-        panel.set_xlim(min(at) - 0.3 * span, max(at) + 0.3 * span)
-        panel.grid(axis="y", lw=0.3)
-        if label:
-            panel.set_xlabel(label, fontsize="small")
-        else:
-            panel.set_xticks(at, [one.name for one in all_ensembles], rotation=20, fontsize="small")
-    for panel in axes.flat[len(names) :]:
-        panel.set_axis_off()
-    handles = [
-        Line2D([], [], color=style.FAINT, marker="o", ls="", ms=3, label="one run"),
-        Line2D([], [], color=style.SINGLE, marker="o", ms=5, label="mean and\nstandard deviation"),
-    ]
-    style.legend_beside(axes[0, -1], handles)
-    style.set_title(figure, str(results[0].attrs["title"]))
-    return figure
-
-
-def _abscissae(all_ensembles: list[Ensemble]) -> tuple[list[float], str]:
-    """Values of the one number by which ensembles differ, and its label; otherwise numbers and ""."""
-    keys = list(all_ensembles[0].values)
-    values = [ensemble.values[keys[0]] for ensemble in all_ensembles] if len(keys) == 1 else []
-    if values and all(isinstance(value, int | float) for value in values):
-        return [float(value) for value in values], style.UNITS.get(keys[0], keys[0])
-    return [float(number) for number in range(len(all_ensembles))], ""
-
-
-def _draw_ensemble(axes: Axes, x: float, shift: float, values: np.ndarray) -> None:
-    """Draw the runs left and their mean with its deviation right of an abscissa."""
-    axes.plot(np.full(values.size, x - shift), values, "o", color=style.FAINT, ms=3, mew=0)
-    axes.plot(x + shift, values.mean(), "o", color=style.SINGLE, ms=5)
-    half = deviation(values)
-    if np.isfinite(half):
-        axes.vlines(x + shift, values.mean() - half, values.mean() + half, color=style.SINGLE, lw=1.6)
 
 
 def draw_running_in(results: list[Result], _options: argparse.Namespace | None) -> Figure:

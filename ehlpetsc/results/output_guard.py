@@ -22,7 +22,6 @@ WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 SIGNATURE_BYTES = 512  # at the beginning of a file, in which its signature is searched
 PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
-MOVIES = (".gif", ".mp4", ".webm")
 PAGES = (".html", ".htm")
 
 

@@ -10,7 +10,6 @@ from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.ensemble import run_scalars
-from ehlpetsc.pictures.series import draw_ensemble
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 
@@ -96,17 +95,3 @@ def test_ensemble_has_damage_quantiles(tmp_path):
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
     rows = ensemble.table(opened([path]))
     assert {unit for _, name, unit, *_ in rows if "flash" in name} == {"K"}
-
-
-@pytest.mark.parametrize("speeds, seeds", [((5.0,), range(1, 7)), ((5.0, 1.0), range(1, 7)), ((5.0,), [1])])
-def test_every_run_and_mean_is_drawn(tmp_path, speeds, seeds):
-    paths = made(tmp_path, speeds, seeds)
-    axes = draw_ensemble(opened(paths), None).axes
-    panel = next(one for one in axes if one.get_ylabel() == "share of the load\non the solids")
-    shares = [one.scalars["contact_share"] for one in ensemble.ensembles(opened(paths))]
-    expected = [part for values in shares for part in (values, [values.mean()])]
-    assert [len(values) for values in shares] == [len(seeds)] * len(speeds)
-    assert len(panel.lines) == len(expected)
-    for line, values in zip(panel.lines, expected, strict=True):
-        np.testing.assert_allclose(line.get_ydata(), values, rtol=1e-12)
-    assert len(panel.collections) == (len(speeds) if len(seeds) > 1 else 0)  # intervals

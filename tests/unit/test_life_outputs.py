@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from support import refused
 
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.command import main
 from ehlpetsc.life.driver import WIDTHS, line_of
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.regimes import outcome, winner
@@ -50,14 +48,3 @@ def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
     assert drawn[0]._suptitle.get_text() == "title (100Cr6, 16MnCr5)"
     ra = next(axes for axes in drawn[0].axes if axes.get_ylabel() == "Ra [µm]")
     assert [line.get_linestyle() for line in ra.lines] == ["-", "--"], "surface 1 shows through"
-
-
-def test_movie_has_a_frame_per_round(tmp_path, capsys):
-    from PIL import Image
-
-    path = tmp_path / "a.life.h5"
-    life(rows=3).save(path)
-    assert main([str(path), "--movie", str(tmp_path / "a.gif")]) == 0
-    with Image.open(tmp_path / "a.gif") as movie:
-        assert movie.n_frames >= 3
-    assert "--movie" in refused(capsys, main, path, "--movie", tmp_path / "a.txt")

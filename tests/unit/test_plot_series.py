@@ -122,7 +122,7 @@ def test_every_kind_of_picture_is_written(tmp_path, kind):
         paths = [yielded(tmp_path / f"{k}.h5", 1e-8 * k) for k in (1, 2)]
     elif kind == "traction":
         paths = [member(tmp_path / f"{ratio}.h5", ratio, 0.1 * ratio) for ratio in (0.1, 0.5)]
-    elif kind in ("stribeck", "ensemble"):
+    elif kind == "stribeck":
         paths = [with_solids(make_result(tmp_path / f"{u}.h5", speed=u, rough=True)) for u in (20.0, 50.0)]
     else:
         paths = [heated(tmp_path / "a.h5", 21)]
