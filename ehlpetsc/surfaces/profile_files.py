@@ -1,4 +1,4 @@
-"""Measured profiles: text files in many layouts."""
+"""Measured profiles: text files in many layouts, and the formats of the package SurfaceTopography."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
+TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
 SPACING_VARIATION = 0.02  # relative, of equally spaced points
 MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
@@ -58,7 +59,8 @@ def read_profile(
     """Abscissas, from 0 on, and heights of a profile file.
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
-    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling.
+    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
+    format through the package SurfaceTopography if it is installed.
 
     Returns
     -------
@@ -85,7 +87,8 @@ def read_profile(
 def _read(
     path: Path, layout: Layout, _modified: int, _size: int
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
-    x, z, notes = checked(*_from_text(path, layout), layout)
+    text = path.suffix.lower() in TEXT
+    x, z, notes = checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, tuple(notes)
 
@@ -117,6 +120,28 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     if len(chosen) == 1:
         return layout.spacing * np.arange(z.size), z
     return UNITS[layout.x_unit or layout.unit or "m"] * columns[chosen[0] - 1], z
+
+
+def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
+    text_keys = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
+    if text_keys:
+        raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
+    try:
+        from SurfaceTopography import read_topography
+    except ModuleNotFoundError:
+        raise ProfileError(
+            f"format {path.suffix!r} needs the package SurfaceTopography (pip install SurfaceTopography); "
+            "without it, allowed: .csv or two-column text, x and z in m"
+        ) from None
+    try:
+        topography = read_topography(str(path)).to_unit("m")
+        if topography.dim == 1:
+            return topography.positions_and_heights()
+        x, _, z = topography.positions_and_heights()
+    except Exception as error:  # various exceptions on a damaged file
+        raise ProfileError(f"SurfaceTopography cannot read it: {str(error).partition(chr(10))[0]}") from None
+    middle = z.shape[1] // 2  # of an areal map the central trace
+    return x[:, middle], z[:, middle]
 
 
 def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, list[str]]:

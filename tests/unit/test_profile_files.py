@@ -1,5 +1,7 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
+import sys
+
 import numpy as np
 import pytest
 from support import CASES
@@ -177,3 +179,25 @@ def test_implausible_profile_is_refused(tmp_path, x, z, keys, message):
         case.load(path, [f"surface.2.{key}" for key in keys])
     (fault,) = caught.value.faults
     assert "surface.2.file" in fault
+
+
+def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
+    class Topography:
+        dim = 2
+
+        def to_unit(self, unit):
+            assert unit == "m"
+            return self
+
+        def positions_and_heights(self):
+            x, y = np.meshgrid(np.arange(6) * 1e-6, np.arange(3) * 1e-6, indexing="ij")
+            return x, y, 0.1 * x + y
+
+    package = type(sys)("SurfaceTopography")
+    package.read_topography = lambda path: Topography()
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+    path = tmp_path / "p.sur"
+    path.write_bytes(b"")
+    x, z, _ = read_profile(path)
+    np.testing.assert_allclose(x, np.arange(6) * 1e-6)
+    np.testing.assert_allclose(z, 0.1 * x + 1e-6)  # the middle one of three traces
