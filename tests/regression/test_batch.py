@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 from support import ROOT
-from support.running import BARE, SHORT, settings, wait_for
+from support.running import BARE, SHORT, called, settings, wait_for
 
 from ehlpetsc.results.reader import read_result
 
@@ -62,7 +62,7 @@ def test_requeued_job_continues(tmp_path):
 def test_job_without_a_step_is_not_requeued(tmp_path):
     environment = slurm(tmp_path) | {"SLURM_RESTART_COUNT": "20"}
     words = [*JOB, "--time-limit", "1e-6"]
-    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
+    done = called(words, tmp_path, environment)
     assert done.returncode == 4 and requeued(tmp_path) == []
     assert "queued 20 times" in done.stderr
 
@@ -75,6 +75,6 @@ def test_cluster_modules_are_loaded_before_the_run(tmp_path):
     }
     (tmp_path / "run_mpi.sh").write_text("#!/bin/sh\ncat loaded\n")
     (tmp_path / "run_mpi.sh").chmod(0o755)
-    job = subprocess.run(JOB, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
+    job = called(JOB, tmp_path, environment)
     assert job.stdout == "load petsc petsc4py\n", job.stderr
     assert job.returncode == 0

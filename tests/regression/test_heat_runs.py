@@ -1,23 +1,15 @@
 """Runs with heat through restart, a series and passes; a run without it imports none of it."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from support import ROOT
-from support.running import BARE, SCRIPT, run, settings
+from support.running import PYTHON, called, run, settings
 
 from ehlpetsc.results.reader import read_result
 
 CASE = ROOT / "cases" / "table1_heat.toml"
-QUICK = (
-    "mesh.inlet=-1.4",
-    "mesh.outlet=1.3",
-    "mesh.points_per_half_width=50",
-    "time.travel=0.6",
-    "output.every=1",
-)
+MESH = "mesh.inlet=-1.4", "mesh.outlet=1.3", "mesh.points_per_half_width=50"
+QUICK = (*MESH, "time.travel=0.6", "output.every=1")
 FIELDS = ("pressure", "film_thickness", "film_temperature", "temperature_1", "heat_flux_2")
 
 
@@ -70,6 +62,6 @@ def test_isothermal_run_imports_no_heat_module(name, heated, tmp_path):
         f" [*{list(QUICK)!r}, 'time.travel=0.05'])));"
         "print(sorted(m for m in sys.modules if '.effects.heat.' in m))"
     )
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True)
-    assert done.returncode == 0, done.stderr.decode()
-    assert ("ehlpetsc.effects.heat.step" in done.stdout.decode()) == heated
+    done = called([PYTHON, "-c", code], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert ("ehlpetsc.effects.heat.step" in done.stdout) == heated

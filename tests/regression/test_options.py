@@ -1,11 +1,10 @@
 """The command line: precedence of options, refused options, output of -help and -options_left."""
 
 import re
-import subprocess
 
 import pytest
 from support import ROOT
-from support.running import BARE, MPIRUNS_COMMENT, PYTHON, SCRIPT, run, settings, summary
+from support.running import PYTHON, SCRIPT, called, run, settings, summary
 
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.results.reader import read_result
@@ -151,12 +150,8 @@ def test_linear_iterations_of_a_step_are_limited(case, tmp_path):
     """-ksp_max_it limits one linear solve; all of a step are limited by 100 per Newton iteration."""
     words = ["-ksp_max_it", 100000, "-pc_type", "none", "-ksp_rtol", "1e-30", "-snes_max_it", 4]
     done = run(case, *words, "-ksp_converged_reason", cwd=tmp_path)
-    taken = [
-        int(n)
-        for n in re.findall(
-            r"Linear solve did not converge due to DIVERGED_ITS iterations (\d+)", done.stdout
-        )
-    ]
+    limited = r"Linear solve did not converge due to DIVERGED_ITS iterations (\d+)"
+    taken = [int(number) for number in re.findall(limited, done.stdout)]
     assert done.returncode == 3 and max(taken) == 400
     assert sum(taken[:4]) <= 403
 
@@ -196,30 +191,18 @@ def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
 @pytest.mark.slow
 def test_runs_in_a_minimal_environment(case, tmp_path):
     bare = {name: value for name, value in SCRIPT.items() if name not in ("PETSC_DIR", "OMP_NUM_THREADS")}
-    done = subprocess.run(
-        ["mpirun", "-n", "2", PYTHON, "-m", "ehlpetsc", case],
-        cwd=tmp_path,
-        timeout=120,
-        env=BARE | bare | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
+    words = ["mpirun", "-n", "2", PYTHON, "-m", "ehlpetsc", case]
+    done = called(words, tmp_path, bare | {"PYTHONPATH": str(ROOT)})
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     assert float(summary(done.stdout)["load_error"]) < 1e-8
 
 
 def test_missing_packages_print_the_command_to_type(case, tmp_path):
-    done = subprocess.run(
-        ["mpirun", "-n", "2", PYTHON, "-S", "-m", "ehlpetsc", "case.toml", "-snes_monitor"],
-        cwd=tmp_path,
-        env=BARE | SCRIPT | {"PYTHONPATH": str(ROOT)},
-        timeout=120,
-        capture_output=True,
-        text=True,
-    )
+    words = ["mpirun", "-n", "2", PYTHON, "-S", "-m", "ehlpetsc", "case.toml", "-snes_monitor"]
+    done = called(words, tmp_path, SCRIPT | {"PYTHONPATH": str(ROOT)})
     assert done.returncode == 2
-    lines = MPIRUNS_COMMENT.sub("", done.stderr).splitlines()
+    lines = done.stderr.splitlines()
     assert len(lines) == 2
     assert " numpy, scipy" in lines[0]
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]

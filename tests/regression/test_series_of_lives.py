@@ -1,10 +1,9 @@
 """A series of lives distributed over ranks."""
 
 import json
-import subprocess
 
 from support import COARSE_LIFE
-from support.running import BARE, PYTHON, SCRIPT
+from support.running import PYTHON, called
 
 KEYS = (
     "mesh.points_per_half_width=8",
@@ -18,14 +17,7 @@ def test_series_of_lives_ends_on_two_ranks(tmp_path):
     """PETSc starts on all ranks together: one that met it alone in its first life waited for ever."""
     words = [word for key in KEYS for word in ("--set", key)]
     life = [PYTHON, "-m", "ehlpetsc", "life", COARSE_LIFE, "--unresolved", "--no-picture", *words]
-    done = subprocess.run(
-        ["mpirun", "-n", "2", *life],
-        cwd=tmp_path,
-        env=BARE | SCRIPT,
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
+    done = called(["mpirun", "-n", "2", *life], tmp_path)
     assert done.returncode == 0, done.stderr
     members = json.loads((tmp_path / "coarse_life.life.series.json").read_text())["members"]
     assert [member["state"] for member in members] == ["done", "done"]

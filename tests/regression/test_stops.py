@@ -2,12 +2,11 @@
 
 import json
 import re
-import subprocess
 
 import numpy as np
 import pytest
 from support import ROOT, is_line_with
-from support.running import BARE, SCRIPT, SHORT, command, run, settings, summary
+from support.running import SHORT, called, command, run, settings, summary
 
 from ehlpetsc.analysis.compare import compare
 from ehlpetsc.results.reader import read_result
@@ -169,12 +168,9 @@ def test_restart_beyond_the_end_takes_no_step(whole, stopped, tmp_path):
 @pytest.mark.slow
 def test_full_disk_keeps_all_stored_steps(tmp_path):
     scene = [*CASE, *settings("mesh.points_per_half_width=70")]
-    often = settings(
-        "time.travel=100", "output.checkpoint=0.002"
-    )  # stored before the disk is full, however quick
-    limited = ["prlimit", "--fsize=9000000", *command(*scene, *often)]
-    pipes = {"capture_output": True, "text": True, "timeout": 120}
-    full = subprocess.run(limited, cwd=tmp_path, env=BARE | SCRIPT, **pipes)
+    # stored before the disk is full, however quick
+    often = settings("time.travel=100", "output.checkpoint=0.002")
+    full = called(["prlimit", "--fsize=9000000", *command(*scene, *often)], tmp_path)
     assert full.returncode == 2
     step, time = re.search(r" step (\d+) \((\S+) us\)", full.stderr).groups()
     same = "the same command continues from table1_rough.restart.h5"

@@ -64,21 +64,19 @@ def command(*words, ranks=0, tampered=()):
     return [*mpirun, PYTHON, *program, *map(str, words)]
 
 
-def run(*words, cwd, ranks=0, tampered=(), **environment):
-    """Run the program; output and error output as text, without the comment of Open MPI 5."""
-    if not ranks:
-        return _run_prepared([*(tampered and (TAMPERED, *tampered) or (MAIN,)), *words], cwd, environment)
-    done = subprocess.run(
-        command(*words, ranks=ranks, tampered=tampered),
-        cwd=cwd,
-        env=BARE | SCRIPT | environment,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        stdin=subprocess.DEVNULL,
-    )
+def called(words, cwd, environment=SCRIPT):
+    """Run any command to its end; output and error output as text, without the comment of Open MPI 5."""
+    pipes = {"capture_output": True, "text": True, "timeout": 300, "stdin": subprocess.DEVNULL}
+    done = subprocess.run(list(map(str, words)), cwd=cwd, env=BARE | environment, **pipes)
     done.stderr = MPIRUNS_COMMENT.sub("", done.stderr)
     return done
+
+
+def run(*words, cwd, ranks=0, tampered=(), **environment):
+    """Run the program to its end."""
+    if not ranks:
+        return _run_prepared([*(tampered and (TAMPERED, *tampered) or (MAIN,)), *words], cwd, environment)
+    return called(command(*words, ranks=ranks, tampered=tampered), cwd, SCRIPT | environment)
 
 
 def _run_prepared(words, folder, environment):

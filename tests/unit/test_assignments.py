@@ -1,13 +1,10 @@
 """Objects change themselves alone, a scene loads what it needs, compiled code is that of the sources."""
 
 import ast
-import subprocess
-import sys
 from pathlib import Path
 
-import pytest
 from support import CASES
-from support.running import BARE, SCRIPT
+from support.running import PYTHON, called
 
 from ehlpetsc.base.compiled import drop_stale_code
 
@@ -51,9 +48,9 @@ def _made_here(node):
             yield from (target.id for target in node.targets if isinstance(target, ast.Name))
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_no_attribute_of_another_object_is_set(path):
-    assert foreign_assignments(path.read_text(encoding="utf-8")) == []
+def test_no_attribute_of_another_object_is_set():
+    found = {path: foreign_assignments(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
+    assert {path: lines for path, lines in found.items() if lines} == {}
 
 
 def test_foreign_assignment_is_found():
@@ -73,9 +70,7 @@ print(status, *sorted(name for name in sys.modules if name.startswith("ehlpetsc"
 
 def test_smooth_dry_contact_loads_few_modules(tmp_path):
     words = [CASES / "dry_hertz.toml", "--set", "mesh.points_per_half_width=20"]
-    done = subprocess.run(
-        [sys.executable, "-c", CODE, *words], cwd=tmp_path, env=BARE | SCRIPT, capture_output=True, text=True
-    )
+    done = called([PYTHON, "-c", CODE, *words], tmp_path)
     status, *modules = done.stdout[done.stdout.rindex("wall=") :].split("\n")[1:-1]
     assert status == "0", done.stderr
     assert len(modules) <= MAX_MODULES

@@ -2,8 +2,6 @@
 
 import re
 import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -11,7 +9,7 @@ import numpy as np
 import pytest
 from support import CASES
 from support.driving import Scene
-from support.running import BARE, SCRIPT
+from support.running import PYTHON, SCRIPT, called
 
 from ehlpetsc.effects.effect import Effect
 
@@ -25,9 +23,7 @@ def call(folder, *words, **names):
         law = '"fluid.law": "saturating",'
         (folder / f"{name}.py").write_text(text.replace(law, "") if name == "script" else text)
     shutil.copy(CASES / "table1_smooth.toml", folder)
-    command = [sys.executable, *words]
-    variables = BARE | SCRIPT | names | {"XDG_CACHE_HOME": str(folder)}
-    done = subprocess.run(command, cwd=folder, env=variables, capture_output=True, text=True)
+    done = called([PYTHON, *words], folder, SCRIPT | names | {"XDG_CACHE_HOME": str(folder)})
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -45,14 +41,19 @@ def test_effect_of_the_page_works_as_it_is(tmp_path):
 
 @pytest.mark.slow
 def test_law_of_the_page_works_as_it_is(tmp_path):
-    """A law that saturates far above p0 is that of Barus."""
+    """A law that saturates far above p0 is that of Barus; of the loops the law alone is compiled."""
+    code = "from ehlpetsc.physics import laws; kind = list(laws.LAWS).index('saturating')\n"
+    code += "print(*laws.ln_viscosity((kind, laws.padded((1.5e-8, 2e9))), 1e9, 300.0))"
+    found = call(tmp_path, "-c", code, EHLPETSC_LAWS="my_laws").split()
+    assert list(map(float, found)) == pytest.approx([10.0, 1.5e-8 / 1.5**2, 0.0])
     coarse = ["mesh.points_per_half_width=20", "mesh.inlet=-2.0"]
     words = ["-m", "ehlpetsc", "table1_smooth.toml"]
     films = []
     for law in ("barus", "saturating"):
         keys = [*coarse, f"fluid.law={law}"] + ["fluid.saturation_pressure=1e12"] * (law == "saturating")
         sets = [word for key in keys for word in ("--set", key)]
-        printed = call(tmp_path, *words, "-o", f"{law}.h5", *sets, EHLPETSC_LAWS="my_laws")
+        uncompiled = {"EHLPETSC_LAWS": "my_laws", "NUMBA_DISABLE_JIT": "1"}
+        printed = call(tmp_path, *words, "-o", f"{law}.h5", *sets, **uncompiled)
         films.append(float(re.search(r"h_min=(\S+)", printed)[1]))
     assert films[1] == pytest.approx(films[0], rel=0.01) and films[1] != films[0]
 

@@ -25,7 +25,6 @@ def fault(overrides):
     ("key", "value", "hint"),
     [
         ("contact.yield_pressure", 3e9, 'needs contact.model = "mixed"'),
-        ("contact.boundary_film", 1e-8, 'needs contact.model = "mixed"'),
         ("contact.radius", {"a": 1}, "contact.radius: a table here; allowed: a number"),
         ("fluid.limiting_shear_stress", 1e7, 'did you mean "limiting_shear"?'),
     ],

@@ -19,6 +19,7 @@ def limit_lines(name="table1_smooth", overrides=(), **changed):
 
 
 def test_no_limit_line_within_the_limits():
+    assert limit_lines(oil_pressure=5e9) == []  # 5e5 Pa s
     assert limit_lines() == [] and limit_lines("table1_rough") == [] and limit_lines("dry_hertz") == []
 
 
@@ -28,9 +29,7 @@ def test_no_limit_line_within_the_limits():
         ({"p_max": 6.65e9}, ["pressure: ", " 6.65 GPa"]),
         ({"oil_pressure": 9e9}, ["viscosity: 5.0e+08"]),
         ({"mass_error": 0.44}, ["oil balance: ", " 44 % of "]),
-        ({"mass_error": 101.3}, ["oil balance: ", " 101 times "]),
         ({"nodes_below_1nm": 7}, ["film: 7 times "]),
-        ({"nodes_below_1nm": 1}, ["film: 1 time "]),
     ],
 )
 def test_each_limit_line_has_its_figure(changed, parts):
@@ -47,10 +46,6 @@ def test_friction_beyond_that_of_oils_has_a_limit_line():
     assert limit_lines(overrides=rubbing, friction_coefficient=0.19) == []
 
 
-def test_measured_viscosity_range_has_no_limit_line():
-    assert limit_lines(oil_pressure=5e9) == []  # 5e5 Pa s
-
-
 def test_unresolved_asperities_are_given_with_their_height_fraction():
     (line,) = limit_lines("table1_rough", ["mesh.points_per_half_width=50"])
     assert line.startswith("mesh: ") and " 51.1 % of surface.1 and 51.1 % of surface.2 " in line
@@ -62,7 +57,6 @@ def test_a_flattened_layer_has_a_limit_line():
     assert limit_lines("stribeck", h_min=0.8e-9) == []
 
 
-TOTALS = {"p_max": 1e9, "oil_pressure": 1e9, "mass_error": 0.0, "nodes_below_1nm": 0}
 HEAT = "heat.bulk_temperature=363.0"
 
 
@@ -72,8 +66,7 @@ def warned(name, *keys):
 
 
 def limited(name, friction, *keys):
-    case = load(CASES / f"{name}.toml", keys)
-    found = limits(case, Scales.of(case), None, TOTALS | {"friction_coefficient": friction})
+    found = limit_lines(name, keys, friction_coefficient=friction)
     return [line for line in found if line.startswith("heat")]
 
 

@@ -3,7 +3,6 @@
 import email
 import re
 import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
@@ -11,22 +10,13 @@ import h5py
 import numpy as np
 import pytest
 from support import ROOT
+from support.running import PYTHON, called
 
 from ehlpetsc.results.reader import read_result
 
-# to compile takes longer than these few steps
-OUTSIDE = {"PATH": "/usr/bin:/bin", "HOME": "/", "NUMBA_DISABLE_JIT": "1"}
 
-
-def pip(*words, **options):
-    done = subprocess.run(
-        [sys.executable, "-m", "pip", *words],
-        env={"PATH": "/usr/bin:/bin", "PIP_CONFIG_FILE": "/dev/null"},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        **options,
-    )
+def pip(*words):
+    done = called([PYTHON, "-m", "pip", *words], ROOT, {"PIP_CONFIG_FILE": "/dev/null"})
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -55,9 +45,8 @@ def wheel(source, tmp_path_factory):
 def environment(wheel, tmp_path_factory):
     """A virtual environment on the system's packages with the wheel in it, nothing fetched."""
     folder = tmp_path_factory.mktemp("environment")
-    subprocess.run(
-        [sys.executable, "-m", "venv", "--system-site-packages", "--without-pip", folder], check=True
-    )
+    words = [PYTHON, "-m", "venv", "--system-site-packages", "--without-pip", folder]
+    subprocess.run(words, check=True)
     pip("--python", folder / "bin" / "python", "install", "--no-index", wheel)
     return folder
 
@@ -87,15 +76,8 @@ def test_petsc_and_mpi_are_requirements_of_the_solver_extra_only(wheel):
 
 @pytest.mark.slow
 def test_installed_commands_work_in_any_folder(environment, tmp_path):
-    def call(*words):
-        done = subprocess.run(
-            [environment / "bin" / "ehlpetsc", *words],
-            cwd=tmp_path,
-            env=OUTSIDE,
-            capture_output=True,
-            text=True,
-            timeout=300,
-        )
+    def call(*words):  # to compile takes longer than these few steps
+        done = called([environment / "bin" / "ehlpetsc", *words], tmp_path, {"NUMBA_DISABLE_JIT": "1"})
         assert done.returncode == 0, done.stderr
         return done.stdout
 

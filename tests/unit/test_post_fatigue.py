@@ -1,11 +1,11 @@
 """Life and damage against the restored equations' values."""
 
-import subprocess
-import sys
 from functools import partial
 
 import numpy as np
 import pytest
+from support import ROOT
+from support.running import PYTHON, called
 
 from ehlpetsc import post
 from ehlpetsc.post import Material, cycles_to_failure, equivalent_range, strain_range
@@ -155,13 +155,7 @@ print(rainflow(parts[0, 0]).tobytes().hex())
 def test_results_without_numba_are_bitwise_equal():
     import numba  # noqa: F401 - without it there would be nothing to compare
 
-    outputs = [
-        subprocess.run(
-            [sys.executable, "-c", SCRIPT.format(block=block, compiled=compiled)],
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout
-        for block, compiled in (("", True), ("sys.modules['numba'] = None", False))
-    ]
+    scripts = [SCRIPT.format(block="", compiled=True)]
+    scripts += [SCRIPT.format(block="sys.modules['numba'] = None", compiled=False)]
+    outputs = [called([PYTHON, "-c", script], ROOT).stdout for script in scripts]
     assert outputs[0] == outputs[1] and len(outputs[0]) > 1000

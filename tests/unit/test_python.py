@@ -4,14 +4,12 @@ import doctest
 import importlib
 import re
 import signal
-import subprocess
-import sys
 import tomllib
 
 import numpy as np
 import pytest
 from support import CASES, ROOT
-from support.running import BARE, SCRIPT
+from support.running import PYTHON, called
 
 import ehlpetsc
 
@@ -217,10 +215,7 @@ def test_interrupt_in_a_callback_ends_python_in_order(tmp_path):
         "    kept = error\n"
         "print('interrupted')\n"
     )
-    environment = BARE | SCRIPT
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True
-    )
+    done = called([PYTHON, "-c", script], tmp_path)
     assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")
 
 
@@ -244,13 +239,7 @@ assert "petsc4py" in sys.modules and "matplotlib" not in sys.modules
 
 
 def test_import_is_light_and_finds_petsc(tmp_path):
-    done = subprocess.run(
-        [sys.executable, "-c", LIGHT],
-        cwd=tmp_path,
-        env={"PYTHONPATH": str(ROOT), "PATH": "/usr/bin:/bin", "HOME": "/"},
-        capture_output=True,
-        text=True,
-    )
+    done = called([PYTHON, "-c", LIGHT], tmp_path, {"PYTHONPATH": str(ROOT)})
     assert done.returncode == 0, done.stderr
 
 

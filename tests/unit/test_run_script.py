@@ -38,14 +38,9 @@ def script(tmp_path):
 
     def run(*arguments, **environment):
         outside_mpi = {"PATH": "/usr/bin:/bin", **environment}  # these tests may themselves run under mpirun
-        return subprocess.run(
-            [tmp_path / "run_mpi.sh", *arguments],
-            cwd=tmp_path / "elsewhere",
-            env=outside_mpi,
-            capture_output=True,
-            text=True,
-            timeout=120,
-        )
+        pipes = {"capture_output": True, "text": True, "timeout": 120}
+        words = [tmp_path / "run_mpi.sh", *arguments]
+        return subprocess.run(words, cwd=tmp_path / "elsewhere", env=outside_mpi, **pipes)
 
     return run
 
@@ -109,14 +104,9 @@ def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=
     (tmp_path / "ehlpetsc" / "__main__.py").write_text(program)
     command = [tmp_path / "run_mpi.sh", "-n", str(ranks), *arguments]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    folder = tmp_path / "elsewhere"
-    with subprocess.Popen(
-        command,
-        cwd=folder,
-        env={"PATH": "/usr/bin:/bin"} | (AT_ONCE if ranks == 1 else {}),
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # ignored in a shell's job
-        **pipes,
-    ) as job:
+    pipes["preexec_fn"] = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # ignored in a shell's job
+    folder, environment = tmp_path / "elsewhere", {"PATH": "/usr/bin:/bin"} | (AT_ONCE if ranks == 1 else {})
+    with subprocess.Popen(command, cwd=folder, env=environment, **pipes) as job:
         for _ in range(3000):
             if len(list(folder.glob("ready*"))) == ranks if wait else catches(job.pid, signal.SIGUSR1):
                 break
@@ -192,12 +182,8 @@ def test_complete_python_on_the_path_is_used(script, tmp_path):
     (tmp_path / "own" / "petsc4py").symlink_to(debians)  # as of another PETSc: not on Debian's path
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin" / "python3").symlink_to("/usr/bin/python3")
-    done = script(
-        "case.toml",
-        PATH=f"{tmp_path / 'bin'}:/usr/bin:/bin",
-        PYTHONPATH=str(tmp_path / "own"),
-        VIRTUAL_ENV="own",
-    )
+    path = f"{tmp_path / 'bin'}:/usr/bin:/bin"
+    done = script("case.toml", PATH=path, PYTHONPATH=str(tmp_path / "own"), VIRTUAL_ENV="own")
     assert done.returncode == 0, done.stderr
     assert f"PYTHON {tmp_path / 'bin' / 'python3'}" in done.stdout
     assert "VENV own" in done.stdout

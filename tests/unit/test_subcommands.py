@@ -1,21 +1,14 @@
 """One program: its commands start, help and version are everywhere, a bad command line is one sentence."""
 
-import csv
-import io
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 from support import ROOT, is_line_with
-from support.made_results import make_result, with_solids
 
 from ehlpetsc import __version__
 from ehlpetsc.__main__ import COMMANDS, main
-from ehlpetsc.analysis import summary
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.results.means import filled_from
-from ehlpetsc.results.reader import read_result
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -68,33 +61,6 @@ def test_texts_of_cases_need_neither_petsc_nor_mpi(words):
     code += "from ehlpetsc.__main__ import main; sys.exit(main(sys.argv[1:]))"
     done = subprocess.run([sys.executable, "-c", code, *words], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0 and done.stdout, done.stderr
-
-
-def test_means_percentiles_and_extremes_of_a_run(tmp_path, capsys):
-    paths = [make_result(tmp_path / f"{u:g}.h5", speed=u, rough=True) for u in (50.0, 40.0)]
-    for path in paths:
-        with_solids(path)
-    assert summary.main([str(path) for path in paths]) == 0
-    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
-    assert [row["result"] for row in rows if row["scalar"] == "p_max"] == ["40.h5", "50.h5"]  # sorted
-    (row,) = [r for r in rows if r["scalar"] == "contact_share" and r["result"] == "50.h5"]
-    assert row["case"] == "motion.entrainment_speed = 50" and row["unit"] == "1"
-    with read_result(paths[0]) as result:
-        filled = result.steps("time") >= filled_from(result)
-        share = result.steps("contact_share")[filled]
-    assert float(row["mean"]) == pytest.approx(share.mean(), rel=1e-5)
-    assert [float(row["min"]), float(row["max"])] == pytest.approx([share.min(), share.max()], rel=1e-5)
-    assert int(row["steps"]) == filled.sum() < 41
-    assert summary.main([str(paths[0]), "-o", str(tmp_path / "s.csv")]) == 0
-    assert (tmp_path / "s.csv").read_text().startswith("result,case,scalar,unit,mean,")
-    assert summary.main([str(paths[0]), "-o", str(paths[1])]) == 2  # no table of its own
-
-
-def test_weighted_percentiles_are_those_of_repeated_values():
-    values, weights = np.array([3.0, 1.0, 2.0]), np.array([1000.0, 3000.0, 1000.0])
-    repeated = np.repeat(values, weights.astype(int))
-    found = summary.weighted_percentiles(values, weights, (30.0, 70.0, 90.0))
-    assert found == pytest.approx(np.percentile(repeated, (30.0, 70.0, 90.0)), abs=0.3)
 
 
 @pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "ensemble", "gears", "explain"])

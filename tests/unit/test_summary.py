@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.made_results import make_result
 
-from ehlpetsc.analysis.summary import main
+from ehlpetsc.analysis.summary import main, weighted_percentiles
 from ehlpetsc.results.reader import read_result
 
 
@@ -25,9 +25,19 @@ def test_statistics_are_weighted_by_the_time_step(path, capsys):
     with h5py.File(path, "r+") as file:
         dt = file["steps/dt"][:] = np.linspace(0.0, 1.0, 11)
         load = file["steps/load"][:] = np.arange(11.0) ** 2
-    row = next(row for row in rows_of(capsys, path) if row["scalar"] == "load")
+    other = make_result(path.with_name("a.h5"))
+    (row,) = (
+        row for row in rows_of(capsys, path, other) if (row["scalar"], row["result"]) == ("load", "r.h5")
+    )
     assert float(row["mean"]) == pytest.approx(np.average(load, weights=dt), rel=1e-5)
     assert (row["unit"], row["min"], row["max"], row["steps"]) == ("N/m", "1", "100", "10")
+
+
+def test_weighted_percentiles_are_those_of_repeated_values():
+    values, weights = np.array([3.0, 1.0, 2.0]), np.array([1000.0, 3000.0, 1000.0])
+    repeated = np.repeat(values, weights.astype(int))
+    found = weighted_percentiles(values, weights, (30.0, 70.0, 90.0))
+    assert found == pytest.approx(np.percentile(repeated, (30.0, 70.0, 90.0)), abs=0.3)
 
 
 def test_steps_are_listed_over_time(path, capsys):

@@ -27,18 +27,8 @@ KEYS = {
 
 def command(path):
     settings = [part for key, value in KEYS.items() for part in ("--set", f"{key}={value}")]
-    return [
-        sys.executable,
-        "-m",
-        "ehlpetsc",
-        "life",
-        COARSE_LIFE,
-        "--unresolved",
-        "-o",
-        path,
-        "--no-picture",
-        *settings,
-    ]
+    words = [COARSE_LIFE, "--unresolved", "-o", path, "--no-picture", *settings]
+    return [sys.executable, "-m", "ehlpetsc", "life", *words]
 
 
 def equal(life, other):
