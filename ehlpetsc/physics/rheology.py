@@ -227,8 +227,9 @@ def _mobility(
 
 # ---- tables of the pressure flow ----
 
-STEPS = 0.25, 0.05  # of x = ln(Gamma) and V, over the width of a bend in either, see flow_table
-RANGES = 14.0, 7.0  # of both: beyond -+14 in x the table does not depend on it, beyond 7 in V it is linear
+STEPS = 0.25, 0.1  # of ln(Gamma) and ln(s), over the width of the bend in Carreau's law
+RANGE = 14.0  # of both: exp(-14) is the error of the asymptotes beyond
+NEWTONIAN = 1e-8  # accuracy to which it is below some Gamma and s
 SHALLOW = 1e-4  # stress difference across the film over the law's stress, below which there is none
 _Z, _WEIGHTS = (0.5 * half for half in np.polynomial.legendre.leggauss(20))
 _Z += 0.5  # on either side of the lowest stress, squared: dense there
@@ -291,118 +292,81 @@ def flow_across(gamma: float, drop: float, n: float, a: float) -> tuple[float, f
 
 
 @compiled
-def _fill_table(n: float, a: float, b: float, x: np.ndarray, v: np.ndarray, out: np.ndarray) -> None:
+def _fill_table(n: float, a: float, x: np.ndarray, ln_drop: np.ndarray, out: np.ndarray) -> None:
     for i in range(len(x)):
-        gamma, power = np.exp(x[i]), np.exp(a * x[i])
-        stress = gamma * (1.0 + power) ** ((n - 1.0) / a)
-        slope = stress / gamma * (1.0 + (n - 1.0) * power / (1.0 + power))
-        for j in range(len(v)):
-            drop = np.expm1(b * v[j]) ** (1.0 / b) * (1.0 + power) ** (n / a)
-            phi, t = flow_across(gamma, drop, n, a)
-            out[0, i, j], out[1, i, j] = np.log(phi * slope), np.log(t / stress)
+        for j in range(len(ln_drop)):
+            phi, t = flow_across(np.exp(x[i]), np.exp(ln_drop[j]), n, a)
+            out[0, i, j], out[1, i, j] = np.log(phi), np.log(t) - x[i]
 
 
 @cache
 def flow_table(kind: int, n: float, a: float) -> np.ndarray:
-    r"""Table of the pressure flow of a shear law, empty where it has a closed form.
+    r"""Table of the pressure flow of a shear law over x = ln(Gamma) and ln(s), empty where it is closed.
 
-    With :math:`L=1+\Gamma^a` and :math:`Y=s/L^{n/a}` (of :func:`flow_across`) the quantities
-    :math:`\ln(\Phi\,d\tau/d\Gamma)` and :math:`\ln(t/\tau(\Gamma))`, :math:`\tau(\Gamma)` without a gradient,
-    vanish at Y = 0 and depend on Y alone for small and for large :math:`\Gamma`; in
-    :math:`V=\ln(1+Y^b)/b`, b = min(a, 2), they become linear. Cubic between its points, to 1e-4.
+    The quantities are :math:`\ln\Phi` and :math:`\ln(t/\Gamma)` of :func:`flow_across`. They do not depend on
+    small Gamma and s; beyond large ones, where the law is a power, those of (x, ln s) follow from those of
+    (x - e, ln s - n e) by :math:`\pm(1-n)e`. Cubic between its points, to 3e-5, next to s = 2 t to 4e-4.
 
     Returns
     -------
-    ndarray, shape (points of x and 1, points of V, 8)
-        Value, derivatives by x, V and both of either quantity, in steps; the last row has n, a, b, the first
-        x, one over both steps, n/a and 1/b.
+    ndarray, shape (points of x and 1, points of ln s, 8)
+        Value, derivatives by x, ln s and both of either quantity, in steps; the last row has n, the first x
+        and ln s, one over both steps, the last x and ln s, a,
+        and Gamma and s below which the film is Newtonian.
     """
     if kind != CARREAU:
         return np.zeros((0, 0, 8))
     from scipy.interpolate import RectBivariateSpline
 
-    b, bend = min(a, 2.0), max(a, 2.0) / 2.0
-    last, step_x, step_v = RANGES[0] / b, STEPS[0] / bend, STEPS[1] / min(bend, 2.0)
-    x, v = np.arange(-last, last, step_x), np.arange(0.0, RANGES[1], step_v)
-    values, table = np.empty((2, len(x), len(v))), np.zeros((len(x) + 1, len(v), 8))
-    _fill_table(n, a, b, x, v, values)
-    u, w = (np.arange(len(points), dtype=float) for points in (x, v))
+    last, bend = RANGE / min(a, 2.0), max(a, 2.0) / 2.0
+    step_x, step = STEPS[0] / bend, STEPS[1] / bend
+    x, ln_drop = np.arange(-last, last, step_x), np.arange(-last, n * last + 1.0, step)
+    values, table = np.empty((2, len(x), len(ln_drop))), np.zeros((len(x) + 1, len(ln_drop), 8))
+    _fill_table(n, a, x, ln_drop, values)
+    u, v = (np.arange(len(points), dtype=float) for points in (x, ln_drop))
     for quantity in range(2):
-        spline = RectBivariateSpline(u, w, values[quantity], s=0)
+        spline = RectBivariateSpline(u, v, values[quantity], s=0)
         for order, (by_u, by_v) in enumerate(((0, 0), (1, 0), (0, 1), (1, 1))):
-            table[:-1, :, 4 * quantity + order] = spline(u, w, dx=by_u, dy=by_v)
-    table[-1, :8, 0] = n, a, b, -last, 1.0 / step_x, 1.0 / step_v, n / a, 1.0 / b
+            table[:-1, :, 4 * quantity + order] = spline(u, v, dx=by_u, dy=by_v)
+    first, last, per_step = (x[0], ln_drop[0]), (x[-1], ln_drop[-1]), (1.0 / step_x, 1.0 / step)
+    table[-1, :9, 0] = n, *first, *per_step, *last, a, NEWTONIAN ** (1.0 / a)
     return table
 
 
 @inlined
-def _interpolated(
-    quantity: int, x: float, ln_sum: float, thinned: float, ln_drop: float, table: np.ndarray
-) -> tuple[float, float, float]:
-    """A quantity of :func:`flow_table` at x and ln(s), its derivatives by both."""
+def _hermite(s: float) -> tuple:
+    """Cubic weights of the values and derivatives at 0 and at 1, and derivatives of the weights."""
+    r = 1.0 - s
+    a2, d2 = s * s * (3.0 - 2.0 * s), 6.0 * s * r
+    return 1.0 - a2, s * r * r, a2, -s * s * r, r * (1.0 - 3.0 * s), d2, s * (3.0 * s - 2.0)
+
+
+@inlined
+def _interpolated(quantity: int, x: float, ln_drop: float, table: np.ndarray) -> tuple[float, float, float]:
+    """A quantity of :func:`flow_table`, and its derivatives by x and ln(s)."""
     last = unsigned(table.shape[0] - 1)
-    n, b, first, n_a = table[last, 0, 0], table[last, 2, 0], table[last, 3, 0], table[last, 6, 0]
-    per_x, per_v = table[last, 4, 0], table[last, 5, 0]
-    power = np.exp(b * (ln_drop - n_a * ln_sum))
-    u, v = (x - first) * per_x, np.log(1.0 + power) * table[last, 7, 0] * per_v
-    inside = 0.0 < u < table.shape[0] - 2.0
-    u = min(max(u, 0.0), table.shape[0] - 2.0)
-    beyond = max(v - (table.shape[1] - 1.0), 0.0)
-    v -= beyond
+    n, per_x, per_v = table[last, 0, 0], table[last, 3, 0], table[last, 4, 0]
+    beyond = max(max(x - table[last, 5, 0], (ln_drop - table[last, 6, 0]) / n), 0.0)
+    u = max((x - beyond - table[last, 1, 0]) * per_x, 0.0)
+    v = max((ln_drop - n * beyond - table[last, 2, 0]) * per_v, 0.0)
     i, j = unsigned(min(u, table.shape[0] - 2.5)), unsigned(min(v, table.shape[1] - 1.5))
-    s, i1, k = u - i, i + ONE, unsigned(4 * quantity)
+    b0, b1, b2, b3, e1, e2, e3 = _hermite(v - j)
+    a0, a1, a2, a3, d1, d2, d3 = _hermite(u - i)
+    i1, j1, k = i + ONE, j + ONE, unsigned(4 * quantity)
     k1, k2, k3 = k + ONE, k + TWO, k + THREE
-    t = s * s
-    a2 = t * (3.0 - 2.0 * s)
-    a0, a1, a3 = 1.0 - a2, s * (1.0 - s) * (1.0 - s), t * (s - 1.0)
-    d2 = 6.0 * s * (1.0 - s)
-    d1, d3 = (1.0 - s) * (1.0 - 3.0 * s), s * (3.0 * s - 2.0)
-    s = v - j
-    t = s * s
-    b2 = t * (3.0 - 2.0 * s)
-    b0, b1, b3 = 1.0 - b2, s * (1.0 - s) * (1.0 - s), t * (s - 1.0)
-    e2 = 6.0 * s * (1.0 - s)
-    e1, e3 = (1.0 - s) * (1.0 - 3.0 * s), s * (3.0 * s - 2.0)
-    value, by_u, by_v = 0.0, 0.0, 0.0
-    for side in range(2):
-        m = j + unsigned(side)
-        f, g, fv, gv = (b0, b1, -e2, e1) if side == 0 else (b2, b3, e2, e3)
-        c00, c01, c02, c03 = table[i, m, k], table[i, m, k1], table[i, m, k2], table[i, m, k3]
-        c10, c11, c12, c13 = table[i1, m, k], table[i1, m, k1], table[i1, m, k2], table[i1, m, k3]
-        plain = a0 * c00 + a1 * c01 + a2 * c10 + a3 * c11
-        sloped = a0 * c02 + a1 * c03 + a2 * c12 + a3 * c13
-        value += f * plain + g * sloped
-        by_v += fv * plain + gv * sloped
-        by_u += f * (d2 * (c10 - c00) + d1 * c01 + d3 * c11) + g * (d2 * (c12 - c02) + d1 * c03 + d3 * c13)
-    value += beyond * by_v
-    by_ln_y = by_v * power / (1.0 + power) * per_v
-    return value, (by_u * per_x if inside else 0.0) - n * thinned * by_ln_y, by_ln_y
-
-
-@inlined
-def _rate(x: float, a: float) -> tuple[float, float]:
-    """ln(1 + Gamma^a) by x = ln(Gamma), and its derivative over a."""
-    power = np.exp(-a * abs(x))
-    thinned = 1.0 / (1.0 + power)
-    ln_sum = -np.log(thinned)
-    return (ln_sum, power * thinned) if x < 0.0 else (a * x + ln_sum, thinned)
-
-
-@inlined
-def _tabulated_mobility(
-    h: float, per_film: float, ln_drop: float, fluidity: float, stress: float, slip: float, table: np.ndarray
-) -> tuple[float, float, float, float]:
-    """One of :func:`mobilities`; `per_film` is s/(2 h)."""
-    last = unsigned(table.shape[0] - 1)
-    n, a = table[last, 0, 0], table[last, 1, 0]
-    x = np.log(max(slip / (fluidity * h), MIN_RATE))
-    ln_sum, thinned = _rate(x, a)
-    value, by_x, by_drop = _interpolated(0, x, ln_sum, thinned, ln_drop, table)
-    bend = 1.0 + (n - 1.0) * thinned
-    by_x -= (n - 1.0) * thinned * (1.0 + a * (1.0 - thinned) / bend)
-    mobility = h * h * h * fluidity / (12.0 * bend) * np.exp(value + (1.0 / a - table[last, 6, 0]) * ln_sum)
-    by_gradient = 0.5 * mobility * by_drop / (per_film * stress) if per_film != 0.0 else 0.0
-    return mobility, mobility / h * (3.0 - by_x + by_drop), by_gradient, mobility * (by_x - 1.0)
+    low = b0 * table[i, j, k] + b1 * table[i, j, k2] + b2 * table[i, j1, k] + b3 * table[i, j1, k2]
+    high = b0 * table[i1, j, k] + b1 * table[i1, j, k2] + b2 * table[i1, j1, k] + b3 * table[i1, j1, k2]
+    low_u = b0 * table[i, j, k1] + b1 * table[i, j, k3] + b2 * table[i, j1, k1] + b3 * table[i, j1, k3]
+    high_u = b0 * table[i1, j, k1] + b1 * table[i1, j, k3] + b2 * table[i1, j1, k1] + b3 * table[i1, j1, k3]
+    value = a0 * low + a1 * low_u + a2 * high + a3 * high_u
+    by_u = d2 * (high - low) + d1 * low_u + d3 * high_u
+    low_v = e1 * table[i, j, k2] + e2 * (table[i, j1, k] - table[i, j, k]) + e3 * table[i, j1, k2]
+    high_v = e1 * table[i1, j, k2] + e2 * (table[i1, j1, k] - table[i1, j, k]) + e3 * table[i1, j1, k2]
+    low_uv = e1 * table[i, j, k3] + e2 * (table[i, j1, k1] - table[i, j, k1]) + e3 * table[i, j1, k3]
+    high_uv = e1 * table[i1, j, k3] + e2 * (table[i1, j1, k1] - table[i1, j, k1]) + e3 * table[i1, j1, k3]
+    by_v = a0 * low_v + a1 * low_uv + a2 * high_v + a3 * high_uv
+    value += (1.0 - n) * (beyond if quantity == 0 else -beyond)
+    return value, by_u * per_x, by_v * per_v
 
 
 @compiled
@@ -418,12 +382,22 @@ def tabulated_mobilities(
     """As :func:`mobilities`, of a law with a table by :func:`flow_table`."""
     if h <= 0.0:
         return NO_FLOW, NO_FLOW
-    per_film = gradient * (0.5 / stress)
-    ln_drop = np.log(max(2.0 * h * abs(per_film), MIN_RATE))
-    return (
-        _tabulated_mobility(h, per_film, ln_drop, fluidity_l, stress, slip, table),
-        _tabulated_mobility(h, per_film, ln_drop, fluidity_r, stress, slip, table),
-    )
+    drop, rate, cube = h * abs(gradient) / stress, slip / h, h * h * h / 12.0
+    if max(drop, rate / min(fluidity_l, fluidity_r)) < table[unsigned(table.shape[0] - 1), 8, 0]:
+        left, right = cube * fluidity_l, cube * fluidity_r
+        return (left, 3.0 * left / h, 0.0, -left), (right, 3.0 * right / h, 0.0, -right)
+    face = h, gradient, np.log(max(drop, MIN_RATE)), rate, cube
+    return _tabulated_mobility(fluidity_l, face, table), _tabulated_mobility(fluidity_r, face, table)
+
+
+@inlined
+def _tabulated_mobility(fluidity: float, face: tuple, table: np.ndarray) -> tuple[float, float, float, float]:
+    """One of :func:`mobilities`."""
+    h, gradient, ln_drop, rate, cube = face
+    value, by_x, by_drop = _interpolated(0, np.log(max(rate / fluidity, MIN_RATE)), ln_drop, table)
+    mobility = cube * fluidity * np.exp(value)
+    by_gradient = mobility * by_drop / gradient if gradient != 0.0 else 0.0
+    return mobility, mobility / h * (3.0 - by_x + by_drop), by_gradient, mobility * (by_x - 1.0)
 
 
 @inlined
@@ -434,11 +408,9 @@ def stress_spread(sigma: float, x: float, table: np.ndarray) -> float:
     viscosity nor a steep gradient overflows.
     """
     if len(table) > 0:
-        n, a = table[-1, 0, 0], table[-1, 1, 0]
-        ln_sum, thinned = _rate(x, a)
         ln_drop = np.log(max(2.0 * sigma, MIN_RATE))
-        lower = _interpolated(1, x, ln_sum, thinned, ln_drop, table)[0]
-        return x - np.log(rate_of_stress(np.exp(x + (n - 1.0) / a * ln_sum + lower), n, a)[0])
+        lower = _interpolated(1, x, ln_drop, table)[0]
+        return x - np.log(rate_of_stress(np.exp(x + lower), table[-1, 0, 0], table[-1, 7, 0])[0])
     if sigma < SERIES_LIMIT:
         square = sigma * sigma
         return square * (1 / 6 - square * (1 / 180 - square / 2835))
