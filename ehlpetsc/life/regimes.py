@@ -6,10 +6,7 @@ same case are continued.
 
 from __future__ import annotations
 
-import contextlib
-import tomllib
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +20,7 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.life.history import LifeHistory
     from ehlpetsc.run.ranks import PollingStop
+    from ehlpetsc.run.stop import StopRequest
 
 
 WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
@@ -71,75 +69,49 @@ def run_regimes(
     output: str | Path | None = None,
     *,
     comm: MPI.Comm | None = None,
-    show: Callable | None = None,
-    stop: Any = None,
+    show: Callable[[str], None] = lambda text: None,
+    stop: StopRequest | None = None,
     **options: bool,
 ) -> Path:
-    """Run a life for each member of a case's series; returns the index.
+    """Run a life for each member of a case's series, one a rank of `comm` at a time; returns the index.
 
-    Parameters
-    ----------
-    case
-        With tables [life] and [series].
-    output
-        Its stem begins the files' names; by default ``CASE.life.h5``.
-    comm
-        Each of its ranks solves a life at a time.
-    show
-        Receives a line for each completed life, on the first rank.
-    options
-        `overwrite` and `unresolved` of `run_life`.
-
-    Raises
-    ------
-    CaseError, OutputError, Stopped
+    The stem of `output` begins the files' names, by default ``CASE.life.h5``. `show` receives a line for each
+    completed life, on the first rank. Options are `overwrite` and `unresolved` of `run_life`. CaseError,
+    OutputError, Stopped.
     """
     from ehlpetsc.api import need_solver
 
     need_solver()
     from mpi4py import MPI
 
-    from ehlpetsc.case.combinations import keys_of
     from ehlpetsc.life.checks import check_case
-    from ehlpetsc.results.index import Index
-    from ehlpetsc.run.ranks import WorkQueue, on_root
-    from ehlpetsc.run.series import members_of
+    from ehlpetsc.run.ranks import on_root
 
-    import_module("ehlpetsc.run.simulation")  # PETSc starts on all ranks together, before they split
+    # imports PETSc, which starts on all ranks together, before they split
+    from ehlpetsc.run.series import WAITING, compute_rows, index_of, members_of
+
     comm, path = comm or MPI.COMM_SELF, Path(f"{Path(case.path).stem}.h5" if output is None else output)
     stem = path.with_name(path.name.removesuffix(".h5").removesuffix(".life") + ".h5")
     members = members_of(case, stem)
     for member in members:
         check_case(member.case)
     files = [member.output.with_name(f"{member.output.stem}.life.h5") for member in members]
-    keys = keys_of(tomllib.loads(case.text)["series"])
-    index = Index(stem.with_suffix(".life.series.json"), case, "members", keys=keys)
-    index.begin(
-        {"value": member.value, "file": file.name, "state": "waiting"}
-        for member, file in zip(members, files, strict=True)
-    )
+    index = index_of(case, stem.with_suffix(".life.series.json"), members, files)
 
-    def record(report: tuple[int, dict]) -> None:
-        number, row = report
-        index.rows[number] |= row
-        with contextlib.suppress(OutputError):  # of this rank alone; it is written again at the end
-            index.write()
-        count = sum(row["state"] != "waiting" for row in index.rows)
-        if show:
-            show(f"{count} of {len(members)}: {members[number].name}: {_words(index.rows[number])}")
+    def show_row(number: int) -> None:
+        count = sum(row["state"] != WAITING for row in index.rows)
+        show(f"{count} of {len(members)}: {members[number].name}: {_words(index.rows[number])}")
 
     def run(number: int, group: MPI.Comm, stop: PollingStop) -> dict:
         return _run_life(members[number].case, files[number], comm=group, stop=stop, **options)
 
     on_root(comm, index.acquire, False)
     try:
-        on_root(comm, index.write)
-        queue = WorkQueue(comm, 1, range(len(members)), record)
-        states = queue.compute(run, stop, lambda: {row["state"] for row in index.rows})
+        compute_rows(comm, index, list(range(len(members))), run, stop, on_row=show_row)
         on_root(comm, index.write)
     finally:
         index.release()
-    if {"waiting", "stopped"} & states:
+    if {WAITING, "stopped"} & {row["state"] for row in index.rows}:
         raise Stopped
     return index.path
 

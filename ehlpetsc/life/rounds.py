@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.life.jumps import Rates
-from ehlpetsc.run.ranks import PollingStop, WorkQueue
+from ehlpetsc.run.ranks import WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
@@ -32,36 +32,28 @@ class Ranks:
         self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
 
     def solve(self, positions: list[int], solve: Callable, stop: Any = None) -> list[Pass]:
-        """Solve the passes of a round; collective.
+        """Passes of a round in the order of `positions`, on every rank.
 
-        Parameters
-        ----------
-        solve
-            Solves the pass of a position on a group of ranks; returns it.
-
-        Returns
-        -------
-        In the order of `positions`, on every rank.
-
-        Raises
-        ------
-        NotConverged, Stopped, OutputError, PostError
+        `solve` solves the pass of a position on a group of ranks. Raises one of `FAULTS`.
         """
         if len(positions) == 1 or self._group is self.comm:
             return [solve(position, self.comm, stop) for position in positions]
         outcomes: dict = {}
-        report = None
-        queue = WorkQueue(
-            self.comm, self.each, positions, lambda entry: outcomes.update([entry]), self._group
-        )
-        while (position := queue.next(report, any(map(_is_fault, outcomes.values())))) is not None:
+
+        def outcome(position: int, group: MPI.Comm, stop: Any) -> Any:
             try:
-                report = position, solve(position, self._group, PollingStop(queue, stop))
+                return solve(position, group, stop)
             except FAULTS as fault:
-                report = position, (type(fault), str(fault))
-        outcomes = queue.finish(lambda: outcomes)
+                return type(fault), str(fault)
+
+        queue = WorkQueue(
+            self.comm, self.each, positions, lambda report: outcomes.update([report]), self._group
+        )
+        outcomes = queue.compute(outcome, stop, lambda: outcomes)
         for kind, text in filter(_is_fault, outcomes.values()):
             raise kind(text)
+        if len(outcomes) < len(positions):
+            raise Stopped
         return [outcomes[position] for position in positions]
 
 

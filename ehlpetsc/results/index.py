@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.results.hdf5_file import open_for_reading
 from ehlpetsc.results.output_guard import (
     OVERWRITE_ADVICE,
     Lock,
     atomic_write,
     check_output_path,
-    exists,
     inputs_of,
     remove_stale,
 )
@@ -35,11 +32,11 @@ OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that mat
 def read_index(path: Path) -> dict:
     """Content of an index file; OutputError."""
     try:
-        return json.loads(path.read_text())
+        return dict(json.loads(path.read_text()))
     except OSError as error:
         raise OutputError(f"{path}: {error.strerror}") from error
-    except ValueError as error:
-        raise OutputError(f"{path}: not the index of a series ({error})") from error
+    except (ValueError, TypeError) as error:
+        raise OutputError(f"{path}: not an index of ehlpetsc ({error})") from error
 
 
 class Index:
@@ -49,46 +46,27 @@ class Index:
     name of a "file" in the folder of the index; `more` are other entries of the file.
     """
 
-    def __init__(self, path: Path, case: Any, kind: str, **more: object) -> None:
+    def __init__(self, path: Path, case: Case, kind: str, **more: object) -> None:
         self.path, self.case, self.kind, self.more = path, case, kind, more
         self.rows: list[dict] = []
         self._lock = Lock(path)
 
-    def acquire(self, overwrite: bool, results: Iterable[Path] = ()) -> None:
-        """Lock the index until :meth:`release`; OutputError if a file of another program would be replaced.
-
-        Files named in the index and HDF5 files that cannot be opened may be replaced.
-        """
+    def acquire(self, overwrite: bool) -> None:
+        """Lock the index until :meth:`release`; OutputError if another file would be replaced."""
         check_output_path(self.path, inputs_of(self.case))
-        if not overwrite:
-            named = set()
-            if exists(self.path):
-                try:
-                    named = {row["file"] for row in json.loads(self.path.read_text())[self.kind]}
-                except (OSError, ValueError, KeyError, TypeError):
-                    reason = f"exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}"
-                    raise OutputError(f"{self.path}: {reason}") from None
-            for file in results:
-                if file.is_file() and file.stat().st_size and file.name not in named and not _is_ours(file):
-                    raise OutputError(f"{file}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}")
+        if self.path.exists() and not overwrite and self.kind not in read_index(self.path):
+            raise OutputError(f"{self.path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}")
         self._lock.acquire()
         remove_stale(self.path)
-
-    def begin(self, rows: Iterable[dict]) -> None:
-        """Replace all rows."""
-        self.rows = list(rows)
 
     def release(self) -> None:
         """Release the lock."""
         self._lock.release()
 
     def stored_rows(self, of_any_case: bool = False) -> list[dict]:
-        """Rows in the file; [] if it is missing, damaged or, normally, of another case."""
-        try:
-            content = json.loads(self.path.read_text())
-            return list(content[self.kind]) if of_any_case or content["case"] == self.case.text else []
-        except (OSError, ValueError, KeyError, TypeError):
-            return []
+        """Rows in the file; [] if it is missing or, normally, of another case."""
+        content = read_index(self.path) if self.path.exists() else {}
+        return content.get(self.kind, []) if of_any_case or content.get("case") == self.case.text else []
 
     def write(self) -> None:
         """Write the file."""
@@ -97,15 +75,6 @@ class Index:
             atomic_write(self.path, (json.dumps(content, indent=1, default=str) + "\n").encode())
         except OSError as error:
             raise OutputError(f"{self.path}: index not written, {error.strerror}") from error
-
-
-def _is_ours(path: Path) -> bool:
-    """Whether a file is a result, or an HDF5 file too damaged to be recognised."""
-    try:
-        with open_for_reading(path) as file:
-            return "format_version" in file.attrs
-    except OutputError:
-        return h5py.is_hdf5(path)
 
 
 def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:
@@ -124,11 +93,7 @@ def files_of(path: Path) -> list[Path]:
     if path.suffix != ".json":
         return [path]
     index = read_index(path)
-    try:
-        members = index["passes"] if "passes" in index else index["members"]
-        files = [path.with_name(member["file"]) for member in members]
-    except (ValueError, KeyError, TypeError) as error:
-        raise OutputError(f"{path}: not the index of a series ({error})") from error
+    files = [path.with_name(row["file"]) for row in index.get("passes", index.get("members", []))]
     existing = [file for file in files if file.exists()]
     if not existing:
         raise OutputError(f"{path}: no member of the series has a result file beside it")

@@ -2,7 +2,7 @@
 
 The index ``OUTPUT.series.json`` contains the varied key, or keys, and for each member its value, result file
 (in the folder of the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". Members
-with a complete file of the same case text are not computed again; members with a restart file are continued.
+with a complete file of the same case are not computed again; unfinished ones are continued.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import re
 import sys
 import time as clock
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -22,9 +23,7 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.index import Index, flat_keys
 from ehlpetsc.results.means import Totals
-from ehlpetsc.results.output_guard import OVERWRITE_ADVICE
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.run.forecast import steps
 from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
@@ -39,6 +38,7 @@ if TYPE_CHECKING:
     from ehlpetsc.run.stop import StopRequest
 
 MAX_NAME_LENGTH = 60  # characters
+WAITING = "waiting"  # state of a member that is not computed yet
 
 
 def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
@@ -64,39 +64,59 @@ def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
 
 
 def members_of(case: Case, output: Path) -> list[Member]:
-    """Members of the series of a case, with files beside `output`."""
+    """Members of the series of a case, with files beside `output`; UsageError if names are not unique."""
     names = named(settings_of(tomllib.loads(case.text)["series"]))
-    return [Member(name, *member, output) for name, member in zip(names, members(case), strict=True)]
+    found = [Member(name, *member, output) for name, member in zip(names, members(case), strict=True)]
+    if min(len({m.output for m in found}), len({repr(m.value) for m in found})) < len(found):
+        raise UsageError("series.values: two values have the same name; allowed: values that differ")
+    return found
+
+
+def index_of(case: Case, path: Path, members: list[Member], files: list[Path]) -> Index:
+    """Index of the members of a series, all waiting."""
+    swept = tomllib.loads(case.text)["series"]
+    index = Index(path, case, "members", **{name: swept[name] for name in ("key", "keys") if name in swept})
+    index.rows = [
+        {"value": member.value, "file": file.name, "state": WAITING}
+        for member, file in zip(members, files, strict=True)
+    ]
+    return index
+
+
+def compute_rows(
+    world: MPI.Comm,
+    index: Index,
+    order: list[int],
+    solve: Callable[[int, MPI.Comm, PollingStop], dict[str, Any]],
+    stop: StopRequest | None,
+    ranks: int = 1,
+    on_row: Callable[[int], None] = lambda number: None,
+) -> None:
+    """Compute the rows `order` of an index on groups of ranks, write it after each; `on_row` on rank 0."""
+
+    def record(report: tuple[int, dict]) -> None:
+        number, row = report
+        index.rows[number] |= row
+        with contextlib.suppress(OutputError):  # of the first rank alone; it is written again at the end
+            index.write()
+        on_row(number)
+
+    on_root(world, index.write)
+    index.rows = WorkQueue(world, ranks, order, record).compute(solve, stop, lambda: index.rows)
 
 
 class Member:
-    """Member of a series: its name, as ``viscosity=0.002``, value, case and files."""
+    """Member of a series: its name, as ``viscosity=0.002``, value, case and result file."""
 
     def __init__(self, name: str, value: Any, case: Case, output: Path) -> None:
         self.value, self.case, self.name = value, case, name
         suffix = re.sub(r"[^A-Za-z0-9.+-]", "_", name)
         self.output = output.with_name(f"{output.stem}_{suffix}.h5")
-        self.restart = self.output.with_suffix(".restart.h5")
 
-    def state_of_files(self) -> str:
-        """State of the files: "done", "begun" (with a restart file) or "waiting".
-
-        Files of another case, damaged results and restart files with a wrong checksum count as "waiting".
-        """
-        with contextlib.suppress(OutputError, KeyError):
-            with read_result(self.output) as result:
-                if result.attrs["case"] != self.case.text:
-                    return "waiting"
-                if result.attrs["status"] == "done":
-                    return "done"
-            if is_restart_of(self.restart, self.case.text):
-                return "begun"
-        return "waiting"
-
-    def is_of_another_case(self) -> bool:
-        """Whether the result file belongs to another case; a damaged one is computed again."""
-        with contextlib.suppress(OutputError, KeyError), read_result(self.output) as result:
-            return result.attrs["case"] != self.case.text
+    def is_done(self) -> bool:
+        """Whether the result is complete and of the same case."""
+        with contextlib.suppress(OutputError), read_result(self.output) as result:
+            return result.attrs["case"] == self.case.text and result.attrs["status"] == "done"
         return False
 
     def weight(self) -> tuple[int, float]:
@@ -146,75 +166,57 @@ class Series:
         ranks: int = 1,
         overwrite: bool = False,
     ) -> None:
-        self.world, self.case, self.stop = world, case, stop
+        self.world, self.stop, self.ranks, self.overwrite = world, stop, ranks, overwrite
         self.members = members_of(case, output)
         files = [member.output for member in self.members]
-        values = {repr(member.value) for member in self.members}
-        if min(len(set(files)), len(values)) < len(self.members):
-            raise UsageError("series.values: two values have the same name; allowed: values that differ")
-        swept = tomllib.loads(case.text)["series"]
-        keys = {name: swept[name] for name in ("key", "keys") if name in swept}
-        self.index = Index(output.with_name(f"{output.stem}.series.json"), case, "members", **keys)
-        on_root(world, self._acquire, overwrite)
-        states = world.bcast([m.state_of_files() for m in self.members] if world.rank == 0 else None)
-        self.index.begin(
-            {"value": m.value, "file": m.output.name, "state": "done" if state == "done" else "waiting"}
-            for m, state in zip(self.members, states, strict=True)
-        )
-        missing = [n for n, state in enumerate(states) if state != "done"]
-        missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
-        self.queue = WorkQueue(world, ranks, missing, self._note_end)
-        self.failures: dict[int, str] = {}
-        self.unwritten: OutputError | None = None
-        if world.rank == 0:
-            self._print_opening(ranks, len(missing))
+        self.index = index_of(case, output.with_name(f"{output.stem}.series.json"), self.members, files)
 
     def run(self) -> ExitStatus:
         """Run the missing members; returns the exit status."""
-        begun = clock.monotonic()
+        begun, is_root, index, faults = clock.monotonic(), self.world.rank == 0, self.index, []
+        on_root(self.world, index.acquire, self.overwrite)
         try:
-            on_root(self.world, self.index.write)
-            return self.queue.compute(
-                self._run_member, self.stop, lambda: self._conclude(clock.monotonic() - begun)
-            )
+            done = self.world.bcast([member.is_done() for member in self.members] if is_root else None)
+            missing = [n for n, is_done in enumerate(done) if not is_done]
+            missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
+            for number in set(range(len(done))).difference(missing):
+                index.rows[number]["state"] = ExitStatus.DONE.words
+            if is_root:
+                self._print_opening(len(missing))
+            compute_rows(self.world, index, missing, self._run_member, self.stop, self.ranks)
+            states = {row["state"] for row in index.rows}
+            failed = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
+            status = next((status for status in failed if status.words in states), ExitStatus.DONE)
+            if {WAITING, ExitStatus.STOPPED.words} & states:
+                status = ExitStatus.STOPPED
+            try:
+                on_root(self.world, index.write)
+            except OutputError as error:
+                faults, status = [str(error)], status or ExitStatus.BAD_INPUT
         finally:
-            self.index.release()
+            index.release()
+        if is_root:
+            self._report(status, faults, clock.monotonic() - begun)
+        return status
 
-    def _acquire(self, overwrite: bool) -> None:
-        foreign = [str(member.output) for member in self.members if member.is_of_another_case()]
-        if foreign and not overwrite:
-            reason = f"the result of another case, or of other --set; {OVERWRITE_ADVICE}"
-            raise OutputError(f"{', '.join(foreign)}: {reason}")
-        self.index.acquire(overwrite, [member.output for member in self.members])
-
-    def _run_member(self, number: int, group: MPI.Comm, stop: PollingStop) -> tuple[ExitStatus, str]:
-        """Run one member on a group; returns exit status and failure."""
+    def _run_member(self, number: int, group: MPI.Comm, stop: PollingStop) -> dict[str, Any]:
+        """Run one member on a group; returns its state and the reason of a failure."""
         member = self.members[number]
         out: Any = PrefixedStream(member.name, sys.stdout)
         err: Any = PrefixedStream(member.name, sys.stderr)
-        begun = group.bcast(group.rank == 0 and member.state_of_files() == "begun")
         try:
             run = Run(Simulation(member.case, group), member.output, stop, out, err)
-            outcome = run.run(member.restart if begun else None, overwrite=True)  # checked before: it is ours
-            return outcome.status, str(outcome.failure or "")
+            outcome = run.run(overwrite=self.overwrite)
         except (CaseError, OutputError, UsageError) as error:
-            if group.rank == 0:
-                print(f"ehlpetsc: {error}", file=err, flush=True)
-            return ExitStatus.BAD_INPUT, str(error)
+            return {"state": ExitStatus.BAD_INPUT.words, "reason": str(error)}
+        reason = {"reason": str(outcome.failure)} if outcome.failure else {}
+        return {"state": outcome.status.words} | reason
 
-    def _note_end(self, report: tuple[int, tuple[ExitStatus, str]]) -> None:
-        """Record the end of a member on the first rank."""
-        number, (status, failure) = report
-        self.index.rows[number]["state"] = status.words
-        if failure:
-            self.failures[number] = failure
-        self._keep_index()
-
-    def _print_opening(self, ranks: int, missing: int) -> None:
+    def _print_opening(self, missing: int) -> None:
         names = ", ".join(m.name for m in self.members)
         print(
             f"series of {len(self.members)} members, {missing} of them to compute, on "
-            f"{-(-self.world.size // ranks)} x {ranks} rank(s): {names}"
+            f"{-(-self.world.size // self.ranks)} x {self.ranks} rank(s): {names}"
         )
         names_of: dict[str, list[str]] = {}
         for member in self.members:
@@ -225,31 +227,16 @@ class Series:
             print(f"warning: {prefix}{warning}")
         sys.stdout.flush()
 
-    def _keep_index(self) -> None:
-        """Write the index in mid-run; an error of the first rank alone must not block the others."""
-        try:
-            self.index.write()
-            self.unwritten = None
-        except OutputError as error:
-            self.unwritten = error
-
-    def _conclude(self, wall: float) -> ExitStatus:
-        """Print the outcome on the first rank; returns the exit status."""
-        states = [row["state"] for row in self.index.rows]
-        for number, failure in sorted(self.failures.items()):
-            print(f"ehlpetsc: {self.members[number].name}: {states[number]}: {failure}", file=sys.stderr)
-        self._keep_index()
-        if self.unwritten:
-            print(f"ehlpetsc: {self.unwritten}", file=sys.stderr)
+    def _report(self, status: ExitStatus, faults: list[str], wall: float) -> None:
+        """Print the outcome on the first rank."""
+        for member, row in zip(self.members, self.index.rows, strict=True):
+            if "reason" in row:
+                print(f"ehlpetsc: {member.name}: {row['state']}: {row['reason']}", file=sys.stderr)
+        for fault in faults:
+            print(f"ehlpetsc: {fault}", file=sys.stderr)
         sys.stderr.flush()
-        if {"waiting", "stopped"} & set(states):
-            status = ExitStatus.STOPPED
+        if status is ExitStatus.STOPPED:
             print("ehlpetsc: stopped; the same command computes what is missing")
-        else:
-            faults = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
-            otherwise = ExitStatus.BAD_INPUT if self.unwritten else ExitStatus.DONE
-            status = next((s for s in faults if s.words in states), otherwise)
-        if not self.unwritten:
+        if not faults:
             print(f"index: {self.index.path}")
         print(summary_line(status, Totals.of_series(m.totals() for m in self.members), wall), flush=True)
-        return status

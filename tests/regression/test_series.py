@@ -87,20 +87,27 @@ def test_rerun_computes_missing_members_only(finished):
     one, two = summary(first.stdout), summary(again.stdout)
     assert all(one[name] == two[name] for name in ("steps", "newton", "contacts", "h_min"))
     other = series(folder, "--set", "time.courant=1.0", ranks=0)
-    assert other.returncode == 2 and "out_viscosity_0.01.h5, out_viscosity_0.006.h5" in other.stderr
-    assert "another case" in other.stderr
+    assert other.returncode == 2 and "viscosity=0.006: bad input: out_viscosity_0.006.h5: " in other.stderr
+    assert "another case" in other.stderr and before[files[1]] == files[1].stat().st_mtime_ns
     other = series(folder, "--set", "time.courant=1.0", "--overwrite", ranks=0)
     assert other.returncode == 0 and " 3 of " in other.stdout
 
 
-@pytest.mark.parametrize(
-    "name, what", [("out.series.json", "an index"), ("out_viscosity_0.006.h5", "a result")]
-)
-def test_foreign_file_in_a_series_is_refused_and_kept(tmp_path, name, what):
-    (tmp_path / name).write_text("mine")
+@pytest.mark.parametrize("text", ["mine", '{"key": "mine"}'])
+def test_foreign_index_is_refused_and_kept(tmp_path, text):
+    (tmp_path / "out.series.json").write_text(text)
     refused = series(tmp_path, ranks=0)
-    assert refused.returncode == 2 and is_line_with(refused.stderr, f"{name}: ", what, "-o", "--overwrite")
-    assert [path.name for path in tmp_path.iterdir()] == [name] and (tmp_path / name).read_text() == "mine"
+    assert refused.returncode == 2 and is_line_with(refused.stderr, "out.series.json: ", "an index")
+    assert [path.name for path in tmp_path.iterdir()] == ["out.series.json"]
+    assert (tmp_path / "out.series.json").read_text() == text
+
+
+def test_foreign_file_of_a_member_is_refused_and_kept(tmp_path):
+    (tmp_path / "out_viscosity_0.006.h5").write_text("mine")
+    refused = series(tmp_path, ranks=0, values=VALUES[:2])
+    assert refused.returncode == 2 and is_line_with(refused.stderr, "0.006.h5: ", "a result", "--overwrite")
+    assert list(states(tmp_path).values()) == ["done", "bad input"]
+    assert (tmp_path / "out_viscosity_0.006.h5").read_text() == "mine"
 
 
 def test_failed_member_is_named_and_does_not_stop_the_series(tmp_path):

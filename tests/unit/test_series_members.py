@@ -32,7 +32,7 @@ def test_files_are_named_after_output_and_value(tmp_path):
     first, *_, last = series(tmp_path)
     assert first.name == "viscosity=0.01"
     assert first.output == tmp_path / "out_viscosity_0.01.h5"
-    assert last.restart == tmp_path / "out_viscosity_0.001.restart.h5"
+    assert last.output == tmp_path / "out_viscosity_0.001.h5"
 
 
 SEVERAL = {"series.key": None, "series.keys": ["fluid.viscosity", "motion.entrainment_speed"]}
@@ -93,17 +93,16 @@ def test_longest_members_run_first(tmp_path):
     assert fine[1].weight()[0] == pytest.approx(4 * fine[0].weight()[0], rel=0.01)
 
 
-def test_complete_result_of_the_same_case_is_done(tmp_path, monkeypatch):
+def test_complete_result_of_the_same_case_is_done(tmp_path):
     member = series(tmp_path)[0]
-    assert member.state_of_files() == "waiting" and member.totals().values == {}
+    assert not member.is_done() and member.totals().values == {}
     make_result(member.output)
-    assert member.state_of_files() == "waiting" and member.is_of_another_case()  # of another case
+    assert not member.is_done()  # of another case
     with read_result(member.output) as result:
         member.case = member.case.copy({"_text": str(result.attrs["case"])})
-    assert not member.is_of_another_case()
-    assert member.state_of_files() == "done"
+    assert member.is_done()
     make_result(member.output, status="stopped")
-    assert member.state_of_files() == "waiting"  # and no restart file to go on with
+    assert not member.is_done()
 
 
 def test_series_sums_and_extremes():
