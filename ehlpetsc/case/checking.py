@@ -18,6 +18,8 @@ NUMBERS_ONLY = {"half widths", "boundary films"}  # units that are no units of m
 MAX_FLOAT = 1e308
 
 Tables = dict[str, Any]
+# exceptions of values that follow from unchecked tables: their faults are found by the check of the keys
+FAULTY = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 class Fault(NamedTuple):
@@ -63,17 +65,14 @@ def _texts(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any
 
 
 def _series_texts(series: Tables) -> Iterator[tuple[Any, Any, Key, str]]:
-    values = series.get("values")
-    if "key" in series:
-        key = key_of(series["key"])
-        if key and _takes_units(key) and _has_text(values):
-            yield series, "values", key, "series.values"
-        return
-    keys = series.get("keys")
-    for number, name in enumerate(keys if isinstance(keys, list) else ()):
-        key = key_of(name)
-        if key and _takes_units(key) and isinstance(values, list) and _has_text(values[number : number + 1]):
-            yield values, number, key, f"series.values.{number}"
+    values, keys = series.get("values"), series.get("keys")
+    places: list[tuple[Any, Any, object]] = [(series, "values", series["key"])] if "key" in series else []
+    if not places and isinstance(keys, list) and isinstance(values, list):
+        places = [(values, number, name) for number, name in enumerate(keys[: len(values)])]
+    for holder, name, dotted in places:
+        key = key_of(str(dotted))
+        if key and _takes_units(key) and _has_text(values if holder is series else holder[name]):
+            yield holder, name, key, f"series.values{'' if holder is series else f'.{name}'}"
 
 
 def _takes_units(key: Key) -> bool:
@@ -91,14 +90,8 @@ def check(
 ) -> tuple[Any, list[Fault]]:
     """Checked values of a table, None with faults, and its faults.
 
-    Parameters
-    ----------
-    where
-        Dotted name of the table with a dot at its end, "" for the whole case.
-    root
-        Tables of the whole case, by default `data`.
-    known
-        Places of faults that have been found already.
+    `where`: dotted name of the table with a dot at its end, "" for the whole case. `root`: tables of the
+    whole case, by default `data`. `known`: places of faults that have been found already.
     """
     root = data if root is None else root
     values: Tables = {}

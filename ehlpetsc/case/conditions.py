@@ -6,6 +6,7 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,8 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.declarations import KeyTable
+from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import Tables, check, is_number
+from ehlpetsc.case.checking import FAULTY, Tables, check, is_number
+from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
@@ -30,76 +33,42 @@ class TableFault(Exception):
     """A table of conditions cannot be used; the message names the reason and the line."""
 
 
-def read_table(path: Path, table: KeyTable, names: Columns) -> tuple[dict[str, list[float]], list[int]]:
-    """Columns of a CSV file in SI units, by key of a table, and the line number of each row.
+def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[float]]:
+    """Columns of a text file in SI units, by key of a table; raises `TableFault`."""
+    from ehlpetsc.surfaces.text_columns import text_columns
 
-    Raises `TableFault`.
-    """
-    rows = [(k, line.partition("#")[0].strip()) for k, line in enumerate(_text(path).splitlines(), 1)]
-    rows = [(k, line) for k, line in rows if line]
-    if not rows:
-        raise TableFault("no lines; allowed: a line of column names and one line a time")
-    separator = next((sign for sign in ";,\t" if sign in rows[0][1]), None)
-    if _numbers(rows[0][1], separator):
+    try:
+        columns, header = text_columns(path)
+    except ProfileError as fault:
+        raise TableFault(str(fault)) from None
+    except OSError as error:
+        raise TableFault(f"cannot be read: {error.strerror}: {path}") from None
+    headings = [line.partition("#")[0].strip() for line in header.splitlines()]
+    heading = next(filter(None, reversed(headings)), "")
+    factors = _factors(heading, table, names)
+    if len(factors) != len(columns):
         allowed = ", ".join(spellings[0] for spellings in names.values())
-        raise TableFault(f"line {rows[0][0]}: no column names; allowed: a first line with some of {allowed}")
-    factors = _factors(*rows[0], separator, table, names)
-    columns, lines = [], []
-    for number, line in rows[1:]:
-        values = _numbers(line, separator)
-        if len(values) != len(factors):
-            raise TableFault(f"line {number}: {shown(line)}: allowed: {len(factors)} numbers")
-        columns.append(values)
-        lines.append(number)
-    return {key: [row[k] * size for row in columns] for k, (key, size) in enumerate(factors.items())}, lines
+        count = f"{len(factors)} column names, {len(columns)} columns of numbers"
+        raise TableFault(f"{count}; allowed: a line with some of {allowed}, and numbers below it")
+    scaled = zip(factors.items(), columns, strict=True)
+    return {key: (size * column).tolist() for (key, size), column in scaled}
 
 
-def shown(line: str) -> str:
-    """Line of a file, shortened for messages."""
-    return line if len(line) <= 40 else line[:37] + "..."
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise TableFault(f"not UTF-8 text (byte {error.start}); allowed: a CSV table") from None
-    except FileNotFoundError:
-        raise TableFault(f"no such file: {path}") from None
-    except (OSError, ValueError) as error:
-        raise TableFault(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
-
-
-def _numbers(line: str, separator: str | None) -> list[float]:
-    """Numbers of a line; empty if an entry is not a number."""
-    words = [word.strip() for word in line.split(separator)]
-    if separator == ";":
-        words = [word.replace(",", ".") for word in words]
-    try:
-        return [float(word) for word in words]
-    except ValueError:
-        return []
-
-
-def _factors(
-    number: int, line: str, separator: str | None, table: KeyTable, names: Columns
-) -> dict[str, float]:
-    """Factor to SI units of each column named in a line, by key; units are in brackets: ``time [us]``."""
+def _factors(heading: str, table: KeyTable, names: Columns) -> dict[str, float]:
+    """Factor to SI units of each column named in a heading, by key; units are in brackets: ``time [us]``."""
     key_by_name = {name: key for key, spellings in names.items() for name in spellings}
-    factors = {}
-    for word in line.split(separator):
+    factors: dict[str, float] = {}
+    for word in heading.split(next((sign for sign in ";,\t" if sign in heading), None)):
         name, _, unit = word.strip(" \"'").replace("(", "[").partition("[")
         unit = unit.rstrip(")] ")
         key = key_by_name.get(" ".join(name.lower().replace("_", " ").split()))
-        if key is None:
+        if key is None or key in factors:
             allowed = ", ".join(spellings[0] for spellings in names.values())
-            raise TableFault(f"line {number}: column {shown(name.strip())!r}: allowed: {allowed}")
-        if key in factors:
-            raise TableFault(f"line {number}: a column twice")
+            raise TableFault(f"column {shortened(name.strip())!r}: allowed: one each of {allowed}")
         try:
             factors[key] = factor(unit or table.keys[key].unit, table.keys[key].unit)
         except UnitFault as fault:
-            raise TableFault(f"line {number}: column {shown(word.strip())!r}: {fault}") from None
+            raise TableFault(f"column {shortened(word.strip())!r}: {fault}") from None
     return factors
 
 
@@ -123,11 +92,9 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
     if values is None:
         return None
     if values.file is not None:
-        columns, lines = read_table(folder / values.file, OPERATION, COLUMNS)
-        return _table(columns, "line", lines, tables, values.repeat)
+        return _table(read_table(folder / values.file, OPERATION, COLUMNS), tables, values.repeat)
     columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
-    entries = range(1, len(columns.get("time", ())) + 1)
-    return _table(columns, "entry", entries, tables, values.repeat)
+    return _table(columns, tables, values.repeat)
 
 
 FILES = {"operation": ("file", OPERATION, COLUMNS), "gears": ("load_file", GEARS, PATH_COLUMNS)}
@@ -138,7 +105,7 @@ def with_columns(tables: Tables, folder: Path, of: Sequence[str] = tuple(FILES))
     for name in of:
         (key, table, names), given = FILES[name], tables.get(name)
         if isinstance(given, dict) and isinstance(given.get(key), str):
-            columns = read_table(folder / given[key], table, names)[0]
+            columns = read_table(folder / given[key], table, names)
             tables = tables | {name: {k: v for k, v in given.items() if k != key} | columns}
     return tables
 
@@ -170,9 +137,7 @@ def of_gears(path: ContactPath) -> ConditionsTable:
     )
 
 
-def _table(
-    columns: dict[str, list[float]], row: str, numbers: Sequence[int], tables: Tables, repeat: int
-) -> ConditionsTable:
+def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> ConditionsTable:
     """Conditions of the columns, for missing ones the constants of the case; raises `TableFault`."""
     if "time" not in columns:
         raise TableFault("no column time; allowed: one, increasing")
@@ -186,7 +151,7 @@ def _table(
     def refuse(key: str, wrong: np.ndarray, allowed: str) -> None:
         for k in np.flatnonzero(wrong)[:1]:
             unit = OPERATION.keys[key].unit
-            raise TableFault(f"{row} {numbers[k]}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
+            raise TableFault(f"row {k + 1}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
 
     for key, column in values.items():
         refuse(key, ~np.isfinite(column), "a finite number")
@@ -199,7 +164,7 @@ def _table(
         raise TableFault(f"{_sources(missing)}; allowed: a column of the table, or the key")
     values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
     if not (values["speed_1"].any() or values["speed_2"].any()):
-        raise TableFault(f"up to {row} {numbers[-1]}: both speeds are zero; allowed: a speed at some time")
+        raise TableFault("both speeds are zero; allowed: a speed at some time")
     from ehlpetsc.physics.conditions_table import ConditionsTable
 
     load, radius, u1, u2 = (values[key] for key in ("load", "radius", "speed_1", "speed_2"))
@@ -208,16 +173,14 @@ def _table(
 
 def _constants(tables: Tables) -> dict[str, float]:
     """Constant conditions in the other tables of a case."""
-    constants = {}
-    contact, motion = tables.get("contact"), tables.get("motion")
-    for key in ("load", "radius"):
-        value = contact.get(key) if isinstance(contact, dict) else None
-        if is_number(value) and value > 0.0:
-            constants[key] = float(value)
-    if isinstance(motion, dict) and is_number(motion.get("entrainment_speed")):
-        u, xi = motion["entrainment_speed"], motion.get("slide_roll_ratio", 0.0)
-        if is_number(xi):
-            constants["speed_1"], constants["speed_2"] = u * (1.0 + xi / 2.0), u * (1.0 - xi / 2.0)
+    constants: dict[str, float] = {}
+    with contextlib.suppress(*FAULTY):
+        contact = tables["contact"]
+        constants |= {key: float(contact[key]) for key in ("load", "radius") if contact.get(key, 0.0) > 0.0}
+    with contextlib.suppress(*FAULTY):
+        motion = tables["motion"]
+        u, xi = float(motion["entrainment_speed"]), float(motion.get("slide_roll_ratio", 0.0))
+        constants |= {"speed_1": u * (1.0 + xi / 2.0), "speed_2": u * (1.0 - xi / 2.0)}
     return constants
 
 
@@ -239,12 +202,11 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
     if isinstance(tables.get("gears"), dict) and "pass_shift" not in time:
         time = time | {"pass_shift": check(GEARS, tables["gears"])[0].pair.hunting_shift}
     if "travel" not in time:
-        try:
+        time = time | {"travel": 1.0}
+        with contextlib.suppress(*FAULTY):
             given = (contact[key] for key in ("youngs_modulus", "poisson_ratio"))
             modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in given))
-            time = time | {"travel": table.swept_length() / hertz_line(load, radius, modulus)[0]}
-        except (KeyError, TypeError, ValueError, ZeroDivisionError):
-            time = time | {"travel": 1.0}
+            time["travel"] = table.swept_length() / hertz_line(load, radius, modulus)[0]
     return tables | {"contact": contact, "motion": motion, "time": time}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,8 +11,8 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
-from ehlpetsc.base.materials import GRADES, Steel, fatigue_constants, flow_pressure, named_steels
-from ehlpetsc.case.checking import Fault, Tables, check, is_number, values_of
+from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
+from ehlpetsc.case.checking import FAULTY, Fault, Tables, check, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.laws import (
@@ -40,46 +41,38 @@ def with_derived(tables: Tables) -> Tables:
 
     Tables with faults, which are found by the check of the keys, do not change.
     """
-    return _with_oil(_with_grade(_with_material(tables)))
+    for derived in (_with_material, _with_grade, _with_oil):
+        with contextlib.suppress(*FAULTY):
+            tables = derived(tables)
+    return tables
 
 
 def _with_material(tables: Tables) -> Tables:
     """Elastic constants of the steels, and their flow pressure for ``yield_pressure = "material"``."""
-    contact, post = tables.get("contact"), tables.get("post", {})
-    if not isinstance(contact, dict) or contact.get("material") is None:
-        return tables
-    try:
-        steels = named_steels(contact["material"])
-    except (KeyError, TypeError, ValueError):
-        return tables
+    contact = tables["contact"]
+    steels = named_steels(contact["material"])
     filled = {key: [getattr(steel, key) for steel in steels] for key in ELASTIC} | contact
     if contact.get("yield_pressure") == BY_MATERIAL:
-        try:
-            filled["yield_pressure"] = [_flow_pressure(steel, post) for steel in steels]
-        except (AttributeError, TypeError, ValueError, ZeroDivisionError, OverflowError):
-            return tables
+        constants = [fatigue_constants(steel, tables.get("post", {})) for steel in steels]
+        filled["yield_pressure"] = [
+            float(flow_pressure(values["cyclic_strength"], values["cyclic_hardening"]))
+            for values in constants
+        ]
     return tables | {"contact": filled}
-
-
-def _flow_pressure(steel: Steel, post: Tables) -> float:
-    constants = fatigue_constants(steel, post)
-    return float(flow_pressure(constants["cyclic_strength"], constants["cyclic_hardening"]))
 
 
 def _with_grade(tables: Tables) -> Tables:
     """Viscosity by Walther's equation (ASTM D341) times the density, and alpha by Gold et al. (2001)."""
-    fluid, heat = tables.get("fluid"), tables.get("heat", {})
-    if not isinstance(fluid, dict) or not isinstance(heat, dict):
-        return tables
-    grade, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
-    if isinstance(grade, str) and grade in GRADES:
+    fluid, heat = tables["fluid"], tables.get("heat", {})
+    grade, temperature = fluid["grade"], _oil_temperature(fluid, heat)
+    if isinstance(grade, str):
         named = GRADES[grade]
-        density = named.density_at(temperature) if is_number(temperature) else named.density
+        density = named.density if temperature is None else named.density_at(temperature)
         grade = {"v40": named.v40, "v100": named.v100, "density": density}
         fluid = fluid | {"grade": grade}
         tables = tables | {"fluid": fluid}
     oil = check(GRADE, grade)[0] if isinstance(grade, dict) else None
-    if oil is None or not is_number(temperature) or not 200.0 < temperature < 700.0:
+    if oil is None or temperature is None or not 200.0 < temperature < 700.0:
         return tables
     nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])
     properties = {"viscosity": nu / MM2 * oil.density} | fluid
@@ -91,28 +84,19 @@ def _with_grade(tables: Tables) -> Tables:
 def _slope(secant: float, fluid: Tables) -> float:
     """Pressure-viscosity coefficient [1/Pa] of a law with the secant of Gold et al. over 2000 bar."""
     constants = {"reference_viscosity": ROELANDS_VISCOSITY, "roelands_pressure": ROELANDS_PRESSURE} | fluid
-    names = ("viscosity", "reference_viscosity", "roelands_pressure")
-    values = [constants[name] for name in names]
-    if fluid.get("law") != "roelands" or not all(is_number(v) and v > 0.0 for v in values):
+    eta, reference, z = constants["viscosity"], constants["reference_viscosity"], fluid.get("roelands_z")
+    if fluid.get("law") != "roelands" or z is None and eta <= reference:
         return secant
-    z = fluid.get("roelands_z")
-    eta, reference, pressure = values
-    if z is None and eta <= reference:
-        return secant
-    return roelands_slope_of_secant(secant, math.log(eta / reference), pressure, z if is_number(z) else None)
+    return roelands_slope_of_secant(secant, math.log(eta / reference), constants["roelands_pressure"], z)
 
 
 def _with_oil(tables: Tables) -> Tables:
     """Constants of a measured oil; a case that gives an Eyring stress has none of Carreau's law."""
-    fluid, heat = tables.get("fluid"), tables.get("heat", {})
-    if not isinstance(fluid, dict) or not isinstance(heat, dict):
-        return tables
-    oil, temperature = fluid.get("oil"), _oil_temperature(fluid, heat) or STANDARD_TEMPERATURE
-    if not isinstance(oil, str) or oil not in OILS or not is_number(temperature):
-        return tables
+    fluid, heat = tables["fluid"], tables.get("heat", {})
+    oil, temperature = OILS[fluid["oil"]], _oil_temperature(fluid, heat) or STANDARD_TEMPERATURE
     if not 200.0 < temperature < 700.0:
         return tables
-    of_fluid, of_heat = OILS[oil].at(temperature), OILS[oil].heat
+    of_fluid, of_heat = oil.at(temperature), oil.heat
     if "eyring_stress" in fluid:
         of_fluid = {key: value for key, value in of_fluid.items() if not key.startswith("carreau")}
     if "viscosity_temperature" in heat:
@@ -125,7 +109,7 @@ def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:
     """Temperature at which `viscosity` holds [K], None if there is none."""
     bulk = heat.get("bulk_temperature")
     if isinstance(bulk, list):
-        bulk = 0.5 * sum(bulk) if len(bulk) == 2 and all(map(is_number, bulk)) else None
+        bulk = sum(bulk) / len(bulk)
     given = heat.get("reference_temperature"), fluid.get("temperature"), heat.get("inlet_temperature"), bulk
     return next((value for value in given if value is not None), None)
 
@@ -140,9 +124,7 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
         return []
-    series = data["series"] if isinstance(data.get("series"), dict) else {}
-    swept = [series.get("key"), *(series.get("keys") or [])]
-    if any(isinstance(key, str) and key.startswith("surface.") for key in swept):
+    if "surface." in str(data.get("series")):
         return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
     surface = data["surface"] if isinstance(data.get("surface"), dict) else {}
     tables = [table for table in surface.values() if isinstance(table, dict) and "short_cutoff" in table]
@@ -170,12 +152,6 @@ def with_layer_stiffness(case: Values) -> Values:
     longest = max(cutoffs, default=None) or LAYER_NODES * Scales.of(case).dx
     stiffness = asperity_stiffness(contact.asperity_height, longest)
     return case.copy({"contact": contact.copy({"asperity_stiffness": stiffness})})
-
-
-def has_bulk_of_losses(tables: Tables) -> bool:
-    """Whether bulk temperatures are to follow from the losses of a gear pair."""
-    heat = tables.get("heat")
-    return isinstance(heat, dict) and heat.get("bulk_temperature") == "losses"
 
 
 def rating_of(case: Values, folder: Path) -> Rating | None:

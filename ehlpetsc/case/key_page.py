@@ -63,39 +63,21 @@ def keys(name: str | None = None) -> str:
 
     `name` is a table, as "fluid" or "surface.1", or a key, as "contact.load" or "asperity_height".
     """
-    every = tables()
-    if name is None:
-        chosen = every
-    else:
-        above, _, last = name.rpartition(".")
-        if above in every and last in _keys(every[above]):
-            return "\n".join(_lines("", {last: every[above].keys[last]}))
-        inside = (f"{name}.", f"{name} (")
-        chosen = {p: table for p, table in every.items() if p == name or p.startswith(inside)}
-        if not chosen:
-            return _found(name, every)
-    lines = []
-    for place, table in chosen.items():
-        same = place.replace("surface.2", "surface.1") if name is None else place
-        lines += [f"[{place}]" if place else "top-level keys"]
-        lines += [f"  as [{same}]"] if same != place else _lines("  ", _keys(table))
-    return "\n".join(lines)
-
-
-def _found(name: str, every: dict[str, KeyTable]) -> str:
-    """Keys of one name in any table; raises `UsageError`."""
-    lines = []
+    every, lines = tables(), []
     for place, table in every.items():
-        if name in _keys(table) and not place.startswith("surface.2"):
-            lines += _lines("", {f"{place}.{name}".lstrip("."): table.keys[name]})
+        if name is None or f"{place}.".startswith(f"{name}.") or place.startswith(f"{name} ("):
+            same = place.replace("surface.2", "surface.1") if name is None else place
+            lines += [f"[{place}]" if place else "top-level keys"]
+            lines += [f"  as [{same}]"] if same != place else _lines("  ", _keys(table))
+        elif not place.startswith("surface.2") or name.startswith("surface.2"):
+            found = {f"{place}.{key}".lstrip("."): table.keys[key] for key in _keys(table)}
+            lines += _lines("", {key: found[key] for key in found if f".{key}".endswith(f".{name}")})
     if lines:
         return "\n".join(lines)
     above, _, last = name.rpartition(".")
-    names = (
-        every[above].keys if above and above in every else {k for table in every.values() for k in table.keys}
-    )
+    known = every[above].keys if above in every and above else {k for t in every.values() for k in t.keys}
     places = ", ".join(place for place in every if place and " " not in place)
-    raise UsageError(f"{name}: no such table or key; {nearest(last, sorted(names)) or f'tables: {places}'}")
+    raise UsageError(f"{name}: no such table or key; {nearest(last, sorted(known)) or f'tables: {places}'}")
 
 
 def _lines(indent: str, chosen: dict[str, Key]) -> list[str]:

@@ -21,7 +21,6 @@ from ehlpetsc.case.conditions import (
     with_reference_state,
 )
 from ehlpetsc.case.derived import (
-    has_bulk_of_losses,
     rating_of,
     resolve_measured_layer,
     with_derived,
@@ -146,7 +145,8 @@ def _checked(
     folder: Path, data: Tables, known: Collection[str] = (), is_stored: bool = False
 ) -> tuple[Any, list[Fault]]:
     """The case with its conditions over time, None with faults, and the faults of its tables."""
-    if has_bulk_of_losses(data):
+    heat = data.get("heat")
+    if isinstance(heat, dict) and heat.get("bulk_temperature") == "losses":
         return _checked_with_losses(folder, data, known)
     faults, conditions = [], None
     data = with_derived(data)

@@ -73,20 +73,20 @@ def test_units_of_a_heading_are_read(with_table):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        (TABLE.replace("3e-4", "0.5e-4"), "line 4: time = 5e-05 s: "),
-        (TABLE.replace("300e3", "-300e3"), "line 4: load = -300000 N/m: "),
-        (TABLE.replace("0.018", "-1"), "line 4: radius = -1 m: "),
-        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "line 3: both speeds"),
-        (TABLE.replace("4.0, 4.5", "4.0"), "line 4: "),
-        (TABLE.replace("527e3", "lots"), "line 3: "),
-        (TABLE.replace("speed 1", "velocity"), "line 1: column 'velocity'"),
-        (TABLE.replace("radius [m]", "load"), "line 1: .*twice"),
-        (TABLE.replace("radius [m]", "radius [s]"), r"line 1: column 'radius \[s\]': .* one of m$"),
+        (TABLE.replace("3e-4", "0.5e-4"), "row 3: time = 5e-05 s: "),
+        (TABLE.replace("300e3", "-300e3"), "row 3: load = -300000 N/m: "),
+        (TABLE.replace("0.018", "-1"), "row 3: radius = -1 m: "),
+        ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "both speeds"),
+        (TABLE.replace("4.0, 4.5", "4.0"), "line 2: 5 numbers"),
+        (TABLE.replace("527e3", "lots"), "row 2: load = nan N/m: "),
+        (TABLE.replace("speed 1", "velocity"), "column 'velocity'"),
+        (TABLE.replace("radius [m]", "load"), "column 'load': allowed: one each"),
+        (TABLE.replace("radius [m]", "radius [s]"), r"column 'radius \[s\]': .* one of m$"),
         ("time, load\n0, 1e5\n", "two times"),
         ("time\n0\n1\n", ": load, radius, speed 1, speed 2,"),
         ("load\n1e5\n1e5\n", "no column time;"),
-        ("", "no lines"),
-        ("0, 1e5, 0.02\n1, 2e5, 0.02\n", "line 1: no column names"),
+        ("", "0 points"),
+        ("0, 1e5, 0.02\n1, 2e5, 0.02\n", "0 column names, 3 columns"),
     ],
 )
 def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
@@ -114,7 +114,7 @@ def test_columns_from_the_case_or_from_python():
     overrides = {f"operation.{key}": value for key, value in tables["operation"].items()}
     case = load(CASE, overrides)
     np.testing.assert_array_equal(case.conditions.load, [5e5, 6e5])
-    with pytest.raises(CaseError, match="entry 2: time"):
+    with pytest.raises(CaseError, match="row 2: time"):
         load(CASE, overrides | {"operation.time": [0.0, 0.0]})
 
 
