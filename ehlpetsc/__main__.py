@@ -127,15 +127,12 @@ def _run(words: list[str]) -> int:
         _print(help_text())
         if chosen.case is None:
             return ExitStatus.DONE
-    problem = packages.startup_problem()
-    if problem:
-        return refuse(f"ehlpetsc: {problem}")
     return run(chosen)
 
 
 def help_text() -> str:
     """All commands and the options of a run, in the manner of PETSc's ``-help``."""
-    from ehlpetsc.run.cli import OPTIONS
+    from ehlpetsc.run.cli import options_text
 
     lines = [
         "usage: ehlpetsc CASE.toml [options]    run a case, under mpirun on any number of ranks",
@@ -143,7 +140,7 @@ def help_text() -> str:
         *(f"  {name:9s} {command.text}" for name, command in COMMANDS.items()),
         "  python    SCRIPT.py: run a script in which import ehlpetsc works",
         "Options of a run, also as -ehl_output ...:",
-        *(option.help_line(name) for name, option in OPTIONS.items()),
+        options_text(),
         "  --version",
         "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",
         "may be in [petsc] of the case, in PETSC_OPTIONS and on the command line; the last one counts.",

@@ -112,7 +112,7 @@ def solve(
     1.00 p0 on 1001 nodes
     """
     need_solver()
-    from ehlpetsc.run.outputs.progress import ProgressOutput, in_notebook, on_terminal
+    from ehlpetsc.run.outputs.progress import Progress, in_notebook, on_terminal
     from ehlpetsc.run.outputs.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import place_of_stop
@@ -131,7 +131,7 @@ def solve(
         begun = recorder.lock_output(None if restart is None else Path(restart), overwrite)
         if begun is not None:
             recorder.resume(begun)
-        shown = [ProgressOutput(simulation, sys.stdout)] if progress and simulation.comm.rank == 0 else []
+        shown = [Progress(simulation)] if progress and simulation.comm.rank == 0 else []
         with StopRequest.on_interrupt() as stop:
             status, failure = write_states(simulation, [recorder, *shown], stop)
     if failure:

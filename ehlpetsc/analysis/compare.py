@@ -32,14 +32,9 @@ NOWHERE = np.array([np.nan])  # position of what has none
 class Difference:
     """Norms of the difference of one quantity.
 
-    Attributes
-    ----------
-    scale
-        Maximum magnitude in either file.
-    max, rms
-        Maximum and root mean square difference; nan if one file has a value and the other nan.
-    x, time
-        Where and when the difference is greatest [m, s]; nan of a quantity without positions or times.
+    `scale`: maximum magnitude in either file. `max`, `rms`: maximum and root mean square difference; nan if
+    one file has a value and the other nan. `x`, `time`: where and when the difference is greatest [m, s]; nan
+    of a quantity without positions or times.
     """
 
     name: str

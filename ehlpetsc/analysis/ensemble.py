@@ -36,14 +36,8 @@ COLUMNS = ("ensemble", "figure", "unit", "runs", "mean", "deviation", "min", "ma
 class Ensemble:
     """Runs that differ in their seeds.
 
-    Attributes
-    ----------
-    name
-        Keys and values in which it differs from the other ensembles; "" for a single ensemble.
-    values
-        Values of the keys in which ensembles differ.
-    scalars
-        Scalars of every run by name, shape (runs,).
+    `name`: keys and values in which it differs from the other ensembles; "" for a single ensemble. `values`:
+    values of the keys in which ensembles differ. `scalars`: scalars of every run by name, shape (runs,).
     """
 
     name: str

@@ -146,14 +146,9 @@ class FlankDamage:
 
     `profile_offsets` are the arc lengths from A at which both flanks are at x = 0 at time 0 [m].
 
-    Attributes
-    ----------
-    depths
-        [m], shape (nz,).
-    arcs
-        Arc lengths from A along the flanks of pinion and wheel [m], increasing.
-    damage
-        By flank, shape (nz, ns), nan for points that did not pass the contact; None without damage.
+    `depths`: [m], shape (nz,). `arcs`: arc lengths from A along the flanks of pinion and wheel [m],
+    increasing. `damage`: by flank, shape (nz, ns), nan for points that did not pass the contact; None without
+    damage.
     """
 
     def __init__(self, file: Path, profile_offsets: tuple[float, float]) -> None:

@@ -27,7 +27,6 @@ from ehlpetsc.results.output_guard import atomic_write, check_derived
 from ehlpetsc.results.reader import Result
 
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")
-SIGNATURE_LENGTH = 20  # of the first line, by which a table of the same kind is known
 PERCENTILES = (5.0, 50.0, 95.0)
 COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
 
@@ -113,8 +112,7 @@ def put_table(
             print(text.getvalue(), end="")
             return
         read = [*map(Path, chosen.results), *(result.path for result in results)]
-        head = text.getvalue()[:SIGNATURE_LENGTH].encode()
-        check_derived(chosen.output, read, (".csv",), signature=head)
+        check_derived(chosen.output, read, (".csv",))
         atomic_write(chosen.output, text.getvalue().encode())
         print(chosen.output)
 

@@ -72,16 +72,9 @@ def exit_status(
 ) -> int:
     """Exit status of a command; the message of a failure goes to standard error.
 
-    Parameters
-    ----------
-    name
-        Name of the command, as ``plot``.
-    action
-        The command, which returns the status; None: done.
-    faults
-        Further exceptions that mean bad input.
-    output
-        Output file, for errors of writing without a file name.
+    `name`: name of the command, as ``plot``. `action`: the command, which returns the status; None: done.
+    `faults`: further exceptions that mean bad input. `output`: output file, for errors of writing without a
+    file name.
     """
     name = f"ehlpetsc {name}"
     try:
@@ -97,7 +90,8 @@ def exit_status(
     except BrokenPipeError:
         raise
     except OSError as error:
-        print(f"{name}: {not_written(error, error.filename or output)}", file=sys.stderr)
+        text = not_written(error, error.filename or output) if error.errno else str(error)  # HDF5 has none
+        print(f"{name}: {text}", file=sys.stderr)
     except (OutputError, PostError, UsageError) as error:
         print(f"{name}: {error}", file=sys.stderr)
     except faults as error:

@@ -35,9 +35,7 @@ def prepare() -> list[str]:
     number, because ranks and threads would compete for the cores. UCX, which Open MPI 5 starts, must not
     handle SIGHUP.
 
-    Returns
-    -------
-    Missing packages.
+    Returns the missing packages.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
@@ -89,10 +87,7 @@ def _debians() -> list[Path]:
 def advice(lacks: list[str], arguments: list[str]) -> str:
     """Advice on missing packages: one line with the reason and one with a command.
 
-    Parameters
-    ----------
-    arguments
-        Arguments of the command.
+    `arguments`: arguments of the command.
     """
     command = " ".join(arguments) or "CASE.toml"
     reason = f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
@@ -105,21 +100,6 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
         f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}   (builds PETSc from source if "
         "that is missing), or take Debian's packages and a virtual environment with --system-site-packages"
     )
-
-
-def startup_problem() -> str | None:
-    """Reason why a run cannot be started; None if it can."""
-    try:
-        os.getcwd()
-    except OSError:
-        return "the working folder has been removed; change to one that is there"
-    if any(name in os.environ for name in RANK_VARIABLES):
-        return None  # under mpirun
-    names = ("OMPI_MCA_orte_tmpdir_base", "TMPDIR", "TEMP", "TMP")
-    folder = next((os.environ[name] for name in names if os.environ.get(name)), "/tmp")
-    if not os.access(folder, os.W_OK | os.X_OK):
-        return f"{folder}: cannot be written, and MPI needs it; set TMPDIR to a folder that can"
-    return None
 
 
 def first_rank() -> bool:

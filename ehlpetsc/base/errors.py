@@ -77,7 +77,7 @@ class NoSteadyStart(Exception):
 class NotConverged(Exception):
     """A time step or steady start did not converge; the message states step, time, reason and a cure.
 
-    `state` is the last accepted state, a `run.accepted_state.AcceptedState`; None if there is none.
+    `state` is the last accepted state, a `run.simulation.AcceptedState`; None if there is none.
     """
 
     def __init__(self, message: str, state: object | None = None) -> None:

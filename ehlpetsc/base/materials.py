@@ -41,16 +41,10 @@ FATIGUE_KEYS = ("fatigue_strength", "fatigue_ductility", "b", "c", "cyclic_harde
 class Steel:
     """A steel in one condition, SI units.
 
-    Attributes
-    ----------
-    source
-        Condition, and where the constants are from.
-    hardness
-        Brinell, HB; None: not published with the constants.
-    fatigue_strength, fatigue_ductility, b, c
-        sigma_f' [Pa], eps_f', b, c of the strain-life curve.
-    cyclic_hardening, cyclic_strength
-        n' and K' [Pa] of the cyclic stress-strain curve.
+    `source`: condition, and where the constants are from. `hardness`: Brinell, HB; None: not published with
+    the constants. `fatigue_strength`, `fatigue_ductility`, `b`, `c`: sigma_f' [Pa], eps_f', b, c of the
+    strain-life curve. `cyclic_hardening`, `cyclic_strength`: n' and K' [Pa] of the cyclic stress-strain
+    curve.
     """
 
     source: str

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
@@ -27,13 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Scene:
-    """Quantities that are fixed over a run, for effects.
-
-    Attributes
-    ----------
-    positions
-        Positions of both surfaces at the beginning of the run.
-    """
+    """Quantities that are fixed over a run, for effects."""
 
     case: Case
     scales: Scales
@@ -47,8 +41,7 @@ class Scene:
 
         offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
         shift = (number - 1) * case.time.pass_shift if case.time else 0.0
-        positions = replace(SurfacePositions.at_rest(scales), profile_offsets=(offset_1, offset_2 + shift))
-        return cls(case, scales, operation, positions)
+        return cls(case, scales, operation, SurfacePositions((offset_1, offset_2 + shift)))
 
     @cached_property
     def roughness(self) -> Roughness | None:

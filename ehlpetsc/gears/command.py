@@ -50,7 +50,7 @@ def run(chosen: argparse.Namespace) -> None:
     from ehlpetsc.case.derived import rating_of
     from ehlpetsc.case.loading import gear_tables
     from ehlpetsc.gears.path import path_of_contact
-    from ehlpetsc.gears.table import COLUMNS, csv, modulus_of, rows
+    from ehlpetsc.gears.table import csv, modulus_of, rows
 
     file = Path(chosen.files[0])
     if file.suffix in (".h5", ".json"):
@@ -63,7 +63,7 @@ def run(chosen: argparse.Namespace) -> None:
     rating = None if isinstance(case, str) else rating_of(case, file.parent)
     target = _picture(chosen, "path")
     if chosen.csv is not None:
-        check_derived(Path(chosen.csv), [file], (".csv", ".txt"), "--csv", ", ".join(COLUMNS).encode())
+        check_derived(Path(chosen.csv), [file], (".csv", ".txt"), "--csv")
     print("\n".join(rows(path, modulus, rating)))
     if isinstance(case, str):
         print(f"note: without film, friction and temperatures of the standards: {case}")

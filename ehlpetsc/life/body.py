@@ -112,14 +112,8 @@ class LifeBody(NamedTuple):
         The contact begins and ends on parts of the bodies that are not followed: they wear as the mean of
         the stretch, or of the part of it that is next to them.
 
-        Parameters
-        ----------
-        stretch
-            Abscissas that pass the whole contact [m].
-        reach
-            Abscissas that the mesh meets [m].
-        averaged
-            Length at either end of the stretch of which the mean is taken [m]; by default all of it.
+        `stretch`: abscissas that pass the whole contact [m]. `reach`: abscissas that the mesh meets [m].
+        `averaged`: length at either end of the stretch of which the mean is taken [m]; by default all of it.
         """
         width, met = self.s[1] - self.s[0], self.columns_within(stretch)
         depth = self.recession[met]
@@ -155,10 +149,7 @@ class LifeBody(NamedTuple):
         Of a cell at the depth z its damage so far and the integral of D over the depths to come, over the
         wear of a pass; the columns recede by their mean. inf without wear, 0 without damage.
 
-        Parameters
-        ----------
-        wear, added
-            As of `rates`.
+        `wear`, `added`: as of `rates`.
         """
         tops = np.maximum(self.edges[:-1, None], self.recession)
         thickness = np.maximum(self.edges[1:, None] - tops, 0.0)
@@ -175,10 +166,7 @@ class LifeBody(NamedTuple):
     def passes_to_break_out(self, rates: Rates, max_passes: int, rule: str) -> int:
         """Passes after which the first cells break out, `max_passes` where none do before.
 
-        Parameters
-        ----------
-        rule
-            As of :func:`.laws.broken_out`.
+        `rule`: as of :func:`.laws.broken_out`.
         """
 
         def breaks(passes: float) -> bool:
@@ -198,12 +186,8 @@ class LifeBody(NamedTuple):
     def after(self, rates: Rates, passes: int, done: int, rule: str) -> LifeBody:
         """The body after a jump.
 
-        Parameters
-        ----------
-        passes, done
-            Passes of the jump, and before it.
-        rule
-            As of :func:`.laws.broken_out`; "none": columns with failed cells are counted, and remain.
+        `passes`, `done`: passes of the jump, and before it. `rule`: as of :func:`.laws.broken_out`; "none":
+        columns with failed cells are counted, and remain.
         """
         wear, added, volume = rates.after(passes)
         fails = (self.damage < 1.0) & (self.damage + added >= 1.0)

@@ -50,18 +50,11 @@ def pass_file(path: Path, position: int, positions: int) -> Path:
 def check_files(path: Path, case: Case) -> None:
     """Refuse to overwrite an input or a file that is not a life.
 
-    Parameters
-    ----------
-    path
-        The life.
-
-    Raises
-    ------
-    OutputError
+    `path`: the life. Raises `OutputError`.
     """
     from ehlpetsc.results.output_guard import check_derived, check_output_path, inputs_of
 
-    check_derived(path, inputs_of(case), (".h5",), signature=b"\x89HDF")
+    check_derived(path, inputs_of(case), (".h5",))
     positions = number_of_positions(case)
     for position in range(positions):
         check_output_path(pass_file(path, position, positions), inputs_of(case), "-o")
@@ -78,14 +71,7 @@ def _tables_of_surfaces(text: str) -> dict:
 def check_resolution(roughness: Roughness | None, scales: Scales, path: str | Path) -> None:
     """Refuse a life on a mesh that does not carry the profiles: its figures would be those of the mesh.
 
-    Parameters
-    ----------
-    path
-        Of the case, for the message.
-
-    Raises
-    ------
-    CaseError
+    `path`: of the case, for the message. Raises `CaseError`.
     """
     faults = []
     for side in ("1", "2"):

@@ -14,6 +14,7 @@ from ehlpetsc.life.checks import check_case, check_files, check_resolution, pass
 from ehlpetsc.life.history import LifeFile
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.positions import Positions
+from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
 if TYPE_CHECKING:
@@ -39,17 +40,14 @@ def _columns(values: Iterable[str]) -> str:
 def opening(case: Case, scales: Scales, scene: Scene, positions: int) -> str:
     """Lines before the first round: passes of a round, steps and expected run time of a pass; header.
 
-    Parameters
-    ----------
-    positions
-        Of surface 2.
+    `positions`: of surface 2.
     """
     from ehlpetsc.run import forecast
 
     seconds = forecast.work_time(case, scales, scene.roughness)
     rounds = f"rounds of {positions} passes" if positions > 1 else "rounds of one pass"
     steps = scene.operation.step_count(scales.dt)
-    head = f"{rounds}, each of {steps} steps and {_time(seconds)} on one rank; worn in um^2"
+    head = f"{rounds}, each of {steps} steps and {duration(seconds)} on one rank; worn in um^2"
     return f"{head}\n{_columns(WIDTHS)}"
 
 
@@ -63,13 +61,7 @@ def line_of(history: LifeHistory, seconds: float) -> str:
         ("wear_volume", 1e12, ".4g"),
     ):
         values += [f"{unit * row[f'{name}_{k}']:{form}}" for k in (1, 2)]
-    return _columns([*values, f"{row['friction']:.4f}", _time(seconds)])
-
-
-def _time(seconds: float) -> str:
-    if seconds < 90.0:
-        return f"{seconds:.0f} s" if seconds >= 10.0 else f"{seconds:.1f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+    return _columns([*values, f"{row['friction']:.4f}", duration(seconds)])
 
 
 def run_life(
@@ -85,6 +77,8 @@ def run_life(
     most: int | None = None,
 ) -> LifeHistory:
     """Run the life of a case's surfaces, or continue it.
+
+    Raises `CaseError`, `UsageError`, `OutputError`, `PostError`, `NotConverged`, `Stopped`.
 
     Parameters
     ----------
@@ -104,10 +98,6 @@ def run_life(
         Receives a line before the first round and after each.
     most
         Number of rounds to solve in this call.
-
-    Raises
-    ------
-    CaseError, UsageError, OutputError, PostError, NotConverged, Stopped
     """
     from ehlpetsc.api import need_solver
 

@@ -48,9 +48,7 @@ class LifeFile:
     def store(self, history: LifeHistory) -> None:
         """Append the last row of a life, or write all rows if the file is not open yet.
 
-        Raises
-        ------
-        OutputError
+        Raises `OutputError`.
         """
         try:
             if self._file is None:
@@ -63,10 +61,7 @@ class LifeFile:
     def close(self, status: str) -> None:
         """Store the final status and close the file.
 
-        Parameters
-        ----------
-        status
-            "done", "stopped", "not converged".
+        `status`: "done", "stopped", "not converged".
         """
         if self._file:
             with contextlib.suppress(OSError, RuntimeError):  # its rows are complete
@@ -130,17 +125,9 @@ def _lay_out(file: h5py.File, history: LifeHistory) -> None:
 class LifeHistory:
     """All solved rounds of a life.
 
-    Attributes
-    ----------
-    case
-        Its text.
-    rows
-        Figures of each round: "passes" done after its jump, "jump", "solved" passes of it, "pits_1", "ra_1",
-        "friction" ...
-    bodies
-        After each jump.
-    plastic
-        Record of the plastic deformation after each jump, flat; empty without.
+    `case`: its text. `rows`: figures of each round: "passes" done after its jump, "jump", "solved" passes of
+    it, "pits_1", "ra_1", "friction" ... `bodies`: after each jump. `plastic`: record of the plastic
+    deformation after each jump, flat; empty without.
     """
 
     def __init__(self, case: str, title: str) -> None:

@@ -29,15 +29,8 @@ MAX_EXTRAPOLATION = 2.0  # length of a jump over the previous one, up to which r
 class Rates(NamedTuple):
     """Wear, damage and worn volume of a pass at the start of a jump, and their changes per pass.
 
-    Attributes
-    ----------
-    wear : shape (n,)
-        [m].
-    damage : shape (cells, n)
-    volume
-        Worn off [m^2].
-    slopes
-        Changes of the three per pass; by default none.
+    `wear`: in m, shape (n,). `damage`: shape (cells, n). `volume`: worn off [m^2]. `slopes`: changes of the
+    three per pass; by default none.
     """
 
     wear: np.ndarray
@@ -50,12 +43,7 @@ class Rates(NamedTuple):
 
         No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes.
 
-        Parameters
-        ----------
-        before
-            Rates of that round.
-        passes
-            Since it.
+        `before`: rates of that round. `passes`: since it.
         """
         slopes = []
         new: Any
@@ -84,10 +72,7 @@ BREAK_OUT_DELAY = 1.1  # longest jump over the allowed one, where it then ends w
 class Jumps:
     """Size of the jumps of a life, and bodies after them.
 
-    Parameters
-    ----------
-    rq
-        Combined root mean square roughness [m].
+    `rq`: combined root mean square roughness [m].
     """
 
     def __init__(self, life: Values, rq: float) -> None:
@@ -103,12 +88,8 @@ class Jumps:
     ) -> tuple[tuple[LifeBody, ...], int, tuple[Rates, ...]]:
         """Jump with the rates of a solved round, up to the allowed wear or damage or the next break-out.
 
-        Parameters
-        ----------
-        done
-            Passes before it.
-        before
-            Passes of the previous jump if the rates are continuous since; else 0.
+        `done`: passes before it. `before`: passes of the previous jump if the rates are continuous since;
+        else 0.
 
         Returns
         -------

@@ -27,10 +27,7 @@ def passes_to(amount: float | np.ndarray, rate: float | np.ndarray, slope: float
 
     .. math:: t=\frac{2c}{f\,(1+\sqrt{1+2sc/f^2})}\quad\text{of}\quad c = ft+\tfrac12st^2
 
-    Parameters
-    ----------
-    amount, rate, slope
-        c > 0, f >= 0 and s.
+    `amount`, `rate`, `slope`: c > 0, f >= 0 and s.
     """
     positive = np.where(np.asarray(rate) > 0.0, rate, 1.0)
     constant = amount / positive
@@ -42,12 +39,7 @@ def passes_to(amount: float | np.ndarray, rate: float | np.ndarray, slope: float
 def cell_edges(thickness: float, deepest: float) -> np.ndarray:
     """Depths of the edges of the cells of a column [m]: equal ones at the surface, growing below.
 
-    Parameters
-    ----------
-    thickness
-        Of the first cells [m].
-    deepest
-        Depth that they reach at least [m].
+    `thickness`: of the first cells [m]. `deepest`: depth that they reach at least [m].
     """
     edges = [0.0]
     while edges[-1] < deepest or len(edges) < 2:
@@ -59,15 +51,8 @@ def cell_edges(thickness: float, deepest: float) -> np.ndarray:
 def cell_depths(edges: np.ndarray, recession: np.ndarray) -> np.ndarray:
     """Depths of the centres of cells below the present surface [m]; nan where a cell is gone.
 
-    Parameters
-    ----------
-    edges : shape (cells + 1,)
-    recession : shape (columns,)
-        Depth of the present surface below that as made [m].
-
-    Returns
-    -------
-    Of a cell that is worn in part the centre of the rest counts.
+    `edges`: shape (cells + 1,). `recession`: depth of the present surface below that as made [m], shape
+    (columns,). Of a cell that is worn in part the centre of the rest counts.
     """
     top = np.maximum(edges[:-1, None], recession)
     bottom = edges[1:, None]
@@ -79,13 +64,8 @@ def damage_at(depths: np.ndarray, damage: np.ndarray, at: np.ndarray) -> np.ndar
 
     Straight lines of ln D over depth, of D where one end is 0; 0 below the deepest.
 
-    Parameters
-    ----------
-    depths : shape (n,)
-        Increasing from 0 [m].
-    damage : shape (n, columns)
-    at : shape (cells, columns)
-        Depths [m]; nan: 0.
+    `depths`: increasing from 0 [m], shape (n,). `damage`: shape (n, columns). `at`: depths [m]; nan: 0, shape
+    (cells, columns).
     """
     if len(depths) == 1:
         return np.where(at <= depths[0], damage[0], 0.0)
@@ -115,13 +95,8 @@ def broken_out(
     * ``connected`` only cells that are connected with the surface by failed or weakened ones break out, with
       the cells above them: a crack does not grow.
 
-    Parameters
-    ----------
-    damage : shape (cells, columns)
-    edges : shape (cells + 1,)
-        [m].
-    recession : shape (columns,)
-        Depth of the present surface [m].
+    `damage`: shape (cells, columns). `edges`: [m], shape (cells + 1,). `recession`: depth of the present
+    surface [m], shape (columns,).
     """
     from scipy.ndimage import label
 
@@ -145,14 +120,8 @@ def with_walls(bottom: np.ndarray, recession: np.ndarray, width: float) -> np.nd
     Cracks of micropits grow at a shallow angle to the surface (Rycerz and Kadiric, Tribology Letters 67
     (2019) 63), and the width of a pit is then independent of that of the columns.
 
-    Parameters
-    ----------
-    bottom : shape (columns,)
-        As of :func:`broken_out` [m].
-    recession : shape (columns,)
-        Depth of the surface before [m].
-    width
-        Of a column [m].
+    `bottom`: as of :func:`broken_out` [m], shape (columns,). `recession`: depth of the surface before [m],
+    shape (columns,). `width`: of a column [m].
     """
     number = np.arange(len(bottom))
     breaks = np.flatnonzero(bottom > recession)
@@ -163,8 +132,6 @@ def with_walls(bottom: np.ndarray, recession: np.ndarray, width: float) -> np.nd
 def number_of_pits(is_pitted: np.ndarray) -> int:
     """Number of runs of neighbouring pitted columns.
 
-    Parameters
-    ----------
-    is_pitted : shape (columns,)
+    `is_pitted`: shape (columns,).
     """
     return int(np.count_nonzero(np.diff(np.append(False, is_pitted).astype(int)) > 0))

@@ -27,15 +27,9 @@ if TYPE_CHECKING:
 class OfBody(NamedTuple):
     """Effects of a pass on a body.
 
-    Attributes
-    ----------
-    s : shape (points,)
-        Abscissas in the body of the points that passed the whole contact [m].
-    depths : shape (n,)
-        Below the present surface [m].
-    damage : shape (n, points)
-    depth
-        Wear before and after the pass.
+    `s`: abscissas in the body of the points that passed the whole contact [m], shape (points,). `depths`:
+    below the present surface [m], shape (n,). `damage`: shape (n, points). `depth`: wear before and after the
+    pass.
     """
 
     s: np.ndarray
@@ -53,12 +47,8 @@ class OfBody(NamedTuple):
 class Pass(NamedTuple):
     """A solved pass.
 
-    Attributes
-    ----------
-    figures
-        Means over the time in which both surfaces fill the contact.
-    yielded
-        Largest depth by which a point yielded in this pass [m].
+    `figures`: means over the time in which both surfaces fill the contact. `yielded`: largest depth by which
+    a point yielded in this pass [m].
     """
 
     bodies: tuple
@@ -74,12 +64,8 @@ NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 def start(case: Case, comm: MPI.Comm, position: int, records: dict[str, tuple]) -> Simulation:
     """The simulation of a pass.
 
-    Parameters
-    ----------
-    position
-        Of surface 2, from 0, in units of `time.pass_shift`.
-    records
-        Of the bodies, after the previous pass.
+    `position`: of surface 2, from 0, in units of `time.pass_shift`. `records`: of the bodies, after the
+    previous pass.
     """
     return Simulation(case, comm, pass_number=position + 1, records=records)
 
@@ -87,16 +73,8 @@ def start(case: Case, comm: MPI.Comm, position: int, records: dict[str, tuple]) 
 def run_pass(simulation: Simulation, before: dict[str, tuple], file: Path, stop: Any = None) -> Pass:
     """Solve a pass to its end and evaluate it.
 
-    Parameters
-    ----------
-    before
-        Records as of :func:`start`.
-    file
-        Result file, replaced.
-
-    Raises
-    ------
-    NotConverged, Stopped, OutputError, PostError
+    `before`: records as of :func:`start`. `file`: result file, replaced. Raises `NotConverged`, `Stopped`,
+    `OutputError`, `PostError`.
     """
     recorder = Recorder(simulation, file)
     with simulation.options, recorder:

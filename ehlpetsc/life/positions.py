@@ -40,17 +40,10 @@ def number_of_positions(case: Case) -> int:
 class Positions:
     """Positions of surface 2.
 
-    Parameters
-    ----------
-    scene
-        `effects.effect.Scene` of a position, from 0.
+    `scene`: `effects.effect.Scene` of a position, from 0.
 
-    Attributes
-    ----------
-    rq
-        Combined root mean square roughness [m].
-    passes_2
-        Passes of body 2 for each one of body 1, over the positions together.
+    `rq`: combined root mean square roughness [m]. `passes_2`: passes of body 2 for each one of body 1, over
+    the positions together.
     """
 
     def __init__(self, case: Case, scales: Scales, scene: Callable) -> None:
@@ -66,10 +59,7 @@ class Positions:
     def new_bodies(self, first: Pass) -> tuple[LifeBody, ...]:
         """Columns of both bodies, of body 2 in all of its positions.
 
-        Parameters
-        ----------
-        first
-            Solved in position 0.
+        `first`: solved in position 0.
         """
         return tuple(self._new(first.bodies[k], k) for k in range(2))
 

@@ -42,10 +42,9 @@ def winner(life: LifeHistory) -> str:
 def outcome(life: LifeHistory) -> dict:
     """Figures of a life for the index.
 
-    Returns
-    -------
-    "winner", "passes", "solved", "friction"; the larger pitted share of both surfaces; "first_failure" in
-    passes, None where no cell fails; "damage_ahead" as of `body.LifeBody.damage_ahead`, None without wear.
+    They are "winner", "passes", "solved", "friction"; the larger pitted share of both surfaces;
+    "first_failure" in passes, None where no cell fails; "damage_ahead" as of `body.LifeBody.damage_ahead`,
+    None without wear.
     """
     last = life.rows[-1]
     return {

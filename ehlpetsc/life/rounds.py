@@ -64,10 +64,7 @@ def _is_fault(outcome: tuple) -> bool:
 class Round(NamedTuple):
     """Passes on the same surfaces.
 
-    Attributes
-    ----------
-    passes_2
-        As of `positions.Positions`.
+    `passes_2`: as of `positions.Positions`.
     """
 
     passes: list

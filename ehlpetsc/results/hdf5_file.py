@@ -1,13 +1,12 @@
-"""HDF5 files of the program: opening, attributes, datasets read on demand, appended rows."""
+"""HDF5 files of the program: opening, attributes, appended rows, free space."""
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import os
 import resource
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -45,56 +44,14 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
 
-@contextlib.contextmanager
-def reading(path: str | Path, name: str = "") -> Iterator[None]:
-    """Convert exceptions of h5py on a damaged file to an OutputError that names file and dataset."""
-    try:
-        yield
-    except (OSError, RuntimeError, KeyError, AttributeError, ValueError, TypeError, MemoryError) as fault:
-        place = f"{path}: {name}" if name else f"{path}"
-        words = str(fault).strip().partition("\n")[0]
-        raise OutputError(f"{place}: cannot be read, the file is damaged ({words})") from None
-
-
 def plain(value: Any) -> Any:
     """Value of an attribute, text as str."""
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
-class Attributes(dict):
-    """Attributes of a file, group or dataset by name; a missing attribute raises an OutputError."""
-
-    def __init__(self, item: h5py.HLObject, path: str | Path) -> None:
-        with reading(path):
-            super().__init__({name: plain(value) for name, value in item.attrs.items()})
-        self._path = path
-
-    def __missing__(self, name: str) -> None:
-        raise OutputError(f"{self._path}: damaged, or of another program: it has no attribute {name}")
-
-
-class LazyDataset:
-    """Dataset of a file; slices of it are arrays."""
-
-    def __init__(self, dataset: h5py.Dataset, path: Path) -> None:
-        self._dataset, self._path = dataset, path
-        self.name, self.shape, self.dtype = dataset.name, dataset.shape, dataset.dtype
-        self.ndim, self.chunks = dataset.ndim, dataset.chunks
-
-    def __getitem__(self, index: Any) -> np.ndarray:
-        with reading(self._path, self.name):
-            return self._dataset[index]
-
-    def __len__(self) -> int:
-        return self.shape[0]
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
-        return np.asarray(self[()], dtype=dtype)
-
-    @property
-    def attrs(self) -> Attributes:
-        """Attributes, text as str."""
-        return Attributes(self._dataset, self._path)
+def attributes(item: h5py.HLObject) -> dict[str, Any]:
+    """Attributes of a file, group or dataset by name."""
+    return {name: plain(value) for name, value in item.attrs.items()}
 
 
 def put_fixed(file: h5py.File, name: str, text: str, length: int) -> None:

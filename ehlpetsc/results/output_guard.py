@@ -20,14 +20,13 @@ from collections.abc import Iterator
 
 WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
-SIGNATURE_BYTES = 512  # at the beginning of a file, in which its signature is searched
 PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 PAGES = (".html", ".htm")
 
 
 def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") -> None:
     """Refuse an output path, that of `option`, that is an input or not a regular file: OutputError."""
-    if exists(path) and not path.is_file():
+    if path.exists() and not path.is_file():
         kind = "a folder" if path.is_dir() else "a device or pipe"
         raise OutputError(f"{path}: {kind}, not a file to write a result to; give another {option}")
     for read in inputs:
@@ -35,29 +34,11 @@ def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") ->
             raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
 
 
-def check_derived(
-    path: Path, inputs: Iterable[Path], endings: tuple[str, ...], option: str = "-o", signature: bytes = b""
-) -> None:
-    """Refuse a derived output path that is an input, has another ending, or is a file of another kind.
-
-    An existing file is replaced only if the signature is near its beginning.
-    """
+def check_derived(path: Path, inputs: Iterable[Path], endings: tuple[str, ...], option: str = "-o") -> None:
+    """Refuse a derived output path that is an input or has another ending."""
     check_output_path(path, inputs, option)
     if path.suffix.lower() not in endings:
         raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(endings)}")
-    if signature and path.exists():
-        with open(path, "rb") as file:
-            head = file.read(SIGNATURE_BYTES)
-        if head and signature not in head:
-            raise OutputError(f"{path}: exists and is not of that kind; remove it or give another {option}")
-
-
-def exists(path: Path) -> bool:
-    """Whether a path exists; OutputError if that is not permitted, as in a folder of another user."""
-    try:
-        return path.exists()
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be read, {error.strerror}") from error
 
 
 class Lock:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.results.hdf5_file import Attributes, open_for_reading, reading
+from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 
 if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result
@@ -120,10 +120,10 @@ class PostResult:
 
     def __init__(self, path: str | Path) -> None:
         self.path = path = Path(path)
-        with open_for_reading(path) as file, reading(path):
+        with open_for_reading(path) as file:
             if "damage/s" not in file:
                 raise OutputError(f"{path}: not a result of post-processing")
-            self.attrs = Attributes(file, path)
+            self.attrs = attributes(file)
             names = [name for surface in SURFACES for name in stored_names(surface)]
             self._arrays = {name: file[name][:] for name in names if name in file}
         self.a, self.ratio = float(self.attrs["a"]), self.attrs.get("slide_roll_ratio", np.nan)

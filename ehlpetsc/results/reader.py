@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +11,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError, OutputError
-from ehlpetsc.results.hdf5_file import Attributes, LazyDataset, open_for_reading, reading
+from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 
 if TYPE_CHECKING:
     from xarray import Dataset, Variable
@@ -30,26 +31,25 @@ def read_result(path: Path, **options: Any) -> Result:
 
 def open_result(path: Path, **options: Any) -> h5py.File:
     """Open a result file for `Result`; options and errors as for :func:`read_result`."""
-    if not isinstance(path, str | Path):
-        raise OutputError(f"{path!r}: allowed: the name of a result file")
-    file = open_for_reading(path, **options)
-    fault = _fault(file)
+    file, fault = open_for_reading(path, **options), None
+    version = file.attrs.get("format_version")
+    if version is not None and "damage/s" in file:
+        fault = "a result of post-processing; give the file it was made from"
+    elif version is None or "x" not in file or "steps" not in file:
+        fault = "an HDF5 file, but not a result of ehlpetsc"
+    elif version != FORMAT_VERSION:
+        fault = f"format version {version}, this ehlpetsc reads {FORMAT_VERSION}"
     if fault:
         file.close()
         raise OutputError(f"{path}: {fault}")
     return file
 
 
-def _fault(file: h5py.File) -> str | None:
-    """Reason why an HDF5 file is not a result; None if it is one."""
-    version = file.attrs.get("format_version")
-    if version is not None and "damage/s" in file:
-        return "a result of post-processing; give the file it was made from"
-    if version is None or "x" not in file or "steps" not in file:
-        return "an HDF5 file, but not a result of ehlpetsc"
-    if version != FORMAT_VERSION:
-        return f"format version {version}, this ehlpetsc reads {FORMAT_VERSION}"
-    return None
+def is_done(path: Path, case_text: str) -> bool:
+    """Whether a file is the complete result of a case."""
+    with contextlib.suppress(OutputError, OSError), read_result(path) as result:
+        return (result.attrs["case"], result.attrs["status"]) == (case_text, "done")
+    return False
 
 
 class Steps:
@@ -66,8 +66,7 @@ class Steps:
     def __call__(self, name: str) -> np.ndarray:
         if name not in self.names:
             raise OutputError(f"{self._path}: has no scalar {name} of its steps")
-        with reading(self._path, f"steps/{name}"):
-            return self._group[name][: self._count]
+        return self._group[name][: self._count]
 
     def __getattr__(self, name: str) -> np.ndarray:
         if name in self.__dict__.get("names", ()):
@@ -78,8 +77,8 @@ class Steps:
         return [*super().__dir__(), *self.names]
 
     def __repr__(self) -> str:
-        attributes = {name: Attributes(self._group[name], self._path) for name in self.names}
-        lines = [f"{name:22} {own['units']:6} {own['long_name']}" for name, own in attributes.items()]
+        own = {name: self._group[name].attrs for name in self.names}
+        lines = [f"{name:22} {attrs['units']:6} {attrs['long_name']}" for name, attrs in own.items()]
         return "\n".join([f"<Steps: {len(self.names)} scalars of shape ({self._count},)>", *lines])
 
 
@@ -105,15 +104,14 @@ class Result:
     def __init__(self, file: h5py.File, path: Path) -> None:
         self._file, self.path = file, Path(path)
         self._read: dict[str, np.ndarray] = {}
-        self.attrs = Attributes(file, path)
-        with reading(path):
-            self.time = file["time"][:]  # written last, as in Steps
-            self._frames = len(self.time)
-            self.step = file["step"][: self._frames]
-            self.steps = Steps(file["steps"], path)
-            self.scalars = self.steps.names
-            self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
-            self.x, self.contact_count = file["x"][:], file["contact_count"][:]
+        self.attrs = attributes(file)
+        self.time = file["time"][:]  # written last, as in Steps
+        self._frames = len(self.time)
+        self.step = file["step"][: self._frames]
+        self.steps = Steps(file["steps"], path)
+        self.scalars = self.steps.names
+        self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+        self.x, self.contact_count = file["x"][:], file["contact_count"][:]
 
     def __enter__(self) -> Result:
         return self
@@ -125,13 +123,11 @@ class Result:
         """Close the file."""
         self._file.close()
 
-    def __getitem__(self, name: str) -> LazyDataset:
+    def __getitem__(self, name: str) -> h5py.Dataset:
         """Dataset `name`, read on demand; after a killed run it may have rows beyond `time`."""
-        with reading(self.path, name):
-            dataset = self._file.get(name)
-            if not isinstance(dataset, h5py.Dataset):
-                raise OutputError(f"{self.path}: does not store {name}")
-            return LazyDataset(dataset, self.path)
+        if name not in self._file:
+            raise OutputError(f"{self.path}: does not store {name}")
+        return self._file[name]
 
     def __contains__(self, name: str) -> bool:
         return name in self._file
@@ -210,6 +206,4 @@ class Result:
         name = f"surface/{surface}"
         if name not in self:
             return None
-        with reading(self.path, name):
-            speed = float(self._file[name].attrs["speed"])
-        return self[f"{name}/s"][:], self[f"{name}/z"][:], speed
+        return self[f"{name}/s"][:], self[f"{name}/z"][:], float(self._file[name].attrs["speed"])

@@ -44,8 +44,6 @@ def load_restart(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """
     try:
         content = Path(path).read_bytes()
-    except FileNotFoundError:
-        raise OutputError(f"{path}: no such file") from None
     except OSError as error:
         raise OutputError(f"{path}: not read, {error.strerror}") from error
     if not content.startswith(SIGNATURE):
@@ -70,7 +68,15 @@ def restart_of_same(path: Path, restart: Path, case_text: str) -> Path | None:
     A run begins at time 0 if the result of the same case is complete, or if the run was killed before its
     first restart file. Any other file at the path of the result or of the restart file is refused.
     """
-    status = _status_of_same(path, case_text) if path.exists() else None
+    status = None
+    if path.exists():
+        try:
+            with open_for_reading(path) as file:
+                status, case = plain(file.attrs["status"]), file.attrs["case"]
+        except (OutputError, KeyError):
+            raise OutputError(f"{path}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}") from None
+        if case != case_text:
+            raise OutputError(f"{path}: holds a run of another case, or of other --set; {OVERWRITE_ADVICE}")
     if status == "done" or not restart.exists():
         return None
     try:
@@ -82,19 +88,6 @@ def restart_of_same(path: Path, restart: Path, case_text: str) -> Path | None:
         advice = f"continue with --restart {restart}, {OVERWRITE_ADVICE}"
         raise OutputError(f"{restart}: a restart file waits there, {kind}; {advice}")
     return restart
-
-
-def _status_of_same(path: Path, case_text: str) -> str:
-    """Status of a result; OutputError if the file is not a result, or of another case."""
-    try:
-        with open_for_reading(path) as file:
-            status, case = plain(file.attrs["status"]), file.attrs["case"]
-    except (OutputError, KeyError):
-        raise OutputError(f"{path}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}") from None
-    if case != case_text:
-        kind = "the result" if status == "done" else f"a run that is {status}, not done,"
-        raise OutputError(f"{path}: holds {kind} of another case, or of other --set; {OVERWRITE_ADVICE}")
-    return status
 
 
 def _header(body: memoryview) -> bytes:

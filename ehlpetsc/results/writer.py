@@ -130,6 +130,8 @@ class ResultWriter:
     A new file is created under a temporary name and renamed when all datasets exist, so that a run that fails
     at its start does not destroy an older result.
 
+    `written`: last complete step in the file and its time [s]; None: no step.
+
     Parameters
     ----------
     path
@@ -143,11 +145,6 @@ class ResultWriter:
         Continue the file at `path` after this step, up to which each node was in contact in so many steps;
         later steps are dropped. The file is copied, which also repairs a file left by a killed run, and
         replaced when the copy is complete. Without a file at `path` a new one begins after this step.
-
-    Attributes
-    ----------
-    written : (int, float) or None
-        Last complete step in the file and its time [s]; None: no step.
 
     Raises
     ------
@@ -321,13 +318,11 @@ def _misfit(file: h5py.File, old: Result, step: int) -> str | None:
     last = max(old.steps("step"), default=None)
     if not np.array_equal(old.x, file["x"][:]):
         return "it was computed on another mesh, or for another half width"
-    if set(old.fields) != {name for name in FIELDS if name in file}:
-        return f"it stores other fields ({', '.join(old.fields)})"
-    if set(old.scalars) != set(file["steps"]):
-        return f"it stores other figures of its steps ({', '.join(old.scalars)})"
+    if {*old.fields, *old.scalars} != {name for name in FIELDS if name in file} | set(file["steps"]):
+        return f"it stores other quantities ({', '.join([*old.fields, *old.scalars])})"
     if last is not None and last < step:  # None: stopped before its first step
         return f"it ends at step {last}, before step {step} of the restart file"
-    for name, quantity in (("p0", "maximum Hertz pressure"), ("u1", "speed"), ("u2", "speed")):
+    for name in ("p0", "u1", "u2"):
         if not np.isclose(old.attrs[name], file.attrs[name], rtol=SCALE_TOLERANCE, atol=0.0):
-            return f"it was computed for another {quantity} ({name} = {old.attrs[name]:.6g})"
+            return f"it was computed for {name} = {old.attrs[name]:.6g}"
     return None

@@ -14,7 +14,6 @@ import math
 import os
 import re
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -37,46 +36,39 @@ def _minutes(text: str) -> float:
     raise argparse.ArgumentTypeError(f"{text}: allowed: a number > 0 [minutes]")
 
 
-@dataclass(frozen=True)
-class Option:
-    """Option of the program: value, default, meaning, how it is parsed."""
-
-    value: str
-    default: str
-    text: str
-    parsed: dict[str, Any]
-
-    def help_line(self, name: str) -> str:
-        """Line of the help."""
-        words = f"--{name.replace('_', '-')} {self.value}".rstrip()
-        return f"  {f'-o, {words}' if name == 'output' else words:32s} {self.text} (default: {self.default})"
-
-
-OPTIONS = {
-    "output": Option("FILE", "CASE.h5 in this folder", "result file, the restart file beside it", {}),
-    "set": Option(
-        "TABLE.KEY=VALUE",
-        "the case as it is",
-        "key of the case; may be repeated",
-        {"action": "append", "default": []},
-    ),
-    "overwrite": Option(
-        "", "no", "replace the file of another or of an edited case", {"action": "store_true"}
-    ),
-    "restart": Option(
-        "FILE", "begin at time 0", "continue from FILE and append to the result", {"type": Path}
-    ),
-    "time_limit": Option(
-        "MINUTES", "none", "stop after this wall clock time", {"type": _minutes, "default": 0.0}
-    ),
-    "ranks_per_member": Option("RANKS", "1", "ranks of each member of a [series]", {"type": int}),
-    "scheme": Option(
-        "newton|sweep",
-        "newton",
-        "sweep: Gauss-Seidel iteration of the paper",
-        {"choices": ("newton", "sweep")},
-    ),
+OPTIONS: dict[str, dict[str, Any]] = {  # arguments of argparse
+    "output": {"metavar": "FILE", "help": "result file, the restart file beside it [CASE.h5 in this folder]"},
+    "set": {
+        "metavar": "TABLE.KEY=VALUE",
+        "action": "append",
+        "default": [],
+        "help": "key of the case; may be repeated",
+    },
+    "overwrite": {"action": "store_true", "help": "replace the file of another or of an edited case"},
+    "restart": {"metavar": "FILE", "type": Path, "help": "continue from FILE and append to the result"},
+    "time_limit": {
+        "metavar": "MINUTES",
+        "type": _minutes,
+        "default": 0.0,
+        "help": "stop after this wall clock time [none]",
+    },
+    "scheme": {
+        "metavar": "newton|sweep",
+        "choices": ("newton", "sweep"),
+        "help": "sweep: Gauss-Seidel iteration of the paper [newton]",
+    },
 }
+
+
+def _long_name(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def options_text() -> str:
+    """Lines of the help on the options of a run."""
+    names = {name: f"{_long_name(name)} {option.get('metavar', '')}" for name, option in OPTIONS.items()}
+    names["output"] = f"-o, {names['output']}"
+    return "\n".join(f"  {text:32s} {OPTIONS[name]['help']}" for name, text in names.items())
 
 
 class _Parser(argparse.ArgumentParser):
@@ -96,7 +88,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     """
     parser = _Parser(add_help=False, allow_abbrev=False)
     for name, option in OPTIONS.items():
-        parser.add_argument(f"--{name.replace('_', '-')}", **option.parsed)
+        parser.add_argument(_long_name(name), **option)
     chosen, others = parser.parse_known_args([_long(word) for word in words])
     case, petsc = _without_case(others)
     before = "value"
@@ -140,16 +132,14 @@ def _check(word: str, value: str, before: str, case: str | None) -> None:
         reason = "neither an option nor a value; a command comes first"
         raise UsageError(f"{word}: {reason}: ehlpetsc {word} {case}")
     is_long = word.startswith("--") and name[:1].isalpha()
-    known = [option.replace("_", "-") for option in OPTIONS]
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.6 if is_long else 0.9)
+    cutoff = 0.6 if is_long else 0.9
+    close = difflib.get_close_matches(f"--{name}", map(_long_name, OPTIONS), n=1, cutoff=cutoff)
     if close and word.startswith("-"):
-        raise UsageError(f"{word}: unknown option; did you mean --{close[0]}?")
+        raise UsageError(f"{word}: unknown option; did you mean {close[0]}?")
     if is_long:
         raise UsageError(f"{word}: unknown option; PETSc's have one dash, ehlpetsc -h lists the program's")
     if word == "-options_file" and not os.path.isfile(value):
         raise UsageError(f"-options_file {value}: no such file")
-    if word == "-log_view" and ":" in value and not Path(value.split(":")[1]).parent.is_dir():
-        raise UsageError(f"-log_view {value}: no such folder")
 
 
 def run(chosen: argparse.Namespace) -> int:
@@ -197,11 +187,6 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options) -> 
     output = Path(chosen.output or f"{Path(case.path).stem}.h5")
     restart, overwrite = chosen.restart, chosen.overwrite
     has_passes = case.time is not None and case.time.passes > 1
-    ranks = chosen.ranks_per_member or 1
-    if ranks > 1 and not case.series:
-        raise UsageError("--ranks-per-member: the case has no [series]")
-    if not 1 <= ranks <= comm.size:
-        raise UsageError(f"--ranks-per-member {ranks}: allowed: 1 to {comm.size}, all ranks")
     if case.series and has_passes:
         allowed = "one of them at a time; a member: --set KEY=VALUE -o NAME.h5"
         raise CaseError([f"{case.path}: [series] and time.passes: {allowed}"])
@@ -210,7 +195,7 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options) -> 
 
         if restart:
             raise UsageError("--restart with a [series]: leave it out: unfinished members are continued")
-        return Series(comm, case, output, stop, ranks, overwrite).run()
+        return Series(comm, case, output, stop, overwrite).run()
     if has_passes:
         from ehlpetsc.run.passes import Passes
 

@@ -24,6 +24,7 @@ from ehlpetsc.run.forecast import (
     surface_lines,
     work_time,
 )
+from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.run.warnings import domain_faults, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -42,13 +43,7 @@ def main(words: list[str]) -> int:
 def explain(case: Case) -> str:
     """Text summary of a case: conditions, surfaces, mesh, run time.
 
-    Returns
-    -------
-    Several lines.
-
-    Raises
-    ------
-    profiles.ProfileError
+    Raises `profiles.ProfileError`.
     """
     scales = Scales.of(case)
     rough = Roughness.of(case, scales)
@@ -144,7 +139,7 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     return [
         f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
         f"{2 * s.nx + 1} unknowns",
-        f"Expected run time on one rank: {_duration(seconds)}; "
+        f"Expected run time on one rank: about {duration(seconds)}; "
         f"result file: {_bytes(file_size(case, s))}{each}",
     ]
 
@@ -163,15 +158,8 @@ def _series(case: Case) -> list[str]:
         size += file_size(member, scales)
     return [
         f"A series: {values}; below, the base case.",
-        f"All members on one rank: {_duration(seconds)}, result files: {_bytes(size)}",
+        f"All members on one rank: about {duration(seconds)}, result files: {_bytes(size)}",
     ]
-
-
-def _duration(seconds: float) -> str:
-    for limit, unit, size in ((90, "s", 1), (5400, "min", 60)):
-        if seconds < limit:
-            return f"about {max(seconds / size, 1):.0f} {unit}"
-    return f"about {seconds / 3600:.1f} h"
 
 
 def _bytes(count: float) -> str:

@@ -6,13 +6,12 @@ surfaces after each pass, for ``ehlpetsc plot OUTPUT.passes.json --running-in``.
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.errors import ExitStatus, OutputError
 from ehlpetsc.results.index import Index
-from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
 from ehlpetsc.run.outputs.checkpoint import pass_of
@@ -76,17 +75,13 @@ class Passes:
 
     def _unfinished(self) -> Path | None:
         """Restart file of the last unfinished pass; None if there is none."""
-        noted, passes = {row["pass"] for row in self.index.stored_rows()}, range(1, self.case.time.passes + 1)
-        begun = next((n for n in passes if n not in noted or not self._is_done(n)), None)
-        for number in range(begun or 0, 0, -1):
-            if self.file(number).exists() and is_restart_of(self.restart(number), self.case.text):
+        noted, text = {row["pass"] for row in self.index.stored_rows()}, self.case.text
+        passes = range(1, self.case.time.passes + 1)
+        begun = next((n for n in passes if n not in noted or not is_done(self.file(n), text)), 0)
+        for number in range(begun, 0, -1):
+            if self.file(number).exists() and is_restart_of(self.restart(number), text):
                 return self.restart(number)
         return None
-
-    def _is_done(self, number: int) -> bool:
-        with contextlib.suppress(OutputError), read_result(self.file(number)) as result:
-            return result.attrs["case"] == self.case.text and result.attrs["status"] == "done"
-        return False
 
     def _rows_before(self, first: int) -> list[dict]:
         return [row for row in self.index.stored_rows(of_any_case=True) if row["pass"] < first]

@@ -23,7 +23,7 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.index import Index, flat_keys
 from ehlpetsc.results.means import Totals
-from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.forecast import steps
 from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
@@ -89,10 +89,9 @@ def compute_rows(
     order: list[int],
     solve: Callable[[int, MPI.Comm, PollingStop], dict[str, Any]],
     stop: StopRequest | None,
-    ranks: int = 1,
     on_row: Callable[[int], None] = lambda number: None,
 ) -> None:
-    """Compute the rows `order` of an index on groups of ranks, write it after each; `on_row` on rank 0."""
+    """Compute the rows `order` of an index, one a rank, write it after each; `on_row` on rank 0."""
 
     def record(report: tuple[int, dict]) -> None:
         number, row = report
@@ -102,7 +101,7 @@ def compute_rows(
         on_row(number)
 
     on_root(world, index.write)
-    index.rows = WorkQueue(world, ranks, order, record).compute(solve, stop, lambda: index.rows)
+    index.rows = WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows)
 
 
 class Member:
@@ -113,12 +112,6 @@ class Member:
         suffix = re.sub(r"[^A-Za-z0-9.+-]", "_", name)
         self.output = output.with_name(f"{output.stem}_{suffix}.h5")
 
-    def is_done(self) -> bool:
-        """Whether the result is complete and of the same case."""
-        with contextlib.suppress(OutputError), read_result(self.output) as result:
-            return result.attrs["case"] == self.case.text and result.attrs["status"] == "done"
-        return False
-
     def weight(self) -> tuple[int, float]:
         """Sort key that puts the longest members first: nodes times steps, then the thinner film."""
         scales = Scales.of(self.case)
@@ -127,7 +120,7 @@ class Member:
 
     def totals(self) -> Totals:
         """Totals of the run from the result file; empty without a file."""
-        with contextlib.suppress(OutputError), read_result(self.output) as result:
+        with contextlib.suppress(OutputError, OSError), read_result(self.output) as result:
             return Totals.of_result(result)
         return Totals()
 
@@ -151,7 +144,7 @@ class PrefixedStream:
 
 
 class Series:
-    """All members of a case with a series, on groups of `ranks` ranks.
+    """All members of a case with a series, one a rank at a time.
 
     The stem of `output` is the prefix of the members' file names. `overwrite` replaces results of other
     cases. UsageError, OutputError.
@@ -163,10 +156,9 @@ class Series:
         case: Case,
         output: Path,
         stop: StopRequest,
-        ranks: int = 1,
         overwrite: bool = False,
     ) -> None:
-        self.world, self.stop, self.ranks, self.overwrite = world, stop, ranks, overwrite
+        self.world, self.stop, self.overwrite = world, stop, overwrite
         self.members = members_of(case, output)
         files = [member.output for member in self.members]
         self.index = index_of(case, output.with_name(f"{output.stem}.series.json"), self.members, files)
@@ -176,14 +168,16 @@ class Series:
         begun, is_root, index, faults = clock.monotonic(), self.world.rank == 0, self.index, []
         on_root(self.world, index.acquire, self.overwrite)
         try:
-            done = self.world.bcast([member.is_done() for member in self.members] if is_root else None)
-            missing = [n for n, is_done in enumerate(done) if not is_done]
+            done = self.world.bcast(
+                [is_done(m.output, m.case.text) for m in self.members] if is_root else None
+            )
+            missing = [n for n, complete in enumerate(done) if not complete]
             missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
             for number in set(range(len(done))).difference(missing):
                 index.rows[number]["state"] = ExitStatus.DONE.words
             if is_root:
                 self._print_opening(len(missing))
-            compute_rows(self.world, index, missing, self._run_member, self.stop, self.ranks)
+            compute_rows(self.world, index, missing, self._run_member, self.stop)
             states = {row["state"] for row in index.rows}
             failed = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
             status = next((status for status in failed if status.words in states), ExitStatus.DONE)
@@ -216,7 +210,7 @@ class Series:
         names = ", ".join(m.name for m in self.members)
         print(
             f"series of {len(self.members)} members, {missing} of them to compute, on "
-            f"{-(-self.world.size // self.ranks)} x {self.ranks} rank(s): {names}"
+            f"{self.world.size} rank{'s' * (self.world.size > 1)}: {names}"
         )
         names_of: dict[str, list[str]] = {}
         for member in self.members:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from os import PathLike
 from typing import Any
@@ -13,7 +13,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.errors import CaseError, NotConverged, Stopped
+from ehlpetsc.base.errors import CaseError, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
@@ -24,14 +24,12 @@ from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.accepted_state import AcceptedState
-from ehlpetsc.run.arguments import check_pass, check_time_step, option_texts
 from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.run.warnings import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
+from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.time_stepping import TimeStepping
-from ehlpetsc.surfaces.roughness import SurfacePositions
 
 MONITOR_OPTIONS = (
     "snes_monitor",
@@ -40,6 +38,37 @@ MONITOR_OPTIONS = (
     "ksp_monitor",
     "ksp_converged_reason",
 )
+
+
+NODE_TOLERANCE = 1e-9  # relative: half widths nearer than this are equal
+MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
+
+
+@dataclass(frozen=True)
+class AcceptedState:
+    """Accepted time level of a simulation; every scalar and field is also an attribute.
+
+    Attributes
+    ----------
+    scalars
+        Scalars of the step, as in ``steps/`` of a result file [SI units].
+    fields : shape (nx,)
+        Fields of the step [SI units].
+    in_contact : shape (nx,)
+    solution
+        Unknowns, and the history for the next step.
+    """
+
+    scalars: dict
+    fields: dict = field(repr=False)
+    in_contact: np.ndarray = field(repr=False)
+    solution: State = field(repr=False)
+
+    def __getattr__(self, name: str) -> Any:
+        for values in (vars(self).get("scalars", {}), vars(self).get("fields", {})):
+            if name in values:
+                return values[name]
+        raise AttributeError(name)
 
 
 class Simulation:
@@ -114,10 +143,12 @@ class Simulation:
                 [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
             )
         self.comm = comm or MPI.COMM_SELF
-        self.options = RunOptions(case.contact.law, case.petsc, option_texts(options))
+        self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}))
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
-        self.pass_number = check_pass(self, after, pass_number)
+        self.pass_number: int = pass_number or (after.pass_number + 1 if after else 1)
+        if after and not (after.finished and self._is_of_contact(after)):
+            raise UsageError("after: allowed: a pass at its end, on the same nodes, of the same contact law")
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
         self.scene = Scene.of_pass(case, self.scales, self.operation, self.pass_number)
@@ -131,6 +162,12 @@ class Simulation:
         before = after.solution.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
+
+    def _is_of_contact(self, other: Simulation) -> bool:
+        """Whether another simulation has the same nodes and contact law."""
+        (mesh, a), (other_mesh, other_a) = ((s.case.mesh, s.scales.a) for s in (self, other))
+        same_law = self.case.contact.law == other.case.contact.law
+        return same_law and mesh == other_mesh and abs(a - other_a) < NODE_TOLERANCE * a
 
     @property
     def finished(self) -> bool:
@@ -157,16 +194,8 @@ class Simulation:
     def states(self, stop: StopRequest | None = None) -> Iterator[AcceptedState]:
         """Accepted states up to the end.
 
-        Parameters
-        ----------
-        stop
-            Called with the communicator: before every time step, whether to stop; in every iteration, whether
-            to abandon the step in progress.
-
-        Raises
-        ------
-        Stopped
-        NotConverged
+        `stop`: called with the communicator: before every time step, whether to stop; in every iteration,
+        whether to abandon the step in progress. Raises `Stopped NotConverged`.
         """
         while not self.finished:
             begun = self.solution is not None
@@ -176,21 +205,9 @@ class Simulation:
             watch = partial(_raise_if_stopped, is_requested, self.comm) if stop else None
             yield self.advance(watch=watch)
 
-    def resume(
-        self, solution: State, baseline: tuple[np.ndarray, np.ndarray], positions: SurfacePositions
-    ) -> None:
-        """Continue from a time level instead of from the steady solution.
-
-        Parameters
-        ----------
-        baseline : shape (nx,)
-            Steady q and w, for the predictor.
-        positions
-            Positions of both surfaces at this time level.
-        """
+    def resume(self, solution: State, baseline: tuple[np.ndarray, np.ndarray]) -> None:
+        """Continue from a time level; `baseline` are steady q and w for the predictor."""
         solver = self.stepper.solver
-        self.scene = replace(self.scene, positions=positions)
-        self.roughness = self.scene.roughness
         effects = effects_of(self.scene, solution.records)
         self.stepper = TimeStepping(solver, self.scene, effects, self._film, baseline)
         records = {e.name: solution.records.get(e.name) or e.start() for e in effects}
@@ -200,12 +217,8 @@ class Simulation:
     def advance(self, dt: float | None = None, watch: Watch | None = None) -> AcceptedState:
         """Solve the steady contact, at later calls one time step.
 
-        Parameters
-        ----------
-        dt
-            Length of the step [s]; by default that of the case, shorter after halved steps.
-        watch
-            Called in every iteration on every rank; an exception from it ends the solve.
+        `dt`: length of the step [s]; by default that of the case, shorter after halved steps. `watch`: called
+        in every iteration on every rank; an exception from it ends the solve.
 
         Raises
         ------
@@ -214,7 +227,7 @@ class Simulation:
         UsageError
             No such time step is possible, or the simulation is at its end.
         """
-        check_time_step(dt, self)
+        self._check_time_step(dt)
         started = clock.monotonic()
         with self.options:
             try:
@@ -223,8 +236,23 @@ class Simulation:
                 self.solution = solution
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error
-        self.state = AcceptedState.of(self, started)
+        problem, effects = self.stepper.problem, self.stepper.effects
+        scalars, fields, in_contact = diagnostics(self.scene, problem, effects, solution, started)
+        scalars |= {"step": solution.step, "time": solution.time}
+        self.state = AcceptedState(scalars, fields, in_contact, solution)
         return self.state
+
+    def _check_time_step(self, dt: float | None) -> None:
+        """Refuse an impossible length of a time step [s], and a step after the end."""
+        if self.finished:
+            raise UsageError("advance: the simulation is at its end")
+        if dt is None:
+            return
+        if self.solution is None:
+            raise UsageError(f"dt = {dt!r}: the first state is the steady start, which has no time step")
+        left, shortest = self._time_left(), MIN_STEP_RATIO * self.scales.dt
+        if not shortest <= dt <= left * (1.0 + NODE_TOLERANCE):
+            raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")
 
     def _start(self, watch: Watch) -> State:
         self._print_heading("steady start")
@@ -250,3 +278,13 @@ class Simulation:
 def _raise_if_stopped(is_requested: Callable, comm: MPI.Comm) -> None:
     if is_requested(comm):
         raise Stopped
+
+
+def _option_texts(options: dict) -> dict[str, str]:
+    """PETSc options as strings by name, from None, True, False, numbers and strings."""
+    texts = {}
+    for name, value in options.items():
+        texts[name] = "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+        if not (f"{name}{texts[name]}").isprintable():  # PETSc would end the process
+            raise UsageError(f"options: {name!r}: {value!r}: allowed: names and values in one line of text")
+    return texts

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import sys
 import time as clock
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
 
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
-from ehlpetsc.run.outputs.progress import ProgressOutput, summary_line
+from ehlpetsc.run.outputs.progress import Progress, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 
 if TYPE_CHECKING:
-    from ehlpetsc.nonlinear.options import RunOptions
-    from ehlpetsc.run.accepted_state import AcceptedState
-    from ehlpetsc.run.simulation import Simulation
+    from ehlpetsc.run.simulation import AcceptedState, Simulation
     from ehlpetsc.run.stop import StopRequest
 
 
 class Output(Protocol):
-    """Observer of a run on every rank, see `ehlpetsc.run.solve.Output`."""
+    """Observer of a run, which receives every accepted state."""
 
     def write(self, state: AcceptedState) -> None: ...
 
@@ -53,32 +50,8 @@ def solve(
     return status, failure
 
 
-class UnusedOptions:
-    """Output that prints the unused, probably misspelt options after the first time step."""
-
-    def __init__(self, options: RunOptions, show: Callable[[str], None]) -> None:
-        self._options, self._show = options, show
-        self._noted: set[str] | None = None
-
-    def write(self, state: AcceptedState) -> None:
-        """Print the note after the first step, when PETSc has read the options of the solver."""
-        if state.step >= 1 and self._noted is None:
-            self.note()
-
-    def close(self, status: ExitStatus) -> None:
-        """Do nothing: at the end of a run its report prints the note."""
-
-    def note(self) -> None:
-        """Print the unused options that have not been printed yet."""
-        noted = self._noted or set()
-        new = self._options.unused_so_far() - noted
-        self._noted = noted | new
-        if new:
-            self._show(f"note: unused options: -{', -'.join(sorted(new))}")
-
-
 class Run:
-    """Run of a simulation by the command, with outputs and messages of rank 0 on `out` and `err`."""
+    """Run of a simulation by the command, with messages of rank 0 on `out` and `err`; one of its outputs."""
 
     def __init__(
         self,
@@ -91,7 +64,7 @@ class Run:
         self.simulation, self.recorder = simulation, Recorder(simulation, output)
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
-        self._unused = UnusedOptions(simulation.options, self._print)
+        self._unused: set[str] = set()
 
     def run(self, restart: Path | None = None, overwrite: bool = False) -> Outcome:
         """Run to the end, or from a restart file, and print a report; see `Recorder.lock_output`."""
@@ -119,10 +92,23 @@ class Run:
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._notes = self.simulation.options.loose_tolerances()
-            printed: list[Output] = []
-            if self.root:
-                printed = [self._unused, ProgressOutput(self.simulation, self.out)]
+            printed: list[Output] = [self, Progress(self.simulation, self.out)] if self.root else []
             return solve(self.simulation, [self.recorder, *printed], self.stop)
+
+    def write(self, state: AcceptedState) -> None:
+        """Print the unused options after the first step, when PETSc has read those of the solver."""
+        if state.step == 1:
+            self._print_unused()
+
+    def close(self, status: ExitStatus) -> None:
+        """Do nothing: the report is printed when all outputs are closed."""
+
+    def _print_unused(self) -> None:
+        """Print the unused, probably misspelt options that have not been printed yet."""
+        new = self.simulation.options.unused_so_far() - self._unused
+        self._unused |= new
+        if new:
+            self._print(f"note: unused options: -{', -'.join(sorted(new))}")
 
     def _report(self, outcome: Outcome) -> None:
         recorder, state = self.recorder, self.simulation.solution
@@ -135,7 +121,7 @@ class Run:
             self._print(f"limit: {line}")
         for note in self._notes:
             self._print(f"note: {note}")
-        self._unused.note()
+        self._print_unused()
         if state is not None:
             self._print(f"result: {recorder.output}")
         self._print(summary_line(outcome.status, self.recorder.totals, outcome.wall))

@@ -112,7 +112,6 @@ def warnings(case: Case, scales: Scales) -> list[str]:
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
             f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
         )
-    notes += soft_pass_warnings(case, scales)
     if rough and case.time is None and case.motion is not None:
         notes.append(
             f"{' and '.join(rough)} with [motion] but without [time]: "
@@ -126,18 +125,6 @@ def warnings(case: Case, scales: Scales) -> list[str]:
         notes += tilt_warnings(case, profiles) + entry_warnings(case, scales, profiles)
         notes += mesh_warnings(profiles, scales)
     return notes + heat_warnings(case, scales)
-
-
-def soft_pass_warnings(case: Case, scales: Scales) -> list[str]:
-    """Shifted passes of solids that yield under the smooth contact, with which every pass starts."""
-    softest, time = min(case.contact.yield_pressure or (np.inf,)), case.time
-    if softest >= scales.p0 or time is None or time.passes == 1 or not time.pass_shift:
-        return []
-    return [
-        f"contact.yield_pressure = {1e-9 * softest:g} GPa is below Hertz' {1e-9 * scales.p0:.3g} GPa: the "
-        "smooth surface ahead of the profiles yields too, anew in every pass that time.pass_shift begins "
-        "further on; the plastic area added by a pass is mostly that"
-    ]
 
 
 def heat_warnings(case: Case, scales: Scales) -> list[str]:

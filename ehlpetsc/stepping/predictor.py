@@ -60,15 +60,8 @@ def predict(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Guess of q and w.
 
-    Parameters
-    ----------
-    problem
-    smooth
-        Steady solution of the start.
-    levels
-        Earlier time levels, latest first.
-    nodes
-        Distance of each level to the new time, with the entrainment speed, in nodes.
+    `smooth`: steady solution of the start. `levels`: earlier time levels, latest first. `nodes`: distance of
+    each level to the new time, with the entrainment speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
     level, distance, model = levels[best], nodes[best], problem.model

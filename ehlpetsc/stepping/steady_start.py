@@ -93,12 +93,7 @@ def yielding_start(
 class SolveAttempts:
     """Checked solves from given states, `MAX_ATTEMPTS` at most.
 
-    Attributes
-    ----------
-    spent
-        Newton iterations, failed attempts included.
-    failure : SolveFailed or None
-        Last failure.
+    `spent`: Newton iterations, failed attempts included. `failure`: last failure.
     """
 
     def __init__(self, solver: Solver, max_it: int | None = None, watch: Watch = None):

@@ -39,16 +39,8 @@ def next_step(dt: float | None, retries: int, nominal: float, left: float) -> fl
     After halved steps the run thus returns to the time levels that the members of a series have in common.
     The size does not increase directly after a halved step, because a longer step would mostly fail too.
 
-    Parameters
-    ----------
-    dt
-        Last step [s]; None at the start.
-    retries
-        Number of times that the last step was halved.
-    nominal
-        Nominal step, courant dx / u_max [s].
-    left
-        Time to the next time level [s].
+    `dt`: last step [s]; None at the start. `retries`: number of times that the last step was halved.
+    `nominal`: nominal step, courant dx / u_max [s]. `left`: time to the next time level [s].
     """
     longest = nominal
     if dt is not None and NEARLY_NOMINAL * dt < nominal:
@@ -59,18 +51,10 @@ def next_step(dt: float | None, retries: int, nominal: float, left: float) -> fl
 class TimeStepping:
     """Steady and transient solution of one scene.
 
-    Parameters
-    ----------
-    solver, scene, effects
-    film
-        Expected film in a^2/R.
-    baseline
-        Steady q and w for the predictor of a resumed run; otherwise computed by :meth:`start`.
+    `film`: expected film in a^2/R. `baseline`: steady q and w for the predictor of a resumed run; otherwise
+    computed by :meth:`start`.
 
-    Attributes
-    ----------
-    ramp_time
-        Time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
+    `ramp_time`: time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
     """
 
     def __init__(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,32 +15,14 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
 
-END_TOLERANCE = 1e-9  # half widths: ends of a domain nearer than this are equal
 RAMP_LENGTH = 0.1  # half widths at the beginning of a profile over which its heights increase from zero
 
 
 @dataclass(frozen=True)
 class SurfacePositions:
-    """Positions of both surfaces at the beginning of a run.
+    """Positions of both surfaces at time 0: abscissas at which their profiles begin to enter [m]."""
 
-    Attributes
-    ----------
-    travelled
-        Distances travelled by both bodies since their profiles began to enter [m], signed.
-    domain_ends_at_entry
-        Inlet and outlet at which the profiles entered [m].
-    profile_offsets
-        Abscissas at which the profiles began to enter [m].
-    """
-
-    travelled: tuple
-    domain_ends_at_entry: tuple
-    profile_offsets: tuple = (0.0, 0.0)
-
-    @classmethod
-    def at_rest(cls, scales: Scales) -> Self:
-        """Positions at time 0."""
-        return cls((0.0, 0.0), (scales.x[0] * scales.a, scales.x[-1] * scales.a))
+    profile_offsets: tuple[float, float] = (0.0, 0.0)
 
     def offsets(self, speeds: Sequence[float]) -> tuple[float, ...]:
         """Signed shift of the body points by `profile_offsets` [m].
@@ -85,13 +67,13 @@ class Roughness:
         Parameters
         ----------
         positions
-            Positions of a resumed run; by default at time 0.
+            By default both profiles begin to enter with their first point.
 
         Raises
         ------
         ProfileError
         """
-        sides, positions = {}, positions or SurfacePositions.at_rest(scales)
+        sides, positions = {}, positions or SurfacePositions()
         speeds = directed_speeds(case, scales)
         for k, side in enumerate(("1", "2")):
             spec = case.surface.side(side)
@@ -134,17 +116,13 @@ def _profile(
 ) -> Profile:
     from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
 
-    (inlet, outlet), travelled = positions.domain_ends_at_entry, positions.travelled[side]
+    inlet, outlet = scales.x[0] * scales.a, scales.x[-1] * scales.a
     swept_length, table, reach = 0.0, case.conditions, None
     if table is not None and table.varies:
         reach = table.extent()[side]
         swept_length = max(map(abs, reach))
     elif case.time is not None:
-        left = max(scales.duration * scales.u_max - max(map(abs, positions.travelled)), 0.0)
-        # with another load the domain may extend beyond the point at which the profile entered
-        wider = max(inlet - scales.x[0] * scales.a, scales.x[-1] * scales.a - outlet)
-        swept_length = abs(travelled) + left * abs(speed) / scales.u_max
-        swept_length += wider if wider > END_TOLERANCE * scales.a else 0.0
+        swept_length = scales.duration * abs(speed)
     starts_rough = case.time is not None and case.time.start == "rough"
     return Profile(
         samples(case.path.parent, spec, scales.dx),

@@ -95,8 +95,6 @@ def test_exactly_one_case_file_is_required(arguments, message):
     [
         (["-o"], "^ehlpetsc: --output: expected one argument; "),
         (["--time-limit", "0"], "--time-limit: 0: .* > 0"),
-        (["-log_view", ":/no/such/file"], "^ehlpetsc: -log_view :/no/such/file: no such folder$"),
-        (["--ranks-per-member", "2"], r"--ranks-per-member: .* no \[series\]"),
         (["--output", "nowhere/f.h5"], "nowhere/f.h5: .*, No such file or directory"),
         (["--restart", "none.h5"], r"none\.h5: .*steady"),
         (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls "),

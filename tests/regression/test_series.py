@@ -165,7 +165,6 @@ def test_killed_series_is_completed_by_the_same_command(tmp_path, finished, rank
 @pytest.mark.parametrize(
     "words, fault",
     [
-        (["--ranks-per-member", "3"], "--ranks-per-member 3: "),
         (["--restart", "x.h5"], "--restart with a [series]: "),
         (["--set", "series.values=[0.01,0.010]"], "same name"),
         (["--set", "series.values=[0.01,-1]"], "series.values: -1"),

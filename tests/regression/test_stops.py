@@ -135,30 +135,6 @@ def test_diverged_step_is_named_and_leaves_a_restart_file(stopped, tmp_path):
     assert last_step(tmp_path / "f.h5") == (16, "done")
 
 
-def test_restart_at_another_speed_keeps_body_positions(whole, tmp_path):
-    """Roughness at the same travel is the same; the run ends at the travel of the case."""
-    stopped = run(*CASE, cwd=tmp_path, tampered=("SIGTERM", 0, 20))
-    assert stopped.returncode == 4, stopped.stderr
-    faster = [*CASE, *settings("motion.entrainment_speed=7.5"), "--restart", "table1_rough.restart.h5"]
-    refused = run(*faster, cwd=tmp_path)
-    assert refused.returncode == 2
-    assert is_line_with(refused.stderr, "table1_rough.h5: ", "(u1 = 5.625)")
-    assert last_step(tmp_path / "table1_rough.h5") == (20, "stopped")
-    done = run(*faster, "--output", "f.h5", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    with read_result(tmp_path / "f.h5") as after, read_result(whole / "table1_rough.h5") as one:
-        assert list(after.steps("step")) == list(range(21, 41))
-        for side, travelled in (("1", 0.5), ("2", 0.5 * 4.375 / 5.625)):
-            # the profile where it lies at the end of both runs, by s = x - speed time of each file
-            heights = []
-            for result in (after, one):
-                s, z, u = result.profile(side)
-                place = s + u * result.time[-1]
-                heights.append(np.interp(one.x[:12], place, z, left=np.nan, right=np.nan))
-                assert place[-1] == pytest.approx(one.x[0] + travelled * one.attrs["a"], abs=1e-6)
-            np.testing.assert_allclose(*heights, atol=2e-9)
-
-
 def test_restart_beyond_the_end_takes_no_step(whole, stopped, tmp_path):
     done = run(*CASE, *settings("time.travel=0.1"), "--restart", stopped, cwd=tmp_path)
     assert done.returncode == 0

@@ -47,15 +47,15 @@ def test_a_time_step_is_a_number_within_the_time_left():
 def test_pass_follows_a_complete_pass_of_the_same_contact():
     first = Simulation(running_in())
     for _ in range(2):  # before its start, and in its middle
-        with pytest.raises(UsageError, match="^after: .* end; .*states"):
+        with pytest.raises(UsageError, match="^after: .* at its end"):
             Simulation(running_in(), after=first)
         first.advance()
     list(first)
-    for changes, message in (
-        ({"mesh.points_per_half_width": 30}, r"^after: .*nodes.* \[mesh\] "),
-        ({"contact.load": 400e3}, r"^after: .*nodes.* \[mesh\] "),
-        ({"contact.model": "direct", **DIRECT}, "^after: contact.law .*direct, .* compliant$"),
+    for changes in (
+        {"mesh.points_per_half_width": 30},
+        {"contact.load": 400e3},
+        {"contact.model": "direct", **DIRECT},
     ):
-        with pytest.raises(UsageError, match=message):
+        with pytest.raises(UsageError, match="^after: .*same nodes.*contact law"):
             Simulation(running_in(**changes), after=first)
     assert Simulation(running_in(**{"fluid.viscosity": 0.003}), after=first).pass_number == 2

@@ -2,6 +2,7 @@
 
 import io
 import re
+from types import SimpleNamespace
 
 import pytest
 
@@ -27,12 +28,21 @@ def clock(monkeypatch):
     return times
 
 
+def started(begin, end, stream):
+    """Progress of a run from a time to its end [s]."""
+    return report.Progress(SimpleNamespace(solution=SimpleNamespace(time=begin), end=end), stream)
+
+
+def show(progress, step, time):
+    progress.write(SimpleNamespace(scalars=SCALARS | {"step": step, "time": time}))
+
+
 def run(stream, clock, seconds_a_step, steps=100):
-    progress = report.Progress(0.0, steps * 1e-6, stream)
+    progress = started(0.0, steps * 1e-6, stream)
     for step in range(1, steps + 1):
         clock.append(clock[-1] + seconds_a_step)
-        progress.step(SCALARS | {"step": step, "time": step * 1e-6})
-    progress.close()
+        show(progress, step, step * 1e-6)
+    progress.close(ExitStatus.DONE)
     return stream.getvalue()
 
 
@@ -48,11 +58,11 @@ def test_progress_lines_are_few_with_fixed_columns(clock):
 
 def test_remaining_time_follows_the_recent_rate(clock):
     """Smooth steps of 10 ms, then rough ones of 100 ms: at half of the run 50 s are left, not 27 s."""
-    progress = report.Progress(0.0, 1.0, stream := io.StringIO())
+    progress = started(0.0, 1.0, stream := io.StringIO())
     for step in range(1, 501):
         clock.append(clock[-1] + (0.01 if step <= 200 else 0.1))
-        progress.step(SCALARS | {"step": step, "time": step * 1e-3})
-    progress.close()
+        show(progress, step, step * 1e-3)
+    progress.close(ExitStatus.DONE)
     last = stream.getvalue().split()[-1]
     assert last in ("49s", "50s", "51s")
 
@@ -74,10 +84,10 @@ def test_progress_bar_stays_on_one_line(clock, monkeypatch):
 
 def test_progress_of_a_restarted_run_counts_from_its_restart(clock):
     stream = io.StringIO()
-    progress = report.Progress(50e-6, 100e-6, stream)
+    progress = started(50e-6, 100e-6, stream)
     for step in (55, 60):
         clock.append(clock[-1] + 5.0)
-        progress.step(SCALARS | {"step": step, "time": step * 1e-6})
+        show(progress, step, step * 1e-6)
     assert stream.getvalue().split()[-1] == "40s"
 
 

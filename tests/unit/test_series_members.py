@@ -11,7 +11,7 @@ from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.results.means import Totals, filled_from
-from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.series import Member, named
 from ehlpetsc.stepping.time_stepping import next_step, on_level
 
@@ -94,15 +94,14 @@ def test_longest_members_run_first(tmp_path):
 
 
 def test_complete_result_of_the_same_case_is_done(tmp_path):
-    member = series(tmp_path)[0]
-    assert not member.is_done() and member.totals().values == {}
-    make_result(member.output)
-    assert not member.is_done()  # of another case
-    with read_result(member.output) as result:
-        member.case = member.case.copy({"_text": str(result.attrs["case"])})
-    assert member.is_done()
-    make_result(member.output, status="stopped")
-    assert not member.is_done()
+    path, member = tmp_path / "r.h5", series(tmp_path)[0]
+    assert not is_done(path, "") and member.totals().values == {}
+    make_result(path)
+    with read_result(path) as result:
+        text = str(result.attrs["case"])
+    assert is_done(path, text) and not is_done(path, member.case.text)
+    make_result(path, status="stopped")
+    assert not is_done(path, text)
 
 
 def test_series_sums_and_extremes():

@@ -28,10 +28,7 @@ MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
 def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str, float]) -> list[str]:
     """Messages on results outside the validity of the model.
 
-    Parameters
-    ----------
-    totals
-        Scalars over the run, see `ehlpetsc.results.means.Totals`.
+    `totals`: scalars over the run, see `ehlpetsc.results.means.Totals`.
     """
     if "p_max" not in totals:  # no step was taken
         return []

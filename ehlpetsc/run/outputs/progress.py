@@ -14,8 +14,7 @@ from ehlpetsc.effects.quantities import STEP_SCALARS
 if TYPE_CHECKING:
     from ehlpetsc.base.errors import ExitStatus
     from ehlpetsc.results.means import Totals
-    from ehlpetsc.run.accepted_state import AcceptedState
-    from ehlpetsc.run.simulation import Simulation
+    from ehlpetsc.run.simulation import AcceptedState, Simulation
 
 SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
@@ -48,54 +47,40 @@ def in_notebook() -> bool:
 
 
 class Progress:
-    """Progress of a run: fixed-column lines in a file, a bar on a terminal or in a notebook.
+    """Output that shows the steps of a simulation: lines in a file, a bar on a terminal or in a notebook."""
 
-    Parameters
-    ----------
-    begin, end
-        Time at the start of this run and at its end [s].
-    stream
-        Default: standard output.
-    """
-
-    def __init__(self, begin: float, end: float, stream: TextIO | None = None) -> None:
-        self._stream = sys.stdout if stream is None else stream
-        self._begin, self._end = begin, end
+    def __init__(self, simulation: Simulation, stream: TextIO | None = None) -> None:
+        self._simulation, self._stream = simulation, stream or sys.stdout
         self._bar = on_terminal(self._stream) or in_notebook()
-        self._output: Any = None  # display of a notebook's cell
+        self._begin = None if simulation.solution is None else simulation.solution.time
         self._samples: list[tuple[float, float]] = []  # wall clock, time of the run, since the first step
         self._shown: float | None = None
         self._pending: dict[str, float] | None = None
 
-    def step(self, scalars: dict[str, float]) -> None:
-        """Show an accepted step if it is the first or enough time has passed.
-
-        Parameters
-        ----------
-        scalars
-            Scalars of the step, as in ``steps/`` of a result file.
-        """
-        now = clock.monotonic()
-        self._pending = scalars
+    def write(self, state: AcceptedState) -> None:
+        """Show a step, but not the steady start, if it is the first or enough time has passed."""
+        if self._begin is None:
+            self._begin = state.time
+            return
+        now, self._pending = clock.monotonic(), state.scalars
         wait = SECONDS_BETWEEN_BARS if self._bar else SECONDS_BETWEEN_LINES
         if self._shown is None or now - self._shown >= wait:
             self._show(now)
 
-    def close(self) -> None:
+    def close(self, status: ExitStatus) -> None:
         """Show the last step if it has not been shown."""
         if self._pending:
             self._show(clock.monotonic())
-        if self._bar and self._shown is not None and not self._output:
+        if self._bar and self._shown is not None:
             self._stream.write("\n")
             self._stream.flush()
 
     def _show(self, now: float) -> None:
         scalars, self._pending = self._pending, None
-        done = (scalars["time"] - self._begin) / (self._end - self._begin) if self._end > self._begin else 1.0
-        done = min(max(done, 0.0), 1.0)
-        remaining = self._remaining(now, scalars["time"])
+        end, time = self._simulation.end, scalars["time"]
+        remaining = self._remaining(now, time, end)
         if self._bar:
-            self._draw_bar(done, remaining, scalars)
+            self._draw_bar((time - self._begin) / (end - self._begin), remaining, scalars)
         else:
             if self._shown is None:
                 self._stream.write(_heading(scalars))
@@ -103,61 +88,23 @@ class Progress:
         self._stream.flush()
         self._shown = now
 
-    def _remaining(self, now: float, time: float) -> str:
+    def _remaining(self, now: float, time: float, end: float) -> str:
         """Remaining time from the rate over the last half of the wall clock time; "?": not known yet."""
         if not self._samples or now - self._samples[-1][0] > SECONDS_BETWEEN_BARS:
             self._samples.append((now, time))
         begun = self._samples[0][0]
         since = next(sample for sample in reversed(self._samples) if sample[0] <= begun + 0.5 * (now - begun))
-        if now - begun < MIN_RATE_TIME and time < self._end or time <= since[1]:
-            return "0s" if time >= self._end else "?"
-        return duration((now - since[0]) * max(self._end - time, 0.0) / (time - since[1]))
+        if now - begun < MIN_RATE_TIME and time < end or time <= since[1]:
+            return "0s" if time >= end else "?"
+        return duration((now - since[0]) * max(end - time, 0.0) / (time - since[1]))
 
     def _draw_bar(self, done: float, remaining: str, scalars: dict[str, float]) -> None:
         values = [column.bar.format(value) for column, value in _scaled(scalars) if column.bar]
         text = "  ".join([f" {100 * done:5.1f} %", *values, f"{remaining} left"])
         columns = shutil.get_terminal_size().columns
         width = max(10, columns - len(text) - 3)
-        filled = round(done * width)
-        bar = f"[{'#' * filled}{'.' * (width - filled)}]{text}"[: columns - 1]
-        if in_notebook():
-            self._update_cell(bar)
-        else:
-            self._stream.write("\r" + bar.ljust(columns - 1))
-
-    def _update_cell(self, bar: str) -> None:
-        """Replace the bar in a notebook's cell, where a carriage return does not overwrite a line."""
-        from IPython.display import display
-
-        if self._output is None:
-            self._output = display({"text/plain": bar}, raw=True, display_id=True)
-        else:
-            self._output.update({"text/plain": bar}, raw=True)
-
-
-class ProgressOutput:
-    """Progress of a simulation as an output, from its first step on."""
-
-    def __init__(self, simulation: Simulation, stream: TextIO | None) -> None:
-        self._simulation, self._stream = simulation, stream
-        self._progress: Progress | None = (
-            None if simulation.solution is None else self._progress_from(simulation.solution.time)
-        )
-
-    def write(self, state: AcceptedState) -> None:
-        """Show a step, but not the steady start."""
-        if self._progress is not None:
-            self._progress.step(state.scalars)
-        elif not self._simulation.finished:  # a steady case has no steps
-            self._progress = self._progress_from(state.time)
-
-    def close(self, status: ExitStatus) -> None:
-        """Show the last step."""
-        if self._progress is not None:
-            self._progress.close()
-
-    def _progress_from(self, time: float) -> Progress:
-        return Progress(time, self._simulation.end, self._stream)
+        bar = f"[{('#' * round(done * width)).ljust(width, '.')}]{text}"[: columns - 1]
+        self._stream.write("\r" + bar.ljust(columns - 1))
 
 
 def _scaled(scalars: dict[str, float]) -> Iterator[tuple[Any, float]]:
@@ -193,9 +140,6 @@ def duration(seconds: float) -> str:
 def summary_line(status: ExitStatus, totals: Totals, wall: float) -> str:
     """Last line of the output of a run.
 
-    Parameters
-    ----------
-    wall
-        Wall clock time [s].
+    `wall`: wall clock time [s].
     """
     return f"ehlpetsc: {status.words} {totals} wall={wall:.1f}"

@@ -25,11 +25,7 @@ from ehlpetsc.run.ranks import on_root
 from ehlpetsc.stepping.time_stepping import on_level
 
 if TYPE_CHECKING:
-    from ehlpetsc.run.accepted_state import AcceptedState
-    from ehlpetsc.run.simulation import Simulation
-
-MESSAGE_BYTES = 2**30  # half of the largest count of MPI
-OFFSET_TOLERANCE = 1e-6  # mesh spacings: smaller offsets are rounding
+    from ehlpetsc.run.simulation import AcceptedState, Simulation
 
 
 class Recorder:
@@ -37,19 +33,10 @@ class Recorder:
 
     The restart file is written every few minutes and at a stop.
 
-    Parameters
-    ----------
-    output
-        Result file; the restart file is named after it. None: in memory, without a restart file.
+    `output`: result file; the restart file is named after it. None: in memory, without a restart file.
 
-    Attributes
-    ----------
-    totals : Totals
-        Totals of all steps so far.
-    limits : list of str
-        Messages of :func:`.limits.limits`, on rank 0, set by :meth:`close`.
-    restart : Path or None
-        Restart file.
+    `totals`: totals of all steps so far. `limits`: messages of :func:`.limits.limits`, on rank 0, set
+    by :meth:`close`. `restart`: restart file.
     """
 
     def __init__(self, simulation: Simulation, output: Path | None) -> None:
@@ -99,9 +86,9 @@ class Recorder:
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
         simulation = self.simulation
-        stored, notes = load(path, simulation.case, simulation.scales, simulation.stepper.problem.model)
+        stored, notes = load(path, simulation.case, simulation.scales)
         solution = stored.state
-        simulation.resume(solution, stored.baseline, stored.positions)
+        simulation.resume(solution, stored.baseline)
         self.totals = Totals(stored.totals)
         self._open(solution.step, stored.contact_count)
         return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
@@ -137,14 +124,7 @@ class Recorder:
 
     def to_bytes(self) -> bytes:
         """The bytes of a result in memory, on every rank."""
-        content: bytes = self._writer.to_bytes() if self.comm.rank == 0 else b""
-        if self.comm.size == 1:
-            return content
-        size = self.comm.bcast(len(content))
-        buffer = np.frombuffer(content, "u1") if content else np.empty(size, "u1")
-        for begin in range(0, size, MESSAGE_BYTES):
-            self.comm.Bcast(buffer[begin : begin + MESSAGE_BYTES])
-        return buffer.tobytes()
+        return self.comm.bcast(self._writer.to_bytes() if self.comm.rank == 0 else b"")
 
     def _open(self, step: int | None = None, contact_count: np.ndarray | None = None) -> None:
         """Create the result; after a restart, continue it after `step` with its contact counts."""
@@ -202,56 +182,37 @@ def libraries() -> dict[str, str]:
 
 
 def stored_profiles(simulation: Simulation) -> dict[str, tuple | None]:
-    """Profiles of both surfaces for `Layout`; None for a smooth surface without depths of effects.
-
-    A body point s is at x = s + speed time; if a result begins after a change of speed, s includes an offset.
-    """
+    """Profiles of both surfaces for `Layout`; None for a smooth surface without depths of effects."""
     depths = [name for effect in simulation.stepper.effects for name in effect.surface]
     rough, speeds = simulation.roughness, (simulation.scales.u1, simulation.scales.u2)
     sides: dict[str, tuple | None] = {}
-    for k, (side, offset) in enumerate(zip(("1", "2"), _offsets(simulation), strict=True)):
+    for k, side in enumerate(("1", "2")):
         profile = rough and rough.side(side)
         if profile:
             scalars = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
-            sides[side] = profile.s + offset, profile.z, speeds[k], scalars, depths
+            sides[side] = profile.s, profile.z, speeds[k], scalars, depths
         else:
-            sides[side] = _smooth_side(simulation, k, offset, depths) if depths else None
+            sides[side] = _smooth_side(simulation, k, depths) if depths else None
     return sides
 
 
 def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
     """Surface, quantity and depths [m] of effects at the body points of :func:`stored_profiles`."""
-    solution = simulation.solution
-    if solution is None:
-        return []
-    offsets, sides = _offsets(simulation), stored_profiles(simulation)
-    first, second = (
-        side[0] - offset if side else None for side, offset in zip(sides.values(), offsets, strict=True)
-    )
+    sides = stored_profiles(simulation)
+    points = tuple(side[0] if side else None for side in sides.values())
     depths = []
     for effect in simulation.stepper.effects:
-        for name, pair in effect.on_surfaces(solution.records[effect.name], (first, second)).items():
+        for name, pair in effect.on_surfaces(simulation.solution.records[effect.name], points).items():
             stored = [(side, name, depth) for side, depth in zip(sides, pair, strict=True)]
             depths += [entry for entry in stored if entry[2] is not None]
     return depths
 
 
-def _offsets(simulation: Simulation) -> tuple[float, float]:
-    """Offsets of s = x - speed time + offset for both surfaces [m]."""
-    if simulation.solution is None:
-        return 0.0, 0.0
-    now = simulation.solution.travelled
-    constant = simulation.operation.travelled(simulation.solution.time)
-    tolerance = OFFSET_TOLERANCE * simulation.scales.dx
-    first, second = (distance - steady for distance, steady in zip(now, constant, strict=True))
-    return first if abs(first) > tolerance else 0.0, second if abs(second) > tolerance else 0.0
-
-
-def _smooth_side(simulation: Simulation, side: int, offset: float, depths: list[str]) -> tuple:
+def _smooth_side(simulation: Simulation, side: int, depths: list[str]) -> tuple:
     """Body points of a smooth surface that pass the mesh, for its depths; `side` 0: surface 1."""
     scales = simulation.scales
     smallest, largest = simulation.operation.extent()[side]
     ends = scales.x[[0, -1]] * scales.a
     s = np.arange(ends[0] - largest, ends[1] - smallest, scales.dx)
     flat = {"ra": 0.0, "rq": 0.0, "rsk": 0.0}
-    return s + offset, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths
+    return s, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths
