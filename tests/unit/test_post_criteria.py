@@ -210,6 +210,7 @@ def test_smallest_ball():
     for count in (1, 2, 3, 4, 50, 1000):
         points = rng.normal(size=(3, count))
         centre, radius = smallest_ball(points)
+        centre = np.array(centre)
         away = np.linalg.norm(points - centre[:, None], axis=0)
         assert away.max() == pytest.approx(radius, rel=1e-8, abs=1e-12)
         for step in 1e-3 * rng.normal(size=(30, 3)):  # no centre near by does better
@@ -218,10 +219,10 @@ def test_smallest_ball():
     for unit in (1e-5, 1e9):  # whatever the unit of stress
         found = smallest_ball(unit * points)
         assert found[1] == pytest.approx(unit * radius, rel=1e-8)
-        assert found[0] == pytest.approx(unit * centre, rel=1e-8)
+        assert found[0] == pytest.approx(tuple(unit * centre), rel=1e-8)
     line = np.outer([1.0, 2.0, 2.0], np.linspace(-1, 2, 31))
     centre, radius = smallest_ball(line)
-    assert radius == pytest.approx(4.5) and centre == pytest.approx([0.5, 1, 1])
+    assert radius == pytest.approx(4.5) and centre == pytest.approx((0.5, 1, 1))
 
 
 def test_strain_rule_applies_on_planes():

@@ -223,14 +223,18 @@ def _coarse(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> tu
         _on_plane(grid[g], stress, law, work)
         width = series[:size].max() - series[:size].min()
         bounds[g] = _cycle_damage(width, normal[:size].max(), law)
-    order, first, second = np.argsort(-bounds), -1.0, -1.0
+    order, first, second = np.argsort(-bounds), 0, len(bounds) - 1
     damages = np.full(order.size, -1.0)
     for n in range(order.size):
-        if (size // 2 + 1) * bounds[order[n]] <= second:
+        if (size // 2 + 1) * bounds[order[n]] <= damages[second]:
             break
-        damages[n] = plane_damage(grid[order[n]], stress, law, NEGLIGIBLE_RANGE, work)
-        first, second = max(first, damages[n]), max(second, min(first, damages[n]))
-    best = np.argsort(-damages, kind="mergesort")[:2]
+        damage = plane_damage(grid[order[n]], stress, law, NEGLIGIBLE_RANGE, work)
+        if damage > damages[first]:
+            first, second = n, first if n else second
+        elif damage > damages[second]:
+            second = n
+        damages[n] = damage
+    best = np.array([first, second])
     return grid[order[best]], damages[best]
 
 

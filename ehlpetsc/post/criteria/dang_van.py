@@ -32,29 +32,49 @@ BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 
 
 @compiled(nogil=True)
-def _centre(points: np.ndarray, corners: np.ndarray, count: int) -> np.ndarray:
-    """Centre of the smallest sphere through 1 to 4 points; nan or infinite if they are degenerate."""
-    centre = points[:, corners[0]].copy()
-    if count == 1:
-        return centre
-    a = points[:, corners[1]] - centre
-    aa = np.sum(a * a)
-    if count == 2:
-        return centre + a / 2
-    b = points[:, corners[2]] - centre
-    bb, normal = np.sum(b * b), np.cross(a, b)
-    if count == 3:
-        return centre + np.cross(aa * b - bb * a, normal) / (2 * np.sum(normal * normal))
-    c = points[:, corners[3]] - centre
-    cc = np.sum(c * c)
-    return centre + (cc * normal + aa * np.cross(b, c) + bb * np.cross(c, a)) / (2 * np.sum(normal * c))
+def _dot(a: tuple, b: tuple) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled(nogil=True)
-def _max_distance(points: np.ndarray, corners: np.ndarray, count: int, centre: np.ndarray) -> float:
+def _cross(a: tuple, b: tuple) -> tuple:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@compiled(nogil=True)
+def _sum(x: float, a: tuple, y: float, b: tuple) -> tuple:
+    return x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2]
+
+
+@compiled(nogil=True)
+def _from(origin: tuple, points: np.ndarray, k: int) -> tuple:
+    return points[0, k] - origin[0], points[1, k] - origin[1], points[2, k] - origin[2]
+
+
+@compiled(nogil=True)
+def _centre(points: np.ndarray, corners: np.ndarray, count: int) -> tuple:
+    """Centre of the smallest sphere through 1 to 4 points; nan or infinite if they are degenerate."""
+    origin = _from((0.0, 0.0, 0.0), points, corners[0])
+    if count == 1:
+        return origin
+    a = _from(origin, points, corners[1])
+    if count == 2:
+        return _sum(1.0, origin, 0.5, a)
+    b = _from(origin, points, corners[2])
+    aa, bb, normal = _dot(a, a), _dot(b, b), _cross(a, b)
+    if count == 3:
+        return _sum(1.0, origin, 0.5 / _dot(normal, normal), _cross(_sum(aa, b, -bb, a), normal))
+    c = _from(origin, points, corners[3])
+    far = _sum(1.0, _sum(_dot(c, c), normal, aa, _cross(b, c)), bb, _cross(c, a))
+    return _sum(1.0, origin, 0.5 / _dot(normal, c), far)
+
+
+@compiled(nogil=True)
+def _max_distance(points: np.ndarray, corners: np.ndarray, count: int, centre: tuple) -> float:
     reach = 0.0
     for k in range(count):
-        squared = np.sum((points[:, corners[k]] - centre) ** 2)
+        away = _from(centre, points, corners[k])
+        squared = _dot(away, away)
         if not squared <= reach:  # also nan
             reach = squared
     return sqrt(reach)
@@ -63,9 +83,9 @@ def _max_distance(points: np.ndarray, corners: np.ndarray, count: int, centre: n
 @compiled(nogil=True)
 def _smallest_of_few(
     points: np.ndarray, indices: np.ndarray, count: int
-) -> tuple[float, np.ndarray, np.ndarray, int]:
+) -> tuple[float, tuple, np.ndarray, int]:
     """Smallest ball about up to 5 points, and the subset of points that defines it."""
-    best, best_centre = np.inf, points[:, indices[0]].copy()
+    best, best_centre = np.inf, _centre(points, indices, 1)
     best_subset, best_count = indices.copy(), count
     subset = np.empty(5, np.int64)
     for mask in range(1, 1 << count):
@@ -85,18 +105,21 @@ def _smallest_of_few(
 
 
 @compiled(error_model="python", nogil=True)
-def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Centre (3,) and radius of the smallest ball about points (3, n).
+def smallest_ball(points: np.ndarray) -> tuple[tuple, float]:
+    """Centre and radius of the smallest ball about points (3, n).
 
     The farthest point outside is added to the points that define the ball until no point is outside; the
     radius increases in every round, so that no subset occurs twice.
     """
     indices = np.zeros(5, np.int64)
-    count, radius, centre = 1, 0.0, points[:, 0].copy()
+    count, radius, centre = 1, 0.0, _centre(points, indices, 1)
     for _ in range(MAX_ROUNDS):
-        away = ((points - centre.reshape(3, 1)) ** 2).sum(axis=0)
-        farthest = away.argmax()
-        if sqrt(away[farthest]) <= radius * (1 + BALL_TOLERANCE):
+        farthest, squared = 0, 0.0
+        for k in range(points.shape[1]):
+            away = _from(centre, points, k)
+            if _dot(away, away) > squared:
+                farthest, squared = k, _dot(away, away)
+        if sqrt(squared) <= radius * (1 + BALL_TOLERANCE):
             break
         indices[count] = farthest
         larger, new_centre, indices, count = _smallest_of_few(points, indices, count + 1)
