@@ -13,14 +13,13 @@ MPI_TESTS = Path(__file__).parent / "mpi"
 # files of two seconds of processor time and more, longest first; the first three compile post-processing, the
 # solver, and nothing
 DEAREST = """
-test_post_run test_compliant test_run_script test_wear_against_fatigue test_series test_options
-test_passes test_extremes test_operation test_plot test_plot_series test_interruptions test_batch
-test_fuzz test_cases test_lives_with_effects test_stops test_heat
-test_yielding test_lives_killed test_packaging test_asperities test_sweep test_figures test_derived_files
-test_waviness test_output test_starts test_mixed test_heat_with_effects test_dense_profiles
-test_body_point_temperatures test_outputs test_series_of_lives test_heat_runs test_post_criteria
-test_notebook test_case_fuzz test_readme test_life_regimes test_python test_case_text test_stored_figures
-test_rough test_wear test_ensemble test_post_histories test_collisions test_compliant_runs test_order
+test_post_run test_compliant test_run_script test_cases test_stops test_heat test_asperities test_operation
+test_passes test_figures test_series test_post_criteria test_lives_with_effects test_yielding test_options
+test_plot_series test_lives_killed test_sweep test_wear_against_fatigue test_film_shear test_heat_with_effects
+test_outputs test_batch test_fuzz test_waviness test_extremes test_heat_runs test_packaging
+test_body_point_temperatures test_mixed test_python test_gears test_interruptions test_heat_order test_starts
+test_heat_state test_readme test_notebook test_case_fuzz test_compliant_runs test_output test_elasticity
+test_effects test_derived_files test_life_outputs test_stored_figures test_roughness test_ridge test_rough
 """.split()
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
