@@ -1,10 +1,9 @@
-"""A Newton iteration against LAPACK and a dense Newton step: ``python3 tests/benchmarks/newton_speed.py``.
+"""A Newton iteration against LAPACK: ``python3 tests/benchmarks/newton_speed.py``.
 
 1. an iteration of SNES, with all that it does, over LAPACK's banded solve alone of the matrix of a near field
    of 30 nodes, in full film and where both rough surfaces fill the contact, at a/200 and a/800;
-2. a full-film time step at a/200 over numpy's dense solves of as many iterations, the matrix for nothing;
-3. time a step against nodes, a/100 to a/1600: the exponent;
-4. Newton iterations a step.
+2. time a step against nodes, a/100 to a/1600: the exponent;
+3. Newton iterations a step.
 
 Each pair is timed in turns in this process, medians: wall time of SNES, processor time of all else.
 """
@@ -87,39 +86,23 @@ def in_contact(points):
     return made
 
 
-def against_dense(points=200):
-    """Ratio 2: both take as many iterations."""
-    made = rough(points)
-    system = made.solver.system
-    n = 2 * system.n + 1
-    matrix, (rows, columns, values) = np.zeros((n, n)), near_field(system, system.n - 1)
-    matrix[rows, columns] = values
-    steps, dense = [], []
-    for _ in range(5):
-        newton, seconds = made.advance(10)
-        steps.append(seconds / 10)
-        dense.append(newton / 10 * cpu(lambda: np.linalg.solve(matrix, np.ones(n)), 1))
-    mine, theirs = 1e3 * statistics.median(steps), 1e3 * statistics.median(dense)
-    print(f"2. a/{points}: time step {mine:.1f} ms, dense Newton step {theirs:.0f} ms: {theirs / mine:.0f}")
-
-
 def exponent(meshes):
-    """Slope 3, at the same time and with a step of the same courant number."""
+    """Slope 2, at the same time and with a step of the same courant number."""
     nodes, seconds = [], []
     for points in meshes:
         made = rough(points, -1.4)
         nodes.append(made.solver.system.n)
         seconds.append(statistics.median(made.advance(4)[1] / 4 for _ in range(5)))
-        print(f"3. a/{points}: {nodes[-1]} nodes, {1e3 * seconds[-1]:.1f} ms a step", flush=True)
+        print(f"2. a/{points}: {nodes[-1]} nodes, {1e3 * seconds[-1]:.1f} ms a step", flush=True)
     slope = np.polyfit(np.log(nodes), np.log(seconds), 1)[0]
-    print(f"3. time a step goes with nodes to the power {slope:.2f}", flush=True)
+    print(f"2. time a step goes with nodes to the power {slope:.2f}", flush=True)
 
 
 def iterations(steps=200):
-    """Figure 4, halved steps included."""
+    """Figure 3, halved steps included."""
     for made, name in ((rough(200), "full film"), (in_contact(200), "table1_rough")):
         newton, _ = made.advance(steps)
-        print(f"4. {name}, a/200: {newton / steps:.2f} Newton iterations a step", flush=True)
+        print(f"3. {name}, a/200: {newton / steps:.2f} Newton iterations a step", flush=True)
 
 
 if __name__ == "__main__":
@@ -129,6 +112,5 @@ if __name__ == "__main__":
     for mesh in (200,) if quick else (200, 800):
         against_lapack(mesh, rough(mesh), "full film")
         against_lapack(mesh, in_contact(mesh), "in contact")
-    against_dense()
     exponent((100, 200, 400) if quick else (100, 200, 400, 800, 1600))
     iterations()
