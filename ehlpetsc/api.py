@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import sys
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.effects.effect import Effect
+    from ehlpetsc.physics.laws import Law
 
 __all__ = ["Result", "read_result", "solve"]
 
@@ -70,6 +73,8 @@ def solve(
     restart: str | PathLike | None = None,
     overwrite: bool = False,
     progress: bool | None = None,
+    laws: Mapping[str, Law] | None = None,
+    effects: Iterable[type[Effect]] = (),
 ) -> Result:
     """Solve a case.
 
@@ -92,6 +97,8 @@ def solve(
         replaced, and an unfinished run of it is continued from its restart file.
     progress
         Whether to show progress; by default on a terminal and in a notebook.
+    laws, effects
+        As of `ehlpetsc.load`.
 
     Raises
     ------
@@ -112,6 +119,7 @@ def solve(
     1.00 p0 on 1001 nodes
     """
     need_solver()
+    from ehlpetsc.case.tables import extend
     from ehlpetsc.run.outputs.progress import Progress, in_notebook, on_terminal
     from ehlpetsc.run.outputs.recorder import Recorder
     from ehlpetsc.run.simulation import Simulation
@@ -119,6 +127,7 @@ def solve(
     from ehlpetsc.run.solve import solve as write_states
     from ehlpetsc.run.stop import StopRequest
 
+    extend(laws or {}, effects)
     simulation = Simulation(case, comm, options)
     time = simulation.case.time
     if time is not None and time.passes > 1:

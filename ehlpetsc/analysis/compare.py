@@ -131,7 +131,7 @@ def _difference(name: str, units: str, blocks: Iterable[list[np.ndarray]], x: np
 
 
 def table(differences: Iterable[Difference], a: float, rtol: float, atol: float) -> str:
-    """Lines of text, one for each difference; x in half widths a."""
+    """Lines of text, one for each difference; x in half-widths a."""
     lines = [
         f"{'quantity':<20} {'unit':<6} {'scale':>11} {'max/scale':>10} {'rms/scale':>10} {'at x/a':>8}"
         f" {'at t/us':>10}"

@@ -9,8 +9,8 @@ import hashlib
 import json
 import os
 import re
-import sys
 from collections.abc import Callable, Container, Iterable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -19,16 +19,12 @@ import numpy as np
 os.environ.setdefault(
     "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1"
 )  # no colour codes at the end of the output
-if name := os.environ.get("EHLPETSC_LAWS"):  # loops with laws of the user have a cache of their own
-    texts = [Path(folder, f"{name}.py") for folder in ("", *sys.path)]
-    texts += sorted(Path(__file__).parents[1].rglob("*.py"))
-    digest = hashlib.sha256(b"\0".join(path.read_bytes() for path in texts if path.is_file())).hexdigest()
-    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(cache / "ehlpetsc" / digest[:16]))
 try:
     import numba
     from llvmlite import ir
+    from numba.core import cgutils
     from numba.extending import intrinsic
+    from numba.np.unsafe.ndarray import to_fixed_tuple
 
     COMPILED = True
 except ImportError:
@@ -118,7 +114,47 @@ def inlined(function: Callable, **options: Any) -> Any:
     return compiled(function, forceinline=True, **options)
 
 
+_KEPT: list[Any] = []  # compiled laws of the user, which must outlive their addresses
+
+
+@cache
+def address_of(law: Callable, count: int) -> int:
+    """Address, for `call_at`, of a law of two state variables and `count` constants, which is compiled."""
+    function, real = numba.njit(error_model="numpy")(law), numba.float64
+    pointer = numba.types.CPointer(real)
+
+    @numba.cfunc(numba.void(real, real, pointer, pointer))
+    def call(p: float, T: float, constants: Any, found: Any) -> None:
+        values = numba.carray(found, 3)
+        given = to_fixed_tuple(numba.carray(constants, count), count)
+        values[0], values[1], values[2] = function(p, T, *given)
+
+    _KEPT.append(call)
+    return call.address
+
+
+def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:
+    """Results of a law at an address; only compiled loops have it."""
+    raise NotImplementedError
+
+
 if COMPILED:
+
+    @intrinsic
+    def call_at(typing: Any, address: Any, p: Any, T: Any, constants: Any) -> tuple[Any, Callable]:
+        """Three results of the function at an address, of two numbers and a tuple of constants."""
+
+        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            address, p, T, constants = arguments
+            real = ir.DoubleType()
+            given = cgutils.alloca_once_value(builder, constants)
+            found = cgutils.alloca_once(builder, ir.ArrayType(real, 3))
+            kind = ir.FunctionType(ir.VoidType(), [real, real, given.type, found.type])
+            builder.call(builder.inttoptr(address, kind.as_pointer()), [p, T, given, found])
+            return builder.load(found)
+
+        results = numba.types.UniTuple(numba.float64, 3)
+        return results(numba.int64, numba.float64, numba.float64, constants), code
 
     @intrinsic
     def call_allgather(

@@ -13,7 +13,7 @@ these alone and passes on :class:`Values`. For example an effect with one key::
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -34,7 +34,7 @@ class Key:
     Attributes
     ----------
     text
-        Meaning, for the page of keys and for messages.
+        Meaning, for the page of keys and for messages; symbols and equations in backticks.
     unit
         SI unit of the stored value; "": a pure number.
     kind
@@ -71,7 +71,7 @@ class Key:
     default: Any = None
     required: bool = False
     replaced_by: tuple[str, ...] = ()
-    choices: tuple[str, ...] = ()
+    choices: Collection[str] = ()
     many: str = ""
     min_items: int = 1
     max_items: int | None = None
@@ -84,6 +84,11 @@ class Key:
     def __post_init__(self) -> None:
         if self.choices:
             object.__setattr__(self, "kind", str)
+
+
+def plain(text: str) -> str:
+    """Text for a terminal, without the backticks of equations."""
+    return text.replace("`", "")
 
 
 Required = partial(Key, required=True)
@@ -146,7 +151,7 @@ class KeyTable:
 
     name: str
     text: str
-    keys: Mapping[str, Key]
+    keys: dict[str, Key]
     required: bool = False
     always: bool = False
     needs: tuple[str, ...] = ()

@@ -16,7 +16,6 @@ import re
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
@@ -48,19 +47,6 @@ def has(name: str) -> bool:
     """Whether a package can be imported; a folder of its name without a package does not count."""
     spec = importlib.util.find_spec(name)
     return spec is not None and spec.origin is not None
-
-
-def of_user(kind: str) -> Any:
-    """`LAWS`, a dict, or `EFFECTS`, a tuple, of the user's module in the variable ``EHLPETSC_<kind>``.
-
-    () without the variable. The module is looked for on Python's path and in the current folder.
-    """
-    name = os.environ.get(f"EHLPETSC_{kind}")
-    if not name:
-        return ()
-    if os.getcwd() not in sys.path:
-        sys.path.append(os.getcwd())
-    return getattr(importlib.import_module(name), kind)
 
 
 def missing(names: Iterable[str]) -> list[str]:

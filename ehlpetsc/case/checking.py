@@ -7,14 +7,14 @@ import math
 from collections.abc import Collection, Iterator
 from typing import Any, NamedTuple, TypeGuard
 
-from ehlpetsc.base.declarations import Key, KeyTable, Refused
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.toml_file import is_plain
 from ehlpetsc.base.units import UnitFault, converted
 from ehlpetsc.case.messages import allowed, celsius, show, unknown
 from ehlpetsc.case.tables import CASE, key_of
 
-NUMBERS_ONLY = {"half widths", "boundary films"}  # units that are no units of measurement
+NUMBERS_ONLY = {"half-widths", "boundary films"}  # units that are no units of measurement
 MAX_FLOAT = 1e308
 
 Tables = dict[str, Any]
@@ -157,7 +157,9 @@ def _checked(
         return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}")]
     unmet = [need for need in key.needs if result != key.default and not _holds(need, root)]
     if unmet:
-        return None, [Fault(place, f"{place} = {show(value)}: needs {' and '.join(unmet)} ({key.text})")]
+        return None, [
+            Fault(place, f"{place} = {show(value)}: needs {' and '.join(unmet)} ({plain(key.text)})")
+        ]
     return result, []
 
 

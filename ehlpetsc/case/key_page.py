@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status, put
-from ehlpetsc.base.declarations import Key, KeyTable
+from ehlpetsc.base.declarations import Key, KeyTable, plain
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.messages import nearest, value_text
 from ehlpetsc.case.tables import CASE
@@ -20,11 +21,38 @@ key; `ehlpetsc template roller` and `gears` print a case to begin with. Numbers 
 also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys, values out of bounds, nan and
 inf are rejected. A list of two is for surfaces 1 and 2.
 
-Symbols: a half width and p0 maximum pressure by Hertz, E' reduced modulus, h film thickness, p pressure, p_c
-pressure of the solids, q shear stress, theta void fraction, eta and rho viscosity and density, eta0 and rho0
-at ambient pressure, u1 and u2 speeds of surfaces 1 and 2, u_max the maximum of both, X and z abscissa and
-height of a profile, N cycles to failure, de and ds ranges of strain and stress, D damage.
+| symbol | meaning | symbol | meaning |
+|---|---|---|---|
+| $a$, $p_0$ | half-width and maximum pressure by Hertz | $u_1$, $u_2$ | speeds of surfaces 1 and 2 |
+| $E'$ | reduced modulus | $u_{\\max}$ | maximum of both |
+| $h$ | film thickness | $X$, $z$ | abscissa and height of a profile |
+| $p$, $p_c$ | pressure; pressure of the solids | $q$ | shear stress on a surface |
+| $\\theta$ | void fraction | $N$ | cycles to failure |
+| $\\eta$, $\\rho$ | viscosity, density | $\\Delta\\varepsilon$, $\\Delta\\sigma$ | strain and stress ranges |
+| $\\eta_0$, $\\rho_0$ | at ambient pressure | $D$ | damage |
 """
+
+BRACKET = r"\(((?:[^()]|\([^()]*\))*)\)"  # with at most one more inside
+TEX = (
+    (r"(\d)e(-\d+)", r"\1\\cdot10^{\2}"),
+    (f"sqrt{BRACKET}", r"\\sqrt{\1}"),
+    (rf"\^{BRACKET}", r"^{\1}"),
+    (r"\^(-?[\w.']+)", r"^{\1}"),
+    (">=", r"\\ge"),
+    ("<=", r"\\le"),
+    (r"\|([^|]+)\|", r"\\lvert \1\\rvert"),
+    (r"\*", r"^{\\ast}"),
+)
+FUNCTIONS = ("exp", "ln", "lg", "sinh", "cos", "max")
+GREEK = "alpha beta gamma lambda eta theta nu xi pi rho sigma tau"
+NAMES = {name: rf"\{name}" for name in GREEK.split()} | {
+    "de": r"\Delta\varepsilon",
+    "ds": r"\Delta\sigma",
+    "dgamma": r"\Delta\gamma",
+    "eps": r"\varepsilon",
+    "erf": r"\operatorname{erf}",
+}
+INDICES = {"inf": r"\infty", "inf0": r"\infty 0", "max": r"\max"}
 
 
 def tables() -> dict[str, KeyTable]:
@@ -84,10 +112,14 @@ def _lines(indent: str, chosen: dict[str, Key]) -> list[str]:
     lines = []
     for name, key in chosen.items():
         default = _default(key)
-        parts = [key.text, _value(key), default if key.required or not default else f"default {default}"]
+        parts = [
+            plain(key.text),
+            _value(key),
+            default if key.required or not default else f"default {default}",
+        ]
         lines.append(f"{indent}{name}: {'; '.join(filter(None, parts))}")
         if key.equation:
-            lines.append(f"{indent}    {key.equation}")
+            lines.append(f"{indent}    {plain(key.equation)}")
     return lines
 
 
@@ -104,10 +136,45 @@ def page() -> str:
         texts.append("| key | meaning | value | default |\n|---|---|---|---|\n")
         for name, key in _keys(table).items():
             meaning = f"{key.text}. {key.equation}" if key.equation else key.text
-            cells = [f"`{name}`", meaning, _value(key), _default(key)]
-            escaped = [cell.replace("|", r"\|").replace("*", r"\*") for cell in cells]
-            texts.append(f"| {' | '.join(escaped)} |\n")
+            cells = [_typeset(meaning), *(_escaped(cell) for cell in (_value(key), _default(key)))]
+            texts.append(f"| `{name}` | {' | '.join(cells)} |\n")
     return "".join(texts)
+
+
+def _typeset(text: str) -> str:
+    """Text with its equations, which are in backticks, in TeX."""
+    parts = text.split("`")
+    return "".join(f"${tex(part)}$" if k % 2 else _escaped(part) for k, part in enumerate(parts))
+
+
+def _escaped(cell: str) -> str:
+    return cell.replace("|", r"\|").replace("*", r"\*")
+
+
+def tex(equation: str) -> str:
+    r"""TeX of an equation in the ASCII of the terminal.
+
+    Examples
+    --------
+    >>> tex("p_c <= beta E* exp(-h_a/sigma)^(1/n')")
+    "p_c \\le \\beta E^{\\ast} \\exp(-h_a/\\sigma)^{1/n'}"
+    """
+    for pattern, by in TEX:
+        equation = re.sub(pattern, by, equation)
+    equation = re.sub(r"(?<!\\)\b[A-Za-z]+(_[a-z_A-Z]+)?\d*", _symbol, equation)
+    return re.sub(r"(texttt{[^}]*}) (?=[a-zA-Z\\])", r"\1\\,", equation)
+
+
+def _symbol(match: re.Match) -> str:
+    """TeX of a word: function, Greek letter, symbol with its index, or the name of a key."""
+    word = match[0]
+    name, index = re.fullmatch(r"([A-Za-z]+?)_?((?<=_)\w+|\d*)", word).groups()
+    if name in FUNCTIONS:
+        return rf"\{name}"
+    if name not in NAMES and len(name) > 1 and not re.fullmatch("d[a-z]", name):
+        return rf"\texttt{{{word.replace('_', chr(92) + '_')}}}"
+    index = INDICES.get(index, index if len(index) < 3 else rf"\mathrm{{{index}}}")
+    return NAMES.get(name, name) + (f"_{{{index}}}" if len(index) > 1 else f"_{index}" if index else "")
 
 
 def main(words: list[str]) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import tomllib
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any, cast
@@ -27,10 +27,12 @@ from ehlpetsc.case.derived import (
     with_layer_stiffness,
 )
 from ehlpetsc.case.messages import shortened, show
-from ehlpetsc.case.tables import CASE, GEARS, Case
+from ehlpetsc.case.tables import CASE, GEARS, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.effects.effect import Effect
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.laws import Law
 from ehlpetsc.physics.scales import Scales
 
 DICT_NAME = "case"  # name of a case without a file in messages
@@ -39,7 +41,13 @@ Overrides = dict[str, Any] | Iterable[str] | str | None
 __all__ = ["Case", "CaseError", "load", "members", "stored_case"]
 
 
-def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> Case:
+def load(
+    case: str | PathLike | dict[str, Any],
+    overrides: Overrides = None,
+    *,
+    laws: Mapping[str, Law] | None = None,
+    effects: Iterable[type[Effect]] = (),
+) -> Case:
     """Read and check a case; raises `CaseError` with all faults, one message each.
 
     Parameters
@@ -50,6 +58,9 @@ def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> 
     overrides
         ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
         syntax, otherwise text.
+    laws, effects
+        Viscosity laws by name and effects of your own, which with their keys and quantities are known to the
+        process from then on.
 
     Examples
     --------
@@ -58,6 +69,7 @@ def load(case: str | PathLike | dict[str, Any], overrides: Overrides = None) -> 
     >>> case.fluid.viscosity, case.contact.radius  # Pa s, m
     (0.003, 0.0191)
     """
+    extend(laws or {}, effects)
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
     written, folder = copy.deepcopy(data), Path(path).parent

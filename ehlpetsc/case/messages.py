@@ -6,7 +6,7 @@ import difflib
 import json
 from collections.abc import Iterable
 
-from ehlpetsc.base.declarations import Key
+from ehlpetsc.base.declarations import Key, plain
 
 NAMES = {bool: "true or false", int: "a whole number", float: "a number", str: "text", dict: "a table"}
 PLURALS = {int: "whole numbers", float: "numbers", str: "texts"}
@@ -38,7 +38,7 @@ def _kind(key: Key) -> str:
 
 def allowed(key: Key) -> str:
     """Allowed values of a key with its meaning, for messages."""
-    return f"{value_text(key)} ({key.text})"
+    return f"{value_text(key)} ({plain(key.text)})"
 
 
 def celsius(key: Key, value: object) -> str:

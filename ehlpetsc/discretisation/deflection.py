@@ -121,7 +121,7 @@ class Deflection:
     n
         Number of nodes of the mesh.
     dx
-        Spacing in half widths.
+        Spacing in half-widths.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ r"""Discrete Reynolds equation with mass-conserving cavitation.
 
 (Holmes et al. 2005, eq. (1), its sign turned), p the oil's pressure. One unknown q a node carries pressure
 and cavitation: p = max(q, 0), void fraction = max(-q, 0). Lengths in x are in
-half widths, films in a^2/R, pressures in p0; F is divided by u times a film scale, so that the sum
+half-widths, films in a^2/R, pressures in p0; F is divided by u times a film scale, so that the sum
 over nodes is the relative mass defect.
 
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes`.

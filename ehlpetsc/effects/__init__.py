@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
-from ehlpetsc.base.environment import of_user
 from ehlpetsc.effects.heat.effect import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
 from ehlpetsc.effects.roughness import RoughSurfaces
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from ehlpetsc.effects.effect import Effect, Scene
 
 
-EFFECTS = (RoughSurfaces, PlasticDeformation, Wear, Heat, *of_user("EFFECTS"))
+EFFECTS: list[type[Effect]] = [RoughSurfaces, PlasticDeformation, Wear, Heat]
 
 
 def effects_of(scene: Scene, records: Collection[str] = ()) -> list[Effect]:

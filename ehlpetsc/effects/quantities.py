@@ -17,6 +17,7 @@ from ehlpetsc.effects import EFFECTS
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
+    from ehlpetsc.effects.effect import Effect
 
 REDUCTIONS: dict[str, Callable] = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
 """From the values of the steps, in their order, to the one of a run."""
@@ -173,7 +174,7 @@ OTHERS = {
 """Coordinates and what else is neither a field nor a scalar of the step."""
 
 GROUPS = {
-    "/": "Result of ehlpetsc, in SI units. Attributes: the case as run, Hertz half width a [m] and pressure "
+    "/": "Result of ehlpetsc, in SI units. Attributes: the case as run, Hertz half-width a [m] and pressure "
     "p0 [Pa], h_scale = a^2/R [m], speeds u1, u2 [m/s], provenance, how the run ended (status)",
     "steps": "a row for every accepted time step, also where no frame is stored",
     "surface": "profiles as used, fixed in the bodies",
@@ -181,6 +182,15 @@ GROUPS = {
     "surface/2": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
 }
 """Purpose of each group."""
+
+
+def add_quantities(kind: type[Effect]) -> None:
+    """Add the quantities of an effect of the user to the tables."""
+    SCENES[kind.name] = kind.is_in
+    FIELDS.update({name: replace(field, only=kind.name) for name, field in kind.fields.items()})
+    STORED.extend(name for name in kind.fields if name not in STORED and not FIELDS[name].on_request)
+    STEP_SCALARS.update({name: replace(scalar, only=kind.name) for name, scalar in kind.scalars.items()})
+    OTHERS.update({f"surface/{name}": field for name, field in kind.surface.items()})
 
 
 def of_case(table: dict[str, Field], case: Case) -> list[str]:

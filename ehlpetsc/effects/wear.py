@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 
 COEFFICIENT = Required(
-    "wear rate k, dz/dt = k p_c |u1 - u2|, z the depth worn off a surface", "m^2/N", 0, 1e-10, many="both"
+    "wear rate `k`, `dz/dt = k p_c |u1 - u2|`, `z` the depth worn off a surface",
+    *("m^2/N", 0, 1e-10),
+    many="both",
 )
 WEAR = KeyTable(
     "wear", "left out: no wear", {"coefficient": COEFFICIENT}, needs=('contact.model = "mixed"', "[time]")

@@ -30,7 +30,7 @@ def modulus_of(contact: Mapping[str, Any]) -> float | None:
 
 
 def hertz(path: Path, modulus: float) -> tuple[np.ndarray, np.ndarray]:
-    """Half width [m] and Hertz pressure [Pa] along a path."""
+    """Half-width [m] and Hertz pressure [Pa] along a path."""
     a = np.sqrt(8.0 * path.load * path.radius / (np.pi * modulus))
     return a, 0.25 * modulus * a / path.radius
 

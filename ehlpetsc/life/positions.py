@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
-FLANK_END_LENGTH = 1.0  # half widths at either end of a flank whose mean wear is that of the points beyond
+FLANK_END_LENGTH = 1.0  # half-widths at either end of a flank whose mean wear is that of the points beyond
 
 
 def number_of_positions(case: Case) -> int:

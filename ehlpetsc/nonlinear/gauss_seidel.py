@@ -44,7 +44,7 @@ from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
 
-# half widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
+# half-widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
 STEP_SWEEPS_LENGTH, STEADY_SWEEPS_LENGTH = 0.6, 4.0
 MAX_EVALUATIONS = 400  # of A and B in a solve
 NEAR_FIELD_NODES = 100  # nodes on either side whose pressures act in the same sweep

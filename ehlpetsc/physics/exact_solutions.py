@@ -11,7 +11,7 @@ def hertz_pressure(x: np.ndarray, a: float, p0: float) -> np.ndarray:
     x
         Distance from the centre [m].
     a, p0
-        Half width [m] and maximum pressure [Pa].
+        Half-width [m] and maximum pressure [Pa].
     """
     return p0 * np.sqrt(np.maximum(1.0 - (np.asarray(x) / a) ** 2, 0.0))
 

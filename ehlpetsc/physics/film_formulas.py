@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 MIN_OVER_CENTRAL_FILM = 0.75  # of an incompressible oil
-FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half widths in place of infinity in Grubin's integral; its points
+FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half-widths in place of infinity in Grubin's integral; its points
 
 
 def moes_central_film(M: float, L: float) -> float:
@@ -77,13 +77,13 @@ def inlet_opening(film: float, points: float) -> float:
     film
         Central film in a^2/R.
     points
-        Nodes per half width.
+        Nodes per half-width.
     """
     return 2.0 * np.sqrt(2.0) / 3.0 * points**-1.5 / film
 
 
 def points_for_opening(film: float, opening: float) -> int:
-    """Nodes per half width for a value of :func:`inlet_opening`."""
+    """Nodes per half-width for a value of :func:`inlet_opening`."""
     return (inlet_opening(film, 1.0) / opening) ** (2.0 / 3.0)
 
 
@@ -98,7 +98,7 @@ def film_left_by_inlet(film: float, inlet: float) -> float:
     film
         Central film of the flooded contact in a^2/R.
     inlet
-        Distance of the first node from the middle in half widths, above 1.
+        Distance of the first node from the middle in half-widths, above 1.
     """
     prescribed = _grubin(film, FAR_INLET)
     low, high = np.log(film) - 20.0, np.log(film)

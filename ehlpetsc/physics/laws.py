@@ -2,7 +2,7 @@ r"""Laws of the oil: viscosity of pressure and temperature, density and conducti
 
 A law is one function of numbers or arrays in SI units, which carries complex arguments through, with its
 constants and the keys of `[fluid]` that it reads. A law is added by an entry in one of the tables, whose
-functions the compiled loops call by their position.
+functions the compiled loops call by their position, or, of a user's viscosity law, by its address.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.base.compiled import address_of, call_at, compiled, inlined
 from ehlpetsc.base.declarations import Key, Refused
-from ehlpetsc.base.environment import of_user
 
 SLOTS = 10  # constants that compiled loops get of any law
 KELVIN = 273.15  # K at 0 degrees Celsius
@@ -71,7 +70,7 @@ class Law:
 
 
 class OilLaw(NamedTuple):
-    """A viscosity or density law with its constants, for compiled loops."""
+    """A viscosity or density law, by its position or address, with its constants, for compiled loops."""
 
     kind: int
     constants: tuple[float, ...]
@@ -311,14 +310,14 @@ def doolittle(
 
 
 DOOLITTLE = {
-    "doolittle_b": Key("B of Doolittle's law", gt=0, le=20),
-    "doolittle_occupied": Key("R0, occupied volume at doolittle_temperature", gt=0, lt=1),
+    "doolittle_b": Key("`B` of Doolittle's law", gt=0, le=20),
+    "doolittle_occupied": Key("`R0`, occupied volume at doolittle_temperature", gt=0, lt=1),
     "doolittle_occupied_rise": Key("its relative rise with temperature", unit="1/K", ge=-0.01, le=0.01),
-    "tait_slope": Key("K0', of the bulk modulus with pressure", gt=0, le=50),
-    "tait_modulus": Key("K00, bulk modulus K00 exp(-beta_K T)", unit="Pa", gt=0, le=1e12),
-    "tait_decay": Key("beta_K of the bulk modulus, T in K", unit="1/K", ge=0, le=0.1),
-    "tait_expansion": Key("a_V of the volume at ambient pressure", unit="1/K", ge=0, le=0.01),
-    "doolittle_temperature": Key("T_R at which R0 holds", unit="K", ge=150, le=700),
+    "tait_slope": Key("`K0'`, of the bulk modulus with pressure", gt=0, le=50),
+    "tait_modulus": Key("`K00`, bulk modulus `K00 exp(-beta_K T)`", unit="Pa", gt=0, le=1e12),
+    "tait_decay": Key("`beta_K` of the bulk modulus, T in K", unit="1/K", ge=0, le=0.1),
+    "tait_expansion": Key("`a_V` of the volume at ambient pressure", unit="1/K", ge=0, le=0.01),
+    "doolittle_temperature": Key("`T_R` at which `R0` holds", unit="K", ge=150, le=700),
 }
 
 
@@ -376,13 +375,13 @@ def yasutomi(
 
 
 YASUTOMI = {
-    "yasutomi_c1": Key("C1 of Yasutomi's law", gt=0, le=100),
-    "yasutomi_c2": Key("C2", unit="K", gt=0, le=1000),
-    "yasutomi_glass": Key("T_g0, glass transition at ambient pressure", unit="K", ge=50, le=700),
-    "yasutomi_a1": Key("A1 of the glass transition T_g0 + A1 ln(1 + A2 p)", unit="K", ge=0, le=2000),
-    "yasutomi_a2": Key("A2", unit="1/Pa", ge=0, le=1e-6),
-    "yasutomi_b1": Key("b1 of the factor (1 + b1 p)^b2", unit="1/Pa", ge=0, le=1e-6),
-    "yasutomi_b2": Key("b2", ge=-5, le=0),
+    "yasutomi_c1": Key("`C1` of Yasutomi's law", gt=0, le=100),
+    "yasutomi_c2": Key("`C2`", unit="K", gt=0, le=1000),
+    "yasutomi_glass": Key("`T_g0`, glass transition at ambient pressure", unit="K", ge=50, le=700),
+    "yasutomi_a1": Key("`A1` of the glass transition `T_g0 + A1 ln(1 + A2 p)`", unit="K", ge=0, le=2000),
+    "yasutomi_a2": Key("`A2`", unit="1/Pa", ge=0, le=1e-6),
+    "yasutomi_b1": Key("`b1` of the factor `(1 + b1 p)^b2`", unit="1/Pa", ge=0, le=1e-6),
+    "yasutomi_b2": Key("`b2`", ge=-5, le=0),
 }
 
 
@@ -401,14 +400,16 @@ def _complete_yasutomi(fluid: Any) -> dict[str, float]:
 
 
 LAWS = {
-    "barus": Law(power_law, _barus, "ln(eta/eta0) = alpha p", complete=_with_coefficient),
+    "barus": Law(power_law, _barus, "`ln(eta/eta0) = alpha p`", complete=_with_coefficient),
     "roelands": Law(
         power_law,
         _roelands,
-        "ln(eta/eta0) = (alpha pr/z) ((1 + p/pr)^z - 1), z = alpha pr/ln(eta0/reference_viscosity)",
+        "`ln(eta/eta0) = (alpha p_r/z) ((1 + p/p_r)^z - 1)`, `z = alpha p_r/ln(eta0/reference_viscosity)`",
         {
-            "roelands_pressure": Key("pr; left out: 1.96e8", unit="Pa", ge=1e6, le=1e10, default=None),
-            "roelands_z": Key("exponent z; left out: alpha pr/ln(eta0/reference_viscosity)", ge=1e-3, le=2),
+            "roelands_pressure": Key("`p_r`; left out: 1.96e8", unit="Pa", ge=1e6, le=1e10, default=None),
+            "roelands_z": Key(
+                "exponent `z`; left out: `alpha p_r/ln(eta0/reference_viscosity)`", ge=1e-3, le=2
+            ),
             "reference_viscosity": Key(
                 "below viscosity, sets the exponent; left out: 6.315e-5, Roelands' constant",
                 unit="Pa s",
@@ -421,7 +422,7 @@ LAWS = {
     "doolittle": Law(
         doolittle,
         _doolittle,
-        "ln(eta/eta0) = B (v_inf/(v - v_inf) - v_inf0/(v0 - v_inf0)), v of Tait",
+        "`ln(eta/eta0) = B (v_inf/(v - v_inf) - v_inf0/(v0 - v_inf0))`, `v` of Tait",
         DOOLITTLE,
         _complete_doolittle,
         of_temperature=True,
@@ -429,33 +430,39 @@ LAWS = {
     "yasutomi": Law(
         yasutomi,
         _yasutomi,
-        "lg(eta/eta0) = C1 (x0/(C2 + x0) - x/(C2 + x)), x = (T - T_g) (1 + b1 p)^b2",
+        "`lg(eta/eta0) = C1 (x0/(C2 + x0) - x/(C2 + x))`, `x = (T - T_g) (1 + b1 p)^b2`",
         YASUTOMI,
         _complete_yasutomi,
         of_temperature=True,
     ),
-    **dict(of_user("LAWS")),
 }
+BUILT_IN = tuple(LAWS.values())
+N_BUILT_IN = len(BUILT_IN)
 _ln_viscosity, _ln_viscosities = switched(LAWS, 2), switched(LAWS, 2, pair=True)
 
 
 @inlined
 def ln_viscosity(law: tuple, p: float, T: float) -> Derivatives:
     """ln(eta/eta0) at one state with its derivatives by p [1/Pa] and T [1/K]; law as of `viscosity_law`."""
+    if law[0] >= N_BUILT_IN:
+        return call_at(law[0], p, T, law[1])
     return _ln_viscosity(law[0], (p, T), law[1])
 
 
 @inlined
 def ln_viscosities(law: tuple, p: float, T: float, other: float) -> tuple[Derivatives, Derivatives]:
     """:func:`ln_viscosity` at two temperatures, in little more time."""
+    if law[0] >= N_BUILT_IN:
+        return call_at(law[0], p, T, law[1]), call_at(law[0], p, other, law[1])
     return _ln_viscosities(law[0], (p, T, other), law[1])
 
 
 def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
     """Viscosity law of a case; `fluid.exponent_factor` below 1 is that of a continuation."""
-    first, *others = LAWS[fluid.law].constants(fluid, heat)
+    law = LAWS[fluid.law]
+    first, *others = law.constants(fluid, heat)
     first *= getattr(fluid, "exponent_factor", 1.0)
-    kind = list(LAWS).index(fluid.law)
+    kind = BUILT_IN.index(law) if law in BUILT_IN else address_of(law.function, 1 + len(others))
     return OilLaw(kind, padded((first, *others)), float(reference_temperature(fluid, heat)))
 
 
@@ -465,9 +472,9 @@ def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tup
     return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
 
 
-def is_linear_in_temperature(law: OilLaw) -> bool:
-    """Whether the logarithm of the viscosity is linear in temperature."""
-    function, rise = list(LAWS.values())[law.kind], 0.1 * law.temperature
+def is_linear_in_temperature(law: OilLaw, name: str) -> bool:
+    """Whether the logarithm of the viscosity is linear in temperature, by the law of this name."""
+    function, rise = LAWS[name], 0.1 * law.temperature
     (cold, _, slope), (hot, _, _) = (function(1e9, law.temperature + T, law.constants) for T in (0.0, rise))
     return abs(hot - cold - rise * slope) <= 1e-9 * abs(hot - cold)
 
@@ -500,7 +507,7 @@ def incompressible(p: Any) -> Derivatives:
 
 
 # the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
-TEXTBOOKS = "the density 1 + 0.6e-9 p/(1 + 1.7e-9 p) of textbooks is gamma = 2.3e-9 and lambda = 1.7e-9"
+TEXTBOOKS = "the density `1 + 0.6e-9 p/(1 + 1.7e-9 p)` of textbooks is gamma = 2.3e-9 and lambda = 1.7e-9"
 DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
 
 
@@ -518,14 +525,14 @@ DENSITY_LAWS = {
     "dowson-higginson": Law(
         compression,
         lambda fluid, heat: (fluid.gamma, fluid.lambda_),
-        "rho/rho0 = (1 + gamma p)/(1 + lambda p)",
+        "`rho/rho0 = (1 + gamma p)/(1 + lambda p)`",
         {
             "gamma": Key(f"{TEXTBOOKS}, the default", unit="1/Pa", ge=0, le=1e-6),
             "lambda": Key(f"at most gamma; {TEXTBOOKS}, the defaults", unit="1/Pa", ge=0, le=1e-6),
         },
         _complete_density,
     ),
-    "incompressible": Law(incompressible, lambda fluid, heat: (), "rho = rho0"),
+    "incompressible": Law(incompressible, lambda fluid, heat: (), "`rho = rho0`"),
 }
 _relative_density = switched(DENSITY_LAWS, 1)
 

@@ -24,7 +24,7 @@ def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[flo
 
 
 def hertz_line(load: float, radius: float, modulus: float) -> tuple[float, float]:
-    r"""Half width [m] and maximum pressure [Pa] of the dry smooth line contact.
+    r"""Half-width [m] and maximum pressure [Pa] of the dry smooth line contact.
 
     :math:`a=\sqrt{8w'R/(\pi E')}`, :math:`p_0=2w'/(\pi a)` (Johnson 1985, section 4.2).
 
@@ -61,7 +61,7 @@ class Scales:
     E, R, load
         E' [Pa], R [m], w' [N/m].
     a, p0, h
-        Hertz half width [m], maximum pressure [Pa], film scale a^2/R [m].
+        Hertz half-width [m], maximum pressure [Pa], film scale a^2/R [m].
     u, xi, u1, u2
         Mean speed [m/s], slide/roll ratio, u1 = u (1 + xi/2) of surface 1 and u2 = u (1 - xi/2) of surface 2;
         with xi < 0 surface 1 is the slower one. 0 where nothing moves.
@@ -72,7 +72,7 @@ class Scales:
     nx
         Number of nodes.
     x
-        Nodes in half widths, from the inlet on, shape (nx,).
+        Nodes in half-widths, from the inlet on, shape (nx,).
     dx
         Spacing of the nodes [m].
     dt

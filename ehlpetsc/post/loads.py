@@ -27,7 +27,7 @@ class Loads:
     case, case_text
         With the overrides, and as stored.
     x, dx, a, p0
-        Nodes [m], their spacing [m], Hertz half width [m], Hertz pressure [Pa].
+        Nodes [m], their spacing [m], Hertz half-width [m], Hertz pressure [Pa].
     time, step
         Times [s] and step numbers of the frames, shape (nt,).
     speeds

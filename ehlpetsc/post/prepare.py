@@ -92,7 +92,7 @@ def _motions(loads: Loads, surfaces: Sequence[str]) -> tuple[np.ndarray, dict[st
     if not any(motion.complete.any() for motion in motions.values()):
         width = (loads.x[-1] - loads.x[0]) / loads.a
         raise PostError(
-            f"no body point passed the whole contact: the surfaces moved {moved / loads.a:.3g} half widths, "
+            f"no body point passed the whole contact: the surfaces moved {moved / loads.a:.3g} half-widths, "
             f"the domain is {width:.3g} wide; raise time.travel"
         )
     return s, motions

@@ -15,10 +15,10 @@ from ehlpetsc.effects.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH
 
 if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import StepScalar
     from ehlpetsc.results.reader import Result
 
 SERIES_REDUCTIONS = ("sum", "min", "max")  # reductions that are meaningful over several runs
-REDUCED = {name: scalar for name, scalar in STEP_SCALARS.items() if scalar.over_run}
 
 
 def filled_from(result: Result) -> float:
@@ -107,8 +107,12 @@ def _filled_by(result: Result, side: str) -> float:
     return float(np.interp(distance, furthest, result.steps("time"), right=np.inf))
 
 
+def _reduced() -> list[tuple[str, StepScalar]]:
+    return [(name, scalar) for name, scalar in STEP_SCALARS.items() if scalar.over_run]
+
+
 class Totals:
-    """Totals `values` of the steps so far, keys of `REDUCED`, and `means` of the run, see :func:`means`."""
+    """Totals `values` of the steps so far, by name, and `means` of the run, see :func:`means`."""
 
     def __init__(self, values: dict[str, float] | None = None, means: dict[str, float] | None = None) -> None:
         self.values, self.means = dict(values or {}), dict(means or {})
@@ -116,15 +120,15 @@ class Totals:
     @classmethod
     def of_result(cls, result: Result) -> Totals:
         """Totals and means of a stored run."""
-        names = [name for name in REDUCED if name in result.scalars]
+        names = [name for name, _ in _reduced() if name in result.scalars]
         steps = {name: result.steps(name).tolist() for name in names}
-        return cls({n: REDUCTIONS[REDUCED[n].over_run](v) for n, v in steps.items() if v}, means(result))
+        return cls({n: REDUCTIONS[STEP_SCALARS[n].over_run](v) for n, v in steps.items() if v}, means(result))
 
     @classmethod
     def of_series(cls, runs: Iterable[Totals]) -> Totals:
         """Sums and extremes of several runs."""
         totals = [run.values for run in runs]
-        kinds = {name: scalar.over_series or scalar.over_run for name, scalar in REDUCED.items()}
+        kinds = {name: scalar.over_series or scalar.over_run for name, scalar in _reduced()}
         columns = {
             name: [values[name] for values in totals if name in values]
             for name, kind in kinds.items()
@@ -134,15 +138,16 @@ class Totals:
 
     def add(self, scalars: dict[str, float]) -> None:
         """Add the scalars of the next step."""
-        for name in REDUCED.keys() & scalars.keys():
-            values = [self.values[name]] if name in self.values else []
-            self.values[name] = REDUCTIONS[REDUCED[name].over_run]([*values, scalars[name]])
+        for name, scalar in _reduced():
+            if name in scalars:
+                values = [self.values[name]] if name in self.values else []
+                self.values[name] = REDUCTIONS[scalar.over_run]([*values, scalars[name]])
 
     def __str__(self) -> str:
         """``name=value`` of the last line of a run, then the means; 0 before the first step."""
         entries = [
             (scalar.label or name, self.values.get(name, 0), scalar.summary)
-            for name, scalar in REDUCED.items()
+            for name, scalar in _reduced()
             if scalar.summary and (name in self.values or not scalar.only)
             if not (name in MEANS and scalar.over_run == "last")
         ]

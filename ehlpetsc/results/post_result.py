@@ -31,7 +31,7 @@ class Dataset(NamedTuple):
 NOT_PASSED = "nan where a point did not pass the whole contact"
 DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "damage/s": Dataset("m", "body coordinate, x = s + distance travelled", "s"),
-    "damage/z_over_a": Dataset("1", "depth over half width", "z"),
+    "damage/z_over_a": Dataset("1", "depth over half-width", "z"),
     "damage/{n}": Dataset("1", f"fatigue damage of one pass; {NOT_PASSED}", "z s"),
     "damage/{n}_cycles": Dataset("1", "counted cycles of a pass", "z s"),
     "damage/{n}_peak_range": Dataset("Pa", "largest equivalent stress range", "z s"),

@@ -12,7 +12,6 @@ from ehlpetsc.results.means import filled_weights, mean
 if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result
 
-DEPTHS = [name.removeprefix("surface/") for name in OTHERS if name.startswith("surface/")][2:]
 SHIFTED_IN_A_ROW = 10  # consecutive run-in passes required with shifted surfaces
 RUN_IN = 0.01  # of the volume added by the first pass: surfaces are run in if a pass adds less
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
@@ -40,7 +39,8 @@ def heights(result: Result, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarr
     if f"{name}/s" not in result:
         return None
     s, z = result[f"{name}/s"][:], result[f"{name}/z"][:]
-    depths = [result[f"{name}/{depth}"][:] for depth in DEPTHS if f"{name}/{depth}" in result]
+    places = [key.replace("surface", name, 1) for key in OTHERS if key.startswith("surface/")]
+    depths = [result[place][:] for place in places[2:] if place in result]  # without s and z
     return s, z, z - sum(depths)
 
 

@@ -317,7 +317,7 @@ def _misfit(file: h5py.File, old: Result, step: int) -> str | None:
     """Reason why a file is not an earlier part of the same run; None if it is one."""
     last = max(old.steps("step"), default=None)
     if not np.array_equal(old.x, file["x"][:]):
-        return "it was computed on another mesh, or for another half width"
+        return "it was computed on another mesh, or for another half-width"
     if {*old.fields, *old.scalars} != {name for name in FIELDS if name in file} | set(file["steps"]):
         return f"it stores other quantities ({', '.join([*old.fields, *old.scalars])})"
     if last is not None and last < step:  # None: stopped before its first step

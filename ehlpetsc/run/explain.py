@@ -66,7 +66,7 @@ def explain(case: Case) -> str:
 def _contact(s: Scales) -> list[str]:
     return [
         f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
-        f"Hertz: half width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
+        f"Hertz: half-width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
     ]
 
 

@@ -40,7 +40,7 @@ MONITOR_OPTIONS = (
 )
 
 
-NODE_TOLERANCE = 1e-9  # relative: half widths nearer than this are equal
+NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 

@@ -26,9 +26,9 @@ PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the prop
 MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
 MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
-MAX_INLET = 100.0  # half widths: maximum distance of the proposed inlet
+MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
 LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
-MAX_EHL_FILM = 0.1  # half widths: films of EHL contacts are at most a hundredth of a half width
+MAX_EHL_FILM = 0.1  # half-widths: films of EHL contacts are at most a hundredth of a half-width
 MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a straight line counts as tilted
 MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
 

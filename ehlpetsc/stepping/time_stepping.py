@@ -21,7 +21,7 @@ from ehlpetsc.stepping.predictor import predict
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.stepping.steady_start import steady
 
-RAMP_LENGTH = 1.0  # half widths of entrained distance over which roughness at rest is ramped up
+RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
 MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
 MAX_STEP_RATIO = 2.0  # of successive steps; BDF2 is stable up to 2.4

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.roughness import Roughness
     from ehlpetsc.surfaces.samples import Samples
 
-MAX_SPACING = 0.25  # half widths between two points: wider than asperities
-MAX_RQ = 0.1  # half widths
+MAX_SPACING = 0.25  # half-widths between two points: wider than asperities
+MAX_RQ = 0.1  # half-widths
 MAX_RQ_RATIO = 30.0  # Rq over the elastic approach a^2/R, or over the film
 MAX_SLOPE = 1.0  # root mean square
 
@@ -27,7 +27,7 @@ def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) 
     Parameters
     ----------
     a, dx
-        Half width and spacing of the mesh [m].
+        Half-width and spacing of the mesh [m].
     approach, film
         a^2/R and expected film [m].
     """
@@ -35,10 +35,10 @@ def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) 
     slope = float(np.sqrt(np.mean((np.diff(samples.z) / np.diff(samples.X)) ** 2)))
     highest = min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film))
     if samples.spacing > MAX_SPACING * a:
-        fault = f"points {_um(samples.spacing)} apart beside a half width of {_um(a)}"
+        fault = f"points {_um(samples.spacing)} apart beside a half-width of {_um(a)}"
     elif rq > highest:
         fault = (
-            f"Rq {_um(rq)} beside a half width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
+            f"Rq {_um(rq)} beside a half-width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
         )
     elif slope > MAX_SLOPE:
         fault = f"slopes of {slope:.3g} in the root mean square"
@@ -82,7 +82,7 @@ def needed_points(profile: Profile, scales: Scales, unresolved: float) -> int:
 
 
 def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
-    """Travel of the faster surface [half widths] when a profile reaches and fills the contact.
+    """Travel of the faster surface [half-widths] when a profile reaches and fills the contact.
 
     Returns
     -------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
 
-RAMP_LENGTH = 0.1  # half widths at the beginning of a profile over which its heights increase from zero
+RAMP_LENGTH = 0.1  # half-widths at the beginning of a profile over which its heights increase from zero
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from support.running import run, settings
 
 from ehlpetsc.results.reader import read_result
 
-BEGIN = 2.5  # half widths travelled before
+BEGIN = 2.5  # half-widths travelled before
 NEAR = "--set mesh.near_field=8"  # what is best without the far field in the preconditioner
 LU, PARTS = "-pc_type lu", "-pc_type bjacobi -sub_pc_type"
 ONE_RANK = [
@@ -88,7 +88,7 @@ def main(ranks, points, steps, repeats):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--ranks", type=int, default=1)
-    parser.add_argument("--points", type=int, default=200, help="per half width (default: 200)")
+    parser.add_argument("--points", type=int, default=200, help="per half-width (default: 200)")
     parser.add_argument("--steps", type=int, default=100)
     parser.add_argument("--repeats", type=int, default=3)
     main(**vars(parser.parse_args()))

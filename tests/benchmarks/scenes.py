@@ -56,7 +56,7 @@ def scene(name, *overrides):
 
 
 def rough(points, inlet=-2.5, *more):
-    """Full film at so many points a half width, stepped until roughness fills the contact's front half."""
+    """Full film at so many points a half-width, stepped until roughness fills the contact's front half."""
     mesh = (f"mesh.points_per_half_width={points}", f"mesh.inlet={inlet}")
     made = scene("table1_rough", *FULL_FILM, *mesh, *more)
     step = made.step

@@ -13,7 +13,7 @@ def westergaard_full_pressure(amplitude, wavelength, modulus):
 
 
 def westergaard_half_width(mean_pressure, amplitude, wavelength, modulus):
-    r"""Half width c [m] of each contact of a wavy surface, :math:`\bar p/p^*=\sin^2(\pi c/l)`."""
+    r"""Half-width c [m] of each contact of a wavy surface, :math:`\bar p/p^*=\sin^2(\pi c/l)`."""
     full = westergaard_full_pressure(amplitude, wavelength, modulus)
     return wavelength / np.pi * np.arcsin(np.sqrt(np.minimum(mean_pressure / full, 1.0)))
 
@@ -32,7 +32,7 @@ def westergaard_pressure(x, mean_pressure, amplitude, wavelength, modulus):
 
 
 def quartic_pressure(x, a, radius, modulus, quartic):
-    r"""Pressure [Pa] of the dry profile :math:`x^2/(2R)+Bx^4` in contact over half width a.
+    r"""Pressure [Pa] of the dry profile :math:`x^2/(2R)+Bx^4` in contact over half-width a.
 
     :math:`p=\left[E'/(4R)+E'B(x^2+a^2/2)\right]\sqrt{a^2-x^2}`: the two powers of the Steuermann profiles
     (Johnson 1985, section 5.3) added.

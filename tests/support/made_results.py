@@ -42,7 +42,7 @@ DIRECT = (*of_every_case(FIELDS), "void_fraction")  # what a direct contact stor
 
 
 def fields_at(x, time, viscosity):
-    """Fields of a Hertz pressure with a ripple that travels through it, and its film; `x` in half widths."""
+    """Fields of a Hertz pressure with a ripple that travels through it, and its film; `x` in half-widths."""
     inside = np.sqrt(np.maximum(1 - x**2, 0))
     ripple = np.cos(2 * np.pi * (x - time / 40e-6) * 3)
     pressure = P0 * inside * (1 + 0.4 * inside * ripple)

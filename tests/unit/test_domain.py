@@ -82,7 +82,7 @@ def test_mesh_without_a_film_is_refused():
 def test_contact_wider_than_the_domain_is_refused():
     soft = {"contact.model": "mixed", "contact.yield_pressure": 0.25e9}
     (line,) = of(soft | {"mesh.inlet": -3.0, "mesh.outlet": 3.0}, about=domain_faults)
-    assert "contact.yield_pressure = 0.25 GPa " in line and " 6.28 half widths " in line and " has 6;" in line
+    assert "contact.yield_pressure = 0.25 GPa " in line and " 6.28 half-widths " in line and " has 6;" in line
     assert of(soft | {"mesh.outlet": 4.0, "mesh.inlet": -4.0}, about=domain_faults) == []
 
 

@@ -1,5 +1,6 @@
 """An effect with a scalar of state and a key is one file and one line; effects on oil and friction."""
 
+import importlib.util
 import re
 import shutil
 from dataclasses import replace
@@ -11,51 +12,52 @@ from support import CASES
 from support.driving import Scene
 from support.running import PYTHON, SCRIPT, called
 
+import ehlpetsc
 from ehlpetsc.effects.effect import Effect
 
 PAGE = CASES / "own_laws.md"
 
 
-def call(folder, *words, **names):
-    """Output of Python in a folder with the code of the page."""
+@pytest.fixture
+def folder(tmp_path):
+    """Folder with the code of the page and its case."""
     codes = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    for name, text in zip(("my_laws", "my_effects", "script"), codes, strict=True):
-        law = '"fluid.law": "saturating",'
-        (folder / f"{name}.py").write_text(text.replace(law, "") if name == "script" else text)
-    shutil.copy(CASES / "table1_smooth.toml", folder)
-    done = called([PYTHON, *words], folder, SCRIPT | names | {"XDG_CACHE_HOME": str(folder)})
+    for name, text in zip(("my_oil", "my_supply", "script"), codes, strict=True):
+        (tmp_path / f"{name}.py").write_text(text)
+    shutil.copy(CASES / "table1_smooth.toml", tmp_path)
+    return tmp_path
+
+
+def call(folder, *words, **names):
+    done = called([PYTHON, *words], folder, SCRIPT | names)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-def test_effect_of_the_page_works_as_it_is(tmp_path):
-    """The supply falls by the loss of the key, the film with it."""
-    of_user = {"EHLPETSC_EFFECTS": "my_effects"}
-    printed = call(tmp_path, "script.py", **of_user).rpartition("supply ")[2]
+def test_law_and_effect_of_the_page_work_as_they_are(folder):
+    """The supply falls by the loss of the key, the film with it; commands read the result by the variable."""
+    printed = call(folder, "script.py").rpartition("supply ")[2]
     supply, film = map(float, re.findall(r"\d\.\d+", printed))
     assert supply == pytest.approx(0.7**2, rel=0.05)  # the faster surface travels 1.125 as far
     assert film < 0.995
-    assert "starving.loss: in a half-width" in call(tmp_path, "-m", "ehlpetsc", "keys", "loss", **of_user)
-    assert "starved.h5" in call(tmp_path, "-m", "ehlpetsc", "summary", "starved.h5", **of_user)
+    both = "from my_oil import LAWS\nfrom my_supply import EFFECTS\n"
+    (folder / "both.py").write_text(both)
+    assert "starved.h5" in call(folder, "-m", "ehlpetsc", "summary", "starved.h5", EHLPETSC_OWN="both")
+    listed = call(folder, "-m", "ehlpetsc", "keys", "starving", EHLPETSC_OWN="my_supply")
+    assert "loss: in a half-width" in listed
 
 
-@pytest.mark.slow
-def test_law_of_the_page_works_as_it_is(tmp_path):
-    """A law that saturates far above p0 is that of Barus; of the loops the law alone is compiled."""
-    code = "from ehlpetsc.physics import laws; kind = list(laws.LAWS).index('saturating')\n"
-    code += "print(*laws.ln_viscosity((kind, laws.padded((1.5e-8, 2e9))), 1e9, 300.0))"
-    found = call(tmp_path, "-c", code, EHLPETSC_LAWS="my_laws").split()
-    assert list(map(float, found)) == pytest.approx([10.0, 1.5e-8 / 1.5**2, 0.0])
-    coarse = ["mesh.points_per_half_width=20", "mesh.inlet=-2.0"]
-    words = ["-m", "ehlpetsc", "table1_smooth.toml"]
-    films = []
-    for law in ("barus", "saturating"):
-        keys = [*coarse, f"fluid.law={law}"] + ["fluid.saturation_pressure=1e12"] * (law == "saturating")
-        sets = [word for key in keys for word in ("--set", key)]
-        uncompiled = {"EHLPETSC_LAWS": "my_laws", "NUMBA_DISABLE_JIT": "1"}
-        printed = call(tmp_path, *words, "-o", f"{law}.h5", *sets, **uncompiled)
-        films.append(float(re.search(r"h_min=(\S+)", printed)[1]))
-    assert films[1] == pytest.approx(films[0], rel=0.01) and films[1] != films[0]
+def test_law_of_the_page_that_saturates_far_above_p0_is_that_of_barus(folder):
+    spec = importlib.util.spec_from_file_location("my_oil", folder / "my_oil.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    coarse = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}
+    smooth = CASES / "table1_smooth.toml"
+    barus = ehlpetsc.solve(ehlpetsc.load(smooth, coarse | {"fluid.law": "barus"}))
+    law = coarse | {"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}
+    found = ehlpetsc.solve(ehlpetsc.load(smooth, law, laws=module.LAWS))
+    np.testing.assert_allclose(found.film_thickness, barus.film_thickness, rtol=0.01)
+    assert (found.film_thickness != barus.film_thickness).any()
 
 
 class Additive(Effect):

@@ -349,7 +349,7 @@ def test_impossible_geometry_is_refused_in_one_line(change, parts, case, capsys)
 
 
 def test_one_modulus_for_both_flanks_gives_the_whole_path(case):
-    """The run was one half width long."""
+    """The run was one half-width long."""
     alike = {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.3}
     assert load(case(), alike).time.travel == load(case()).time.travel > 10.0
 

@@ -30,7 +30,7 @@ def test_every_key_of_the_cases_is_listed():
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("contact.load", "load: load per length of contact, w .*; a number >= 0.001"),
+        ("contact.load", "load: load per length of contact, w, .*; a number >= 0.001"),
         ("fluid.viscosity", "required without grade"),
         ("asperity_height", 'contact.asperity_height: rms .* needs contact.model = "mixed"'),
         ("density", "fluid.grade.density: .*\n *heat.density: "),

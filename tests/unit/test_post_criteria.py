@@ -196,7 +196,7 @@ def test_dang_van_is_one_at_both_limits():
 
 
 def test_dang_van_under_hertz_reaches_one_at_the_iso_281_limit():
-    """The default limit is read from 1.5 GPa of ISO 281: half a half width below the contact U is 1."""
+    """The default limit is read from 1.5 GPa of ISO 281: half a half-width below the contact U is 1."""
     x = np.linspace(-6, 6, 1201)
     pressure = 1.5e9 * np.sqrt(np.clip(1 - x**2, 0, None))
     use = [dang_van(*stress(x, z, pressure, None, 0.3), 0.3) for z in (0.0, 0.3, 0.5, 0.7)]

@@ -101,7 +101,7 @@ def test_command_overrides_rule_and_steel(tmp_path, capsys):
 
 
 def test_few_points_are_a_warning(tmp_path, capsys):
-    """Of 6.05 half widths of travel surface 2 covers 4.03: one node more than the mesh is wide."""
+    """Of 6.05 half-widths of travel surface 2 covers 4.03: one node more than the mesh is wide."""
     scene = Scene(per_width=20, ratio=0.4, travel=6.05)
     path = write(tmp_path / "a.h5", scene, depths=(0.0,))
     assert main([str(path)]) == 0

@@ -19,7 +19,7 @@ from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
 
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
-A = 1e-3  # half width of the domains made here, m
+A = 1e-3  # half-width of the domains made here, m
 
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):

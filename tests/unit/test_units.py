@@ -48,7 +48,7 @@ PLAUSIBLE = {
     "minutes": {"2 min": 2.0, "30 s": 0.5, "1 h": 60.0},
     "": {"20 %": 0.2},
 }
-WITHOUT = {"half widths", "boundary films"}  # numbers only
+WITHOUT = {"half-widths", "boundary films"}  # numbers only
 
 
 @pytest.mark.parametrize("unit", PLAUSIBLE)

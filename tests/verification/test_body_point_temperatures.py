@@ -30,7 +30,7 @@ CHANGES = {
     "output.fields": FIELDS,
     "post.depths": [0.0],
 }
-BEFORE = 0.2  # half widths outside the mesh at time 0: what came before does not reach such a point
+BEFORE = 0.2  # half-widths outside the mesh at time 0: what came before does not reach such a point
 EVERY = 6  # frames between those at which a temperature is recomputed
 GAUSS = np.polynomial.legendre.leggauss(3)
 

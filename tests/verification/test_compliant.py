@@ -16,7 +16,7 @@ from ehlpetsc.physics.asperities import GAMMA, LayerLaw, asperity_pressures, asp
 from ehlpetsc.surfaces.samples import samples
 
 SIGMA = 20e-9
-A = 0.335682e-3  # m, half width
+A = 0.335682e-3  # m, half-width
 RESOLVED = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "time.travel": 5.0}  # full from 3.2 on
 SMOOTH = {"surface": None, "time": None}
 

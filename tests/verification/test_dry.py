@@ -1,6 +1,6 @@
 r"""The bound without a film: exact solutions of dry contact, with the observed orders of convergence.
 
-Westergaard's wavy surface is periodic, a cylinder is not: ten waves to the half width of a smooth cylinder.
+Westergaard's wavy surface is periodic, a cylinder is not: ten waves to the half-width of a smooth cylinder.
 Within the central wave the mean pressure of a cylinder falls by :math:`(l/2a)^2/2`, a part of 0.0013, towards
 its ends, by 0.0004 in the mean. The pressure that counts is the one found, averaged over that wave, because
 waves carry some load further out than Hertz has it, 1 to 2 % here; their amplitude is corrected for
@@ -16,7 +16,7 @@ from support.driving import Scene
 from ehlpetsc.physics.exact_solutions import hertz_gap, hertz_pressure
 from ehlpetsc.physics.scales import Scales
 
-WAVES = 10  # to a half width
+WAVES = 10  # to a half-width
 DOMAIN = ("mesh.inlet=-1.3", "mesh.outlet=1.3")  # 13 waves either side: a crest at x = 0
 MAX_IT = 300  # edges of contacts move by a few nodes an iteration
 
@@ -48,9 +48,9 @@ def test_hertz_with_its_order():
 
 
 def parabola_and_quartic(points, width, folder):
-    """Errors of pressure over its maximum, mean and within 0.9 of the contact, and the contact's half width.
+    """Errors of pressure over its maximum, mean and within 0.9 of the contact, and the contact's half-width.
 
-    The load is Table 1's, of Hertz half width a; the quartic makes the contact's half width `width` a.
+    The load is Table 1's, of Hertz half-width a; the quartic makes the contact's half-width `width` a.
     """
     s = Scene("dry_hertz.toml", mesh(points)).scales
     contact = width * s.a

@@ -9,9 +9,9 @@ import pytest
 from support.convergence import observed_order
 from support.driving import Scene
 
-TRAVEL = 2.5  # half widths, of the mean speed
+TRAVEL = 2.5  # half-widths, of the mean speed
 STEPS = (40, 80, 160, 320)
-MESHES = (32, 64, 128, 256)  # points per half width
+MESHES = (32, 64, 128, 256)  # points per half-width
 SCENE = (
     "contact.load=130e3",
     "motion.entrainment_speed=25",

@@ -1,6 +1,6 @@
 """Smooth Newtonian films of an incompressible Barus fluid against dimensionless reference values.
 
-Points per half width and what they give, H_min and H_c:
+Points per half-width and what they give, H_min and H_c:
 
 ====  ================  =================
 a/dx  M = 20, L = 10    M = 100, L = 11
@@ -11,7 +11,7 @@ a/dx  M = 20, L = 10    M = 100, L = 11
 800   3.9658, 5.2616    3.4839, 4.6543
 ====  ================  =================
 
-With the inlet at -8 instead of -4 half widths the lighter load gives 0.26 % more film, the heavier 0.03 %.
+With the inlet at -8 instead of -4 half-widths the lighter load gives 0.26 % more film, the heavier 0.03 %.
 """
 
 import numpy as np

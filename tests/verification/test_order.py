@@ -1,6 +1,6 @@
 """Orders of accuracy in space, in time and in both on a full-film transient.
 
-A ridge of 0.1 um, 0.8 half widths wide, on the slower surface enters a film of 0.53 um and is followed until
+A ridge of 0.1 um, 0.8 half-widths wide, on the slower surface enters a film of 0.53 um and is followed until
 it fills the contact. Compared are successive refinements by two, at the nodes of the coarsest mesh within
 -1 <= x/a <= 0.5, which leaves out the rupture of the film near x = 1.15 a; norm: root mean square.
 
@@ -22,9 +22,9 @@ import pytest
 from support.convergence import observed_order
 from support.driving import Scene
 
-COARSEST = 8  # points per half width
+COARSEST = 8  # points per half-width
 WINDOW = (-1.0, 0.5)
-TRAVEL = 2.5  # half widths, of the mean speed
+TRAVEL = 2.5  # half-widths, of the mean speed
 SCENE = (
     "contact.load=130e3",
     "motion.entrainment_speed=25",

@@ -5,6 +5,10 @@ Bounds are wide enough for any machine element in SI units and narrow enough to 
 
 from __future__ import annotations
 
+import importlib
+import os
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +19,9 @@ from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
 from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS
+from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.quantities import add_quantities
+from ehlpetsc.physics.laws import LAWS, Law
 
 CONDITIONS = (CONTACT, FLUID, MOTION, MESH, SURFACE, TIME, OPERATION, GEARS)
 TABLES = (*CONDITIONS, *(effect.table for effect in EFFECTS if effect.table), OUTPUT, POST, LIFE, SERIES)
@@ -77,6 +84,18 @@ CASE = KeyTable(
 )
 
 
+def extend(laws: Mapping[str, Law], effects: Iterable[type[Effect]]) -> None:
+    """Add viscosity laws and effects of the user, with their keys and quantities, to this process."""
+    LAWS.update(laws)
+    for law in laws.values():
+        FLUID.keys.update(law.keys)
+    for effect in effects:
+        EFFECTS[:] = [*(kind for kind in EFFECTS if kind.name != effect.name), effect]
+        add_quantities(effect)
+        if effect.table:
+            CASE.keys[effect.table.name] = effect.table.key
+
+
 def table_of(name: str) -> KeyTable | None:
     """Table by its dotted name, "" for the top."""
     table: KeyTable | None = CASE
@@ -91,3 +110,9 @@ def key_of(name: str) -> Key | None:
     above, _, last = str(name).rpartition(".")
     table = table_of(above)
     return table.keys.get(last) if table else None
+
+
+if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
+    sys.path.append(os.getcwd())
+    own = importlib.import_module(name)
+    extend(getattr(own, "LAWS", {}), getattr(own, "EFFECTS", ()))

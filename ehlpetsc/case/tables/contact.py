@@ -41,52 +41,52 @@ def _complete(contact: Contact) -> dict[str, Any]:
 
 KEYS = {
     "radius": Required(
-        "radius of relative curvature, 1/R = 1/R1 + 1/R2", "m", 1e-9, 100, replaced_by=CONDITIONS
+        "radius of relative curvature, `1/R = 1/R1 + 1/R2`", "m", 1e-9, 100, replaced_by=CONDITIONS
     ),
     "load": Required(
-        "load per length of contact, w = integral of p dx; a = sqrt(8 w R/(pi E')), p0 = 2 w/(pi a)",
+        "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`",
         *("N/m", 1e-3, 1e10),
         replaced_by=CONDITIONS,
     ),
     "material": Key("steel: elastic, fatigue and yield constants", choices=tuple(STEELS), many="both"),
     "youngs_modulus": Required(
-        "Young's modulus, 2/E' = (1 - nu1^2)/E1 + (1 - nu2^2)/E2",
+        "Young's modulus, `2/E' = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`",
         "Pa",
         1e6,
         1e18,
         many="both",
         replaced_by=("material",),
     ),
-    "poisson_ratio": Required("Poisson's ratio nu", "", 0, 0.5, many="both", replaced_by=("material",)),
+    "poisson_ratio": Required("Poisson's ratio `nu`", "", 0, 0.5, many="both", replaced_by=("material",)),
     "boundary_friction": Key(
-        "friction coefficient of the solids, |q| = boundary_friction p_c", "", 0, 2, default=0.0
+        "friction coefficient of the solids, `|q| = boundary_friction p_c`", "", 0, 2, default=0.0
     ),
     "model": Key(
-        "direct: where h = 0 the Reynolds equation is dropped; mixed: oil and solids share the load",
+        "direct: where `h = 0` the Reynolds equation is dropped; mixed: oil and solids share the load",
         choices=("direct", "mixed"),
         default="direct",
-        equation="direct: h >= 0, F >= 0, h F = 0, F the residual of Reynolds; "
-        "mixed: p = p_oil + p_c, h >= h_b, p_c >= 0, p_c (h - h_b) = 0",
+        equation="direct: `h >= 0`, `F >= 0`, `h F = 0`, `F` the residual of Reynolds; "
+        "mixed: `p = p_oil + p_c`, `h >= h_b`, `p_c >= 0`, `p_c (h - h_b) = 0`",
     ),
     "asperity_height": Key(
         'rms height of the roughness finer than the mesh; "measured": that which short_cutoff removes',
         *("m", 1e-11, 1e-6),
         needs=(MIXED,),
-        equation="p_c = beta E* (exp(3 (h - h_a)/(0.5 sigma)) - 1 + (beta E*/H)^3)^(-1/3), E* = E'/2, "
-        "sigma = asperity_height, h_a = adsorbed_film, H = asperity_hardness",
+        equation="`p_c = beta E* (exp(3 (h - h_a)/(0.5 sigma)) - 1 + (beta E*/H)^3)^(-1/3)`, `E* = E'/2`, "
+        "`sigma = asperity_height`, `h_a = adsorbed_film`, `H = asperity_hardness`",
     ),
     "asperity_stiffness": Key(
-        "beta of that law [2 pi sigma/L, L = short_cutoff, or eight nodes without one]",
+        "`beta` of that law [`2 pi sigma/L`, `L = short_cutoff`, or eight nodes without one]",
         *("", 1e-4, 1e4),
         needs=(LAYER,),
     ),
     "asperity_slope": Key(
-        "rms slope s of that roughness [0.1], real area of contact A/A0 = erf(sqrt(pi) p_c/(E* s))",
+        "rms slope `s` of that roughness [0.1], real area of contact `A/A0 = erf(sqrt(pi) p_c/(E* s))`",
         *("", 1e-4, 10),
         needs=(LAYER,),
     ),
     "asperity_hardness": Key(
-        "hardness H of the asperities, their pressure in full contact; left out: elastic",
+        "hardness `H` of the asperities, their pressure in full contact; left out: elastic",
         *("Pa", 1e6, 1e18),
         needs=(LAYER,),
     ),
@@ -105,7 +105,7 @@ KEYS = {
         *("Pa", 1e6, 1e18),
         many="both",
         needs=(MIXED,),
-        equation="p <= p_y, d >= 0, (p_y - p) d = 0, d the increment of plastic deformation",
+        equation="`p <= p_y`, `d >= 0`, `(p_y - p) d = 0`, `d` the increment of plastic deformation",
     ),
 }
 CONTACT = KeyTable("contact", "solids and load", KEYS, required=True, values=Contact, complete=_complete)
@@ -121,8 +121,8 @@ GRADE = KeyTable(
         "v40": Required(
             "kinematic viscosity at 40 C",
             *("m^2/s", None, 0.1, 2e-6),
-            equation="lg lg(nu + 0.7) = A - B lg T, nu in mm^2/s (ASTM D341); viscosity = nu density; "
-            "secant of ln(eta) over 2000 bar 9.904 nu^0.139 /GPa (Gold et al. 2001)",
+            equation="`lg lg(nu + 0.7) = A - B lg T`, `nu` in mm^2/s (ASTM D341); viscosity = `nu` density; "
+            "secant of `ln eta` over 2000 bar `9.904 nu^0.139` /GPa (Gold et al. 2001)",
         ),
         "v100": Required("kinematic viscosity at 100 C", "m^2/s", None, 0.1, 2e-6, below="v40"),
         "density": Required(
@@ -144,32 +144,32 @@ KEYS = {
         200,
         700,
     ),
-    "law": Required("viscosity law", choices=tuple(LAWS), equation=VISCOSITY, replaced_by=("oil",)),
-    "pressure_viscosity": Key("alpha; left out: of grade, or of a law that has it", "1/Pa", 1e-12, 1e-6),
+    "law": Required("viscosity law", choices=LAWS, equation=VISCOSITY, replaced_by=("oil",)),
+    "pressure_viscosity": Key("`alpha`; left out: of grade, or of a law that has it", "1/Pa", 1e-12, 1e-6),
     "density": Required("density law", choices=tuple(DENSITY_LAWS), equation=DENSITY, replaced_by=("oil",)),
     **{name: key for laws in (LAWS, DENSITY_LAWS) for law in laws.values() for name, key in law.keys.items()},
-    "eyring_stress": Key("tau0, du/dz = (tau0/eta) sinh(tau/tau0); left out: Newtonian", "Pa", 1e3, 1e12),
+    "eyring_stress": Key("`tau0`, `du/dz = (tau0/eta) sinh(tau/tau0)`; left out: Newtonian", "Pa", 1e3, 1e12),
     "eyring_stress_pressure": Key(
-        "b of tau0 (1 + b p) (1 + c (T - T0))", "1/Pa", 0, 1e-7, needs=("fluid.eyring_stress",)
+        "`b` of `tau0 (1 + b p) (1 + c (T - T0))`", "1/Pa", 0, 1e-7, needs=("fluid.eyring_stress",)
     ),
     "eyring_stress_temperature": Key(
-        "c of it, 1/T0 by Eyring's theory; the pressure flow has tau0 at T0",
+        "`c` of it, `1/T0` by Eyring's theory; the pressure flow has `tau0` at `T0`",
         *("1/K", -0.02, 0.02),
         needs=("fluid.eyring_stress",),
     ),
     "carreau_stress": Key(
-        "G of Carreau's law; left out: Eyring's or Newtonian",
+        "`G` of Carreau's law; left out: Eyring's or Newtonian",
         *("Pa", 1e3, 1e12),
         needs=("fluid.eyring_stress left out",),
-        equation="tau = eta g (1 + (eta g/G)^a)^((n - 1)/a), g the shear rate",
+        equation="`tau = eta g (1 + (eta g/G)^a)^((n - 1)/a)`, `g` the shear rate",
     ),
-    "carreau_exponent": Key("n of Carreau's law", gt=0.2, lt=1, needs=("fluid.carreau_stress",)),
-    "carreau_width": Key("a of it; Carreau: 2, otherwise Yasuda's", ge=0.5, le=10, default=2.0),
+    "carreau_exponent": Key("`n` of Carreau's law", gt=0.2, lt=1, needs=("fluid.carreau_stress",)),
+    "carreau_width": Key("`a` of it; Carreau: 2, otherwise Yasuda's", ge=0.5, le=10, default=2.0),
     "limiting_shear": Key(
         "limiting shear stress over pressure",
         *("", 1e-4, 1),
-        equation="mean shear stress (tau^-4 + (limiting_shear p)^-4)^(-1/4), tau without it",
+        equation="mean shear stress `(tau^-4 + (limiting_shear p)^-4)^(-1/4)`, `tau` without it",
     ),
-    "inlet_film": Key("h (1 - theta) at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
+    "inlet_film": Key("`h (1 - theta)` at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
 }
 FLUID = KeyTable("fluid", "left out: dry contact", KEYS, complete=lambda fluid: completed(vars(fluid)))

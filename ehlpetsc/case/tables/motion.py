@@ -21,10 +21,12 @@ COLUMNS = {  # allowed names of the columns of a file, by key
 
 MOTION_KEYS = {
     "entrainment_speed": Required(
-        "mean speed u = (u1 + u2)/2, not zero", "m/s", 1e-9, 1e3, replaced_by=CONDITIONS
+        "mean speed `u = (u1 + u2)/2`, not zero", "m/s", 1e-9, 1e3, replaced_by=CONDITIONS
     ),
     "slide_roll_ratio": Key(
-        "slide/roll ratio xi = (u1 - u2)/u; u1 = u (1 + xi/2), u2 = u (1 - xi/2)", "", -100, 100, default=0.0
+        "slide/roll ratio `xi = (u1 - u2)/u`; `u1 = u (1 + xi/2)`, `u2 = u (1 - xi/2)`",
+        *("", -100, 100),
+        default=0.0,
     ),
 }
 MOTION = KeyTable("motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS)
@@ -90,7 +92,7 @@ GEARS_KEYS = {
     "helix_angle": Key(
         "at the reference circle; solved is the slice in the middle", "degrees", 0, 45, default=0.0
     ),
-    "profile_shift": Key("x1 and x2, of the play-free pair (DIN 3960)", "", -2, 4, many="two"),
+    "profile_shift": Key("`x1` and `x2`, of the play-free pair (DIN 3960)", "", -2, 4, many="two"),
     "addendum": Key("of the basic rack, over the module", "", 0.1, 2, default=1.0),
     "tip_clearance": Key("to the root of the other gear, over the module", "", 0, 1, default=0.25),
     "centre_distance": Key("left out: by profile_shift", "m", 1e-4, 100),
@@ -105,7 +107,7 @@ GEARS_KEYS = {
         choices=tuple(RULES),
     ),
     "mesh_stiffness": Key(
-        "c' of one tooth pair per face width; left out: by ISO 6336-1, steel", "Pa", 1e6, 1e12
+        "`c'` of one tooth pair per face width; left out: by ISO 6336-1, steel", "Pa", 1e6, 1e12
     ),
     "load_file": Key(
         "CSV table beside the case file: load of a pair over the path, from a tooth contact analysis, "
@@ -145,17 +147,17 @@ def _check_node_count(mesh: Mesh) -> dict[str, Any]:
 
 
 MESH_KEYS = {
-    "inlet": Required("first node", "half widths", -100, lt=-1),
-    "outlet": Required("last node", "half widths", gt=1, le=100),
-    "points_per_half_width": Required("nodes a/dx, at most 200000 nodes in all", "", 4, 100_000, kind=int),
+    "inlet": Required("first node", "half-widths", -100, lt=-1),
+    "outlet": Required("last node", "half-widths", gt=1, le=100),
+    "points_per_half_width": Required("nodes `a/dx`, at most 200000 nodes in all", "", 4, 100_000, kind=int),
     "near_field": Key("nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3),
 }
 MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_check_node_count)
 
 TIME_KEYS = {
     "travel": Required(
-        "distance travelled by the faster surface, travel a = u_max t",
-        "half widths",
+        "distance travelled by the faster surface, `travel a = u_max t`",
+        "half-widths",
         1e-6,
         1e5,
         replaced_by=CONDITIONS,
@@ -165,7 +167,7 @@ TIME_KEYS = {
         choices=("smooth", "rough"),
         default="smooth",
     ),
-    "courant": Key("Courant number u_max dt/dx", "", 1e-3, 100, default=0.5),
+    "courant": Key("Courant number `u_max dt/dx`", "", 1e-3, 100, default=0.5),
     "passes": Key("passes of the same stretches of both surfaces", "", 1, 10_000, kind=int, default=1),
     "pass_shift": Key("shift of the profile of surface 2 from pass to pass", "m", -1, 1, default=0.0),
 }

@@ -16,7 +16,7 @@ MAX_DEPTH, MAX_RESIDUAL = 100.0, 1e10  # z/a, Pa
 
 OUTPUT_KEYS = {
     "every": Key("steps between stored fields", "", 1, 10**9, kind=int, default=1),
-    "fields": Key("stored fields", choices=tuple(FIELDS), many="list", default=STORED),
+    "fields": Key("stored fields", choices=FIELDS, many="list", default=STORED),
     "precision": Key("of the stored fields", choices=("float64", "float32"), default="float64"),
     "thin_film": Key("mixed contact: films below it count as thin", "boundary films", 1, 1000, default=2.0),
     "checkpoint": Key("time between restart files", "minutes", gt=0, le=1e5, default=10.0),
@@ -82,18 +82,18 @@ def _residual_rows(post: Values) -> dict[str, Any]:
 
 
 POST_KEYS = {
-    "depths": Key("z/a", "half widths", 0, MAX_DEPTH, many="list"),
+    "depths": Key("z/a", "half-widths", 0, MAX_DEPTH, many="list"),
     "b": Key(
         "fatigue strength exponent",
         gt=-2,
         lt=0,
-        equation="de/2 = (sigma_f'/E) (2N)^b + eps_f' (2N)^c, D = sum of 1/N",
+        equation="`de/2 = (sigma_f'/E) (2N)^b + eps_f' (2N)^c`, `D` the sum of `1/N`",
     ),
     "c": Key("fatigue ductility exponent", gt=-5, lt=0),
-    "cyclic_hardening": Key("n' of de = ds/E + 2 (ds/(2 K'))^(1/n')", gt=0, lt=1),
-    "fatigue_strength": Key("sigma_f'", *STRENGTH),
-    "fatigue_ductility": Key("eps_f'", "", 1e-6, 100),
-    "cyclic_strength": Key("K'; left out: sigma_f'/eps_f'^n'", *STRENGTH),
+    "cyclic_hardening": Key("`n'` of `de = ds/E + 2 (ds/(2 K'))^(1/n')`", gt=0, lt=1),
+    "fatigue_strength": Key("`sigma_f'`", *STRENGTH),
+    "fatigue_ductility": Key("`eps_f'`", "", 1e-6, 100),
+    "cyclic_strength": Key("`K'`; left out: `sigma_f'/eps_f'^n'`", *STRENGTH),
     "strain": Key(
         "rule from elastic stress ranges to strains; direct: none, as in the paper",
         choices=("neuber", "glinka", "direct"),
@@ -108,17 +108,17 @@ POST_KEYS = {
         "[[z/a, Pa], ...], stress along the surface, depths increasing", kind=object, many="list"
     ),
     "normal_sensitivity": Key(
-        "k of Fatemi and Socie",
+        "`k` of Fatemi and Socie",
         *("", 0, 10),
-        equation="dgamma/2 (1 + k sigma_n/sigma_y) = (tau_f'/G) (2N)^b + gamma_f' (2N)^c",
+        equation="`dgamma/2 (1 + k sigma_n/sigma_y) = (tau_f'/G) (2N)^b + gamma_f' (2N)^c`",
     ),
-    "yield_strength": Key("sigma_y of Fatemi and Socie; left out: cyclic, 0.2 %", *STRENGTH),
+    "yield_strength": Key("`sigma_y` of Fatemi and Socie; left out: cyclic, 0.2 %", *STRENGTH),
     "torsion_limit": Key(
-        "tau_w of Dang Van",
+        "`tau_w` of Dang Van",
         *STRENGTH,
-        equation="U = max of (tau + 3 (tau_w/sigma_w - 1/2) max(sigma_H, 0))/tau_w",
+        equation="`U`, the maximum of `(tau + 3 (tau_w/sigma_w - 1/2) max(sigma_H, 0))/tau_w`",
     ),
-    "bending_limit": Key("sigma_w of Dang Van", *STRENGTH),
+    "bending_limit": Key("`sigma_w` of Dang Van", *STRENGTH),
 }
 POST = KeyTable(
     "post",

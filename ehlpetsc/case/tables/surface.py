@@ -20,17 +20,17 @@ def _kinds(*kinds: str, text: str, keys: dict[str, Key]) -> dict[str, KeyTable]:
 
 GROUND_KEYS = {
     "ra": Required("mean height deviation", "m", 1e-12, 1e-3),
-    "correlation": Required("l of the autocorrelation exp(-(lag/l)^2)", *LENGTH),
+    "correlation": Required("`l` of the autocorrelation `exp(-(lag/l)^2)`", *LENGTH),
     "skewness": Key("negative: plateaus with valleys", "", -3, 3, default=0.0),
     "seed": Required("of the random numbers", "", 0, 2**32 - 1, kind=int),
 }
 WAVE_KEYS = {
     "amplitude": Required("half of the peak to valley height", *HEIGHT),
-    "wavelength": Required("crest to crest; sine: z = amplitude cos(2 pi X/wavelength)", *LENGTH),
+    "wavelength": Required("crest to crest; sine: `z = amplitude cos(2 pi X/wavelength)`", *LENGTH),
 }
 BUMP_KEYS = {
     "amplitude": Required("height of the ridge, depth of the dent", *HEIGHT),
-    "wavelength": Required("full width at 1/e, exp(-(2 (X - position)/wavelength)^2)", *LENGTH),
+    "wavelength": Required("full width at 1/e, `exp(-(2 (X - position)/wavelength)^2)`", *LENGTH),
     "position": Key("abscissa of the centre; left out: 2 wavelengths", "m", 0, 10),
 }
 SYNTHETIC = (
@@ -75,9 +75,11 @@ KEYS = {
     "z": Key("heights in unit, here instead of in a file", "", -1e9, 1e9, many="list", min_items=4),
     "x": Key("of the heights z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
     "level": Key("subtract the least-squares line", kind=bool, default=False),
-    "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave L loses 2^-(cutoff/L)^2 of it", *LENGTH),
+    "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave `L` loses `2^(-(cutoff/L)^2)` of it", *LENGTH),
     "short_cutoff": Key(
-        "Gaussian low-pass, ISO 3274: a wave L keeps 2^-(short_cutoff/L)^2 of it", *LENGTH, below="cutoff"
+        "Gaussian low-pass, ISO 3274: a wave `L` keeps `2^(-(short_cutoff/L)^2)` of it",
+        *LENGTH,
+        below="cutoff",
     ),
     "flip": Key("run the profile from its other end", kind=bool, default=False),
     "synthetic": Key('{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }', kind=dict, variants=SYNTHETIC),

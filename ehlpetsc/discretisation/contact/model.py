@@ -4,7 +4,7 @@ A model maps the unknowns (q, w) of a node to pressures, film and separation. So
 outputs call the methods below and depend on no single model; a new law of contact is one module with one
 subclass, and a line in :func:`ehlpetsc.discretisation.contact.contact_model`.
 
-Lengths in x are in half widths, films in a^2/R, pressures in p0.
+Lengths in x are in half-widths, films in a^2/R, pressures in p0.
 """
 
 from __future__ import annotations

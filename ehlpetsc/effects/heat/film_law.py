@@ -121,7 +121,7 @@ def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> Fi
     law = viscosity_law(fluid, heat)
     return FilmLaw(
         tuple(law),
-        is_linear_in_temperature(law),
+        is_linear_in_temperature(law, fluid.law),
         float(fluid.viscosity),
         tuple(flow_law(fluid)),
         np.inf if fluid.limiting_shear is None else float(fluid.limiting_shear),

@@ -14,7 +14,7 @@ import numpy as np
 
 GROUP = 4  # nodes; wider bands cost more than they save iterations, narrower ones need more exponentials
 TERMS = 3  # exponentials; a fourth would save iterations of GMRES, and cost more in the band
-REACH = 0.1  # half widths within which the relative error counts; beyond it counts less
+REACH = 0.1  # half-widths within which the relative error counts; beyond it counts less
 SLOWEST, FASTEST = 0.4, 1.4  # rates: over the reach, and over a group
 
 

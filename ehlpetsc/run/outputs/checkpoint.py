@@ -128,7 +128,7 @@ def _misfit(
     if len(x) != len(now):
         return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"
     if np.abs(x - now).max() > NODE_TOLERANCE * np.ptp(now):
-        return f"begins at {x[0]:.6g} half widths, the case at {now[0]:.6g}; [mesh] must be as it was"
+        return f"begins at {x[0]:.6g} half-widths, the case at {now[0]:.6g}; [mesh] must be as it was"
     if ("fluid" in earlier) != (case.fluid is not None) or attributes["contact_law"] != case.contact.law:
         return "of another contact model, or of oil where there is none now; both must be as they were"
     if not all(np.isclose(attributes[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):

@@ -20,7 +20,6 @@ SECONDS_BETWEEN_LINES = 5.0
 SECONDS_BETWEEN_BARS = 0.2
 MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
 
-_COLUMNS = {name: scalar.progress for name, scalar in STEP_SCALARS.items() if scalar.progress}
 _REMAINING = "{:>9s}"
 
 
@@ -109,10 +108,10 @@ class Progress:
 
 def _scaled(scalars: dict[str, float]) -> Iterator[tuple[Any, float]]:
     """Columns and scaled values of the scalars of a step."""
-    for name, column in _COLUMNS.items():
-        if name in scalars:
-            is_integer = STEP_SCALARS[name].dtype[0] == "i"
-            yield column, int(scalars[name]) if is_integer else column.factor * scalars[name]
+    for name, scalar in STEP_SCALARS.items():
+        if scalar.progress and name in scalars:
+            value = scalars[name]
+            yield scalar.progress, int(value) if scalar.dtype[0] == "i" else scalar.progress.factor * value
 
 
 def _heading(scalars: dict[str, float]) -> str:
