@@ -24,7 +24,7 @@ from ehlpetsc.physics.scales import hertz_line, reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
-    from ehlpetsc.physics.conditions_table import ConditionsTable
+    from ehlpetsc.physics.variable_operation import ConditionsTable
 
 Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
@@ -125,7 +125,7 @@ def of_gears(path: ContactPath) -> ConditionsTable:
     rho = np.interp(time, path.time, path.rho)
     u1, u2 = path.pair.speeds(rho)
     arcs = path.pair.flank_arcs(rho[0])
-    from ehlpetsc.physics.conditions_table import ConditionsTable
+    from ehlpetsc.physics.variable_operation import ConditionsTable
 
     return ConditionsTable(
         time - begin,
@@ -165,7 +165,7 @@ def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> Cond
     values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
     if not (values["speed_1"].any() or values["speed_2"].any()):
         raise TableFault("both speeds are zero; allowed: a speed at some time")
-    from ehlpetsc.physics.conditions_table import ConditionsTable
+    from ehlpetsc.physics.variable_operation import ConditionsTable
 
     load, radius, u1, u2 = (values[key] for key in ("load", "radius", "speed_1", "speed_2"))
     return ConditionsTable(values["time"] - values["time"][0], load, radius, u1, u2, repeat)

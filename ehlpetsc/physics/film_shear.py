@@ -27,7 +27,7 @@ Heat H [W/m^2] of another source (pressure flow, compression, less the heat that
 makes a parabola of temperature: add :math:`c\,Hh/k_f` with :func:`other_heat` to :math:`T_0`,
 :math:`Hh/(12k_f)` to the mean temperature, H/2 to both fluxes. The stress is then that of the boundary value
 problem across the film to 0.05 % for H of 10 % of the heat of shear, to 0.4 % for 30 % (without it, 4 and
-12 %). A pressure flow subtracts :math:`\ln(\sinh\Sigma/\Sigma)` from x, as in :func:`.rheology.wall_shear`,
+12 %). A pressure flow subtracts :math:`\ln(\sinh\Sigma/\Sigma)` from x, as in :func:`.traction.wall_shear`,
 and its heat, which arises near the walls, has c = 1/12: 1 % at :math:`\Sigma=1`, where ignoring both costs 1
 to 18 %.
 

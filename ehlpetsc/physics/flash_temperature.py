@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.physics.laws import viscosity
-from ehlpetsc.physics.rheology import wall_shear
+from ehlpetsc.physics.traction import wall_shear
 
 if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales

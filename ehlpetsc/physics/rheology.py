@@ -1,4 +1,4 @@
-r"""Shear laws of the oil: stress by rate, mobility of the pressure flow, shear stress at the walls.
+r"""Shear laws of the oil: stress by rate, mobility of the pressure flow.
 
 A law is a branch of :func:`flow_stress` and a line in `SHEAR_LAWS`. The pressure flow of Newton's and of
 Eyring's law has a closed form; that of any other is a table over the sliding speed and the pressure gradient,
@@ -328,8 +328,8 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
         spline = RectBivariateSpline(u, v, values[quantity], s=0)
         for order, (by_u, by_v) in enumerate(((0, 0), (1, 0), (0, 1), (1, 1))):
             table[:-1, :, 4 * quantity + order] = spline(u, v, dx=by_u, dy=by_v)
-    first, last, per_step = (x[0], ln_drop[0]), (x[-1], ln_drop[-1]), (1.0 / step_x, 1.0 / step)
-    table[-1, :9, 0] = n, *first, *per_step, *last, a, NEWTONIAN ** (1.0 / a)
+    begin, end, per_step = (x[0], ln_drop[0]), (x[-1], ln_drop[-1]), (1.0 / step_x, 1.0 / step)
+    table[-1, :9, 0] = n, *begin, *per_step, *end, a, NEWTONIAN ** (1.0 / a)
     return table
 
 
@@ -415,56 +415,3 @@ def stress_spread(sigma: float, x: float, table: np.ndarray) -> float:
         square = sigma * sigma
         return square * (1 / 6 - square * (1 / 180 - square / 2835))
     return sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)
-
-
-# ---- stress ----
-
-
-def wall_shear(
-    h: Any, gradient: Any, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | float = np.inf
-) -> tuple[np.ndarray, np.ndarray]:
-    r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`, isothermal.
-
-    Eyring: :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`,
-    :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)` (Conry, Wang & Cusano 1987); Newtonian:
-    :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress :math:`\tau_m` is limited to
-    :math:`\Lambda p`, see :func:`limited_shear`.
-
-    Returns
-    -------
-    lower, upper : ndarray
-        Shear stress [Pa] in the film at the walls of surface 2 (lower) and 1 (upper), at h > 0.
-    """
-    flow, limit = flow_law(fluid), getattr(fluid, "limiting_shear", None)
-    half = np.asarray(h * gradient / 2.0)
-    rise = stress_pressure(fluid)
-    arrays = np.broadcast_arrays(h, half, ln_eta, 1.0 + rise * p if rise else 1.0, p)
-    columns = [np.ravel(array).astype(float) for array in arrays]
-    viscous = np.full(len(columns[0]), fluid.viscosity * abs(sliding))
-    mean = np.zeros(len(columns[0]))
-    if sliding:
-        table = flow_table(flow.kind, flow.n, flow.a)
-        _mean_stress(*columns, viscous, flow, np.inf if limit is None else float(limit), table, mean)
-    mean = np.sign(sliding) * mean.reshape(arrays[0].shape)
-    return mean - half, mean + half
-
-
-@compiled
-def _mean_stress(
-    h: np.ndarray,
-    half: np.ndarray,
-    ln_eta: np.ndarray,
-    grown: np.ndarray,
-    p: np.ndarray,
-    viscous: np.ndarray,
-    law: FlowLaw,
-    limit: float,
-    table: np.ndarray,
-    out: np.ndarray,
-) -> None:
-    for i in range(len(h)):
-        flow = FlowLaw(law.kind, law.stress * grown[i], law.n, law.a)
-        x = np.log(viscous[i] / (h[i] * flow.stress)) + ln_eta[i]
-        if flow.kind != NEWTON:
-            x -= stress_spread(abs(half[i]) / flow.stress, x, table)
-        out[i] = flow_stress(x, flow, limit * p[i] if limit < np.inf else limit)[0]

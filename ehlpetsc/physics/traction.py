@@ -4,8 +4,17 @@ from typing import Any
 
 import numpy as np
 
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.physics.laws import viscosity
-from ehlpetsc.physics.rheology import wall_shear
+from ehlpetsc.physics.rheology import (
+    NEWTON,
+    FlowLaw,
+    flow_law,
+    flow_stress,
+    flow_table,
+    stress_pressure,
+    stress_spread,
+)
 
 
 def shear_stresses(
@@ -20,7 +29,7 @@ def shear_stresses(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Shear stress [Pa] in +x on surfaces 1 (upper) and 2 (lower).
 
-    In the film :func:`ehlpetsc.physics.rheology.wall_shear` under the oil's pressure, times the fraction of
+    In the film :func:`wall_shear` under the oil's pressure, times the fraction of
     the gap in which oil is sheared; between the solids their friction, + on surface 2 and - on surface 1
     where u1 > u2, none in pure rolling. Where both act, they are added: a boundary film of some nanometres is
     then sheared with the bulk viscosity, which overestimates its shear stress.
@@ -54,3 +63,53 @@ def shear_stresses(
     else:
         lower, upper = (np.sign(sliding) * mean + sign * 0.5 * film * gradient for sign in (-1.0, 1.0))
     return shear_1 - upper * sheared, shear_2 + lower * sheared
+
+
+def wall_shear(
+    h: Any, gradient: Any, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | float = np.inf
+) -> tuple[np.ndarray, np.ndarray]:
+    r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`, isothermal.
+
+    Eyring: :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`,
+    :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)` (Conry, Wang & Cusano 1987); Newtonian:
+    :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress :math:`\tau_m` is limited to
+    :math:`\Lambda p`, see :func:`limited_shear`.
+
+    Returns
+    -------
+    lower, upper : ndarray
+        Shear stress [Pa] in the film at the walls of surface 2 (lower) and 1 (upper), at h > 0.
+    """
+    flow, limit = flow_law(fluid), getattr(fluid, "limiting_shear", None)
+    half = np.asarray(h * gradient / 2.0)
+    rise = stress_pressure(fluid)
+    arrays = np.broadcast_arrays(h, half, ln_eta, 1.0 + rise * p if rise else 1.0, p)
+    columns = [np.ravel(array).astype(float) for array in arrays]
+    viscous = np.full(len(columns[0]), fluid.viscosity * abs(sliding))
+    mean = np.zeros(len(columns[0]))
+    if sliding:
+        table = flow_table(flow.kind, flow.n, flow.a)
+        _mean_stress(*columns, viscous, flow, np.inf if limit is None else float(limit), table, mean)
+    mean = np.sign(sliding) * mean.reshape(arrays[0].shape)
+    return mean - half, mean + half
+
+
+@compiled
+def _mean_stress(
+    h: np.ndarray,
+    half: np.ndarray,
+    ln_eta: np.ndarray,
+    grown: np.ndarray,
+    p: np.ndarray,
+    viscous: np.ndarray,
+    law: FlowLaw,
+    limit: float,
+    table: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    for i in range(len(h)):
+        flow = FlowLaw(law.kind, law.stress * grown[i], law.n, law.a)
+        x = np.log(viscous[i] / (h[i] * flow.stress)) + ln_eta[i]
+        if flow.kind != NEWTON:
+            x -= stress_spread(abs(half[i]) / flow.stress, x, table)
+        out[i] = flow_stress(x, flow, limit * p[i] if limit < np.inf else limit)[0]

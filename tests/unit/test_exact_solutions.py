@@ -8,8 +8,8 @@ from scipy.integrate import quad
 from support import CASES, exact_solutions, published_values
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics import exact_solutions as hertz
 from ehlpetsc.physics import film_formulas
+from ehlpetsc.physics import scales as hertz
 from ehlpetsc.physics.scales import Scales, hertz_line, moes_groups, reduced_modulus
 
 E = reduced_modulus((207e9, 207e9), (0.3, 0.3))

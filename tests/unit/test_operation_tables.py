@@ -9,9 +9,8 @@ import pytest
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.conditions_table import ConditionsTable
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.variable_operation import VariableOperation
+from ehlpetsc.physics.variable_operation import ConditionsTable, VariableOperation
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 TABLE = """time [s], load [N/m], radius [m], speed 1, speed 2 [m/s]

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ehlpetsc.physics import rheology
+from ehlpetsc.physics import rheology, traction
 
 STEP = 1e-30
 OIL = SimpleNamespace(viscosity=0.005, eyring_stress=10e6)
@@ -34,7 +34,7 @@ def test_eyring_factor(sigma, zeta, factor):
 def test_wall_shear():
     fluid = OIL
     ln_eta = np.array(np.log(0.5 / fluid.viscosity))
-    walls = rheology.wall_shear(np.array(0.2e-6), np.array(2e14), ln_eta, fluid, 1.25)
+    walls = traction.wall_shear(np.array(0.2e-6), np.array(2e14), ln_eta, fluid, 1.25)
     np.testing.assert_allclose(walls, [-18.285163e6, 21.714837e6], rtol=1e-7)
 
 
@@ -106,7 +106,7 @@ def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
     state = FILM, gradient, 1.0 / ETA, 1.0, STRESS, sliding / STRESS
     (mobility, *_), _ = rheology.tabulated_mobilities(*state, table)
     fluid = SimpleNamespace(viscosity=ETA, carreau_stress=STRESS, carreau_exponent=n, carreau_width=a)
-    lower, upper = rheology.wall_shear(FILM, gradient, np.array(0.0), fluid, sliding)
+    lower, upper = traction.wall_shear(FILM, gradient, np.array(0.0), fluid, sliding)
     z = (np.arange(2000) + 0.5) / 2000 - 0.5
     gamma = ETA * sliding / FILM / STRESS
     stress = 0.5 * (lower + upper) / STRESS

@@ -47,7 +47,7 @@ class Case(Values):
 
     @property
     def conditions(self) -> Any:
-        """Load, radius and speeds over time: a `physics.conditions_table.ConditionsTable`; None: constant."""
+        """Load, radius and speeds over time (`physics.variable_operation`); None: constant."""
         return self._conditions
 
 
