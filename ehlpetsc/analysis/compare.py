@@ -1,10 +1,9 @@
 """Compare two result files field by field: ``ehlpetsc compare A.h5 B.h5 [--rtol R] [--atol A]``.
 
-If meshes or stored times differ, the finer result is interpolated linearly at the nodes and times of the
-coarser one, in their common range. A quantity is equal if its maximum difference is within
-``atol + rtol scale``, where the scale is the maximum magnitude in either file. Contacts are compared as
-fractions of nodes and of steps. Scalars of the solution process (iterations, time steps, wall clock) are not
-compared.
+If meshes or stored times differ, the nodes and times that both have are compared. A quantity is equal if its
+maximum difference is within ``atol + rtol scale``, where the scale is the maximum magnitude in either file.
+Contacts on different meshes are compared as fractions of nodes and of steps. Scalars of the solution process
+(iterations, time steps, wall clock) are not compared.
 
 Exit status: 0 equal, 1 different, 2 the files cannot be compared.
 """
@@ -54,26 +53,16 @@ class Difference:
         return value / self.scale if self.scale else value
 
 
-def interpolated(grid: np.ndarray, values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Values on a grid, its points along the first axis, linearly interpolated at points."""
-    left = np.clip(np.searchsorted(grid, points, side="right") - 1, 0, max(len(grid) - 2, 0))
-    right = np.minimum(left + 1, len(grid) - 1)
-    width = np.where(right > left, grid[right] - grid[left], 1.0)
-    weight = np.clip((points - grid[left]) / width, 0.0, 1.0).reshape(-1, *[1] * (values.ndim - 1))
-    low, high = values[left], values[right]
-    return np.where(weight == 0.0, low, (1.0 - weight) * low + weight * high)
-
-
-def common_points(one: np.ndarray, other: np.ndarray, name: str) -> np.ndarray:
-    """Points of the coarser of two increasing grids in their common range; OutputError if it is empty."""
+def common(one: np.ndarray, other: np.ndarray, name: str) -> list[np.ndarray]:
+    """Indices of the values that both of two increasing grids have; OutputError if there are none."""
     if len(one) == len(other) == 1:  # two steady solutions, whatever their times
-        return one
+        return [np.zeros(1, int)] * 2
     slack = ABSCISSA_TOLERANCE * max(np.ptp(one), np.ptp(other))
-    low, high = max(one[0], other[0]) - slack, min(one[-1], other[-1]) + slack
-    points = min((grid[(grid >= low) & (grid <= high)] for grid in (one, other)), key=len)
-    if not len(points):
+    nearest = np.minimum(np.searchsorted(other, one - slack), len(other) - 1)
+    shared = np.abs(other[nearest] - one) <= slack
+    if not shared.any():
         raise OutputError(f"the files have no {name} in common")
-    return points
+    return [np.flatnonzero(shared), nearest[shared]]
 
 
 def compare(one: Result, other: Result) -> Iterator[Difference]:
@@ -85,35 +74,37 @@ def compare(one: Result, other: Result) -> Iterator[Difference]:
     for result in both:
         if not len(result.time) or not len(result.steps("time")):
             raise OutputError(f"{result.path}: no time step in it")
-    x = common_points(one.x, other.x, "nodes")
-    times = common_points(one.time, other.time, "times")
-    blocks = np.array_split(times, -(-len(times) // FRAMES_PER_READ))
+    nodes, frames = common(one.x, other.x, "nodes"), common(one.time, other.time, "times")
+    x, is_same_mesh = one.x[nodes[0]], len(one.x) == len(other.x) == len(nodes[0])
     for name in [name for name in FIELDS if name in one.fields and name in other.fields]:
-        fields = ([*(_field(result, name, block, x) for result in both), block] for block in blocks)
-        if name == "in_contact" and not np.array_equal(one.x, other.x):
-            means = ([*(v.mean(axis=1, keepdims=True) for v in two), block] for *two, block in fields)
-            yield _difference(name, "share", means, NOWHERE)
-        else:
-            yield _difference(name, FIELDS[name].units, fields, x)
-    counts = [interpolated(r.x, r.contact_count / len(r.steps("time")), x)[None] for r in both]
-    yield _difference("contact_count", "share", [[*counts, NOWHERE]], x)
-    common = set(one.scalars) & set(other.scalars)
-    times = common_points(one.steps("time"), other.steps("time"), "time steps")
-    for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in common]:
+        if name != "in_contact" or is_same_mesh:
+            yield _difference(name, FIELDS[name].units, _blocks(both, name, frames, nodes), x)
+            continue
+        blocks = _blocks(both, name, frames, [slice(None)] * 2)
+        means = ([*(v.mean(axis=1, keepdims=True) for v in two), times] for *two, times in blocks)
+        yield _difference(name, "share", means, NOWHERE)
+    counts = [r.contact_count[n] / len(r.steps("time")) for r, n in zip(both, nodes, strict=True)]
+    yield _difference("contact_count", "share", [[*(count[None] for count in counts), NOWHERE]], x)
+    rows = common(one.steps("time"), other.steps("time"), "time steps")
+    times, shared = one.steps("time")[rows[0]], set(one.scalars) & set(other.scalars)
+    for name in [n for n in STEP_SCALARS if STEP_SCALARS[n].compared and n in shared]:
         is_count = name == "contacts"
-        values = [result.steps(name) / (len(result.x) if is_count else 1.0) for result in both]
-        pairs = zip(both, values, strict=True)
-        curves = [interpolated(result.steps("time"), v, times)[:, None] for result, v in pairs]
+        sizes = [len(result.x) if is_count else 1.0 for result in both]
+        columns = zip(both, rows, sizes, strict=True)
+        curves = [(result.steps(name)[chosen] / size)[:, None] for result, chosen, size in columns]
         units = "share" if is_count else STEP_SCALARS[name].units
         yield _difference(f"steps/{name}", units, [[*curves, times]], NOWHERE)
 
 
-def _field(result: Result, name: str, times: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Field (frames, nodes) at times and nodes."""
-    first = max(np.searchsorted(result.time, times[0], side="right") - 1, 0)
-    last = np.searchsorted(result.time, times[-1]) + 1
-    frames = result[name][first:last].astype(float)
-    return interpolated(result.x, interpolated(result.time[first:last], frames, times).T, x).T
+def _blocks(
+    both: tuple[Result, Result], name: str, frames: list[np.ndarray], nodes: list
+) -> Iterator[list[np.ndarray]]:
+    """Values (frames, nodes) of a field in both results, and their times, some frames at a time."""
+    count = -(-len(frames[0]) // FRAMES_PER_READ)
+    for pair in zip(*(np.array_split(numbers, count) for numbers in frames), strict=True):
+        parts = zip(both, pair, nodes, strict=True)
+        values = [result[name][block][:, chosen].astype(float) for result, block, chosen in parts]
+        yield [*values, both[0].time[pair[0]]]
 
 
 def _difference(name: str, units: str, blocks: Iterable[list[np.ndarray]], x: np.ndarray) -> Difference:

@@ -11,9 +11,7 @@ by one. If RESULT.post.h5 exists, quantiles of damage are included.
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,19 +28,6 @@ QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "load", "approach")
 COLUMNS = ("ensemble", "figure", "unit", "runs", "mean", "deviation", "min", "max")
-
-
-@dataclass(frozen=True)
-class Ensemble:
-    """Runs that differ in their seeds.
-
-    `name`: keys and values in which it differs from the other ensembles; "" for a single ensemble. `values`:
-    values of the keys in which ensembles differ. `scalars`: scalars of every run by name, shape (runs,).
-    """
-
-    name: str
-    values: dict
-    scalars: dict[str, np.ndarray]
 
 
 def run_scalars(result: Result) -> dict[str, float]:
@@ -87,22 +72,20 @@ def _units(name: str) -> str:
     return STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
 
 
-def ensembles(results: list[Result]) -> list[Ensemble]:
-    """Ensembles of results whose cases differ only in keys named seed, in order of their first results."""
-    differing = {
-        key: values for key, values in differences(results).items() if key.rpartition(".")[2] != "seed"
-    }
-    groups: dict[str, tuple[dict, list]] = {}
+def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
+    """Scalars of the runs whose cases differ only in keys named seed, shape (runs,), by the other conditions.
+
+    The conditions are keys and values in which ensembles differ, "" for a single ensemble.
+    """
+    columns = [(key.rpartition(".")[2], values) for key, values in differences(results).items()]
+    groups: dict[str, list[dict[str, float]]] = {}
     for number, result in enumerate(results):
-        conditions = {key: values[number] for key, values in differing.items()}
-        key = json.dumps(conditions, default=str)
-        groups.setdefault(key, (conditions, []))[1].append(run_scalars(result))
-    made = []
-    for conditions, runs in groups.values():
-        shared = [name for name in runs[0] if all(name in run for run in runs)]
-        name = ", ".join(f"{key.rpartition('.')[2]} = {value}" for key, value in conditions.items())
-        made.append(Ensemble(name, conditions, {n: np.array([run[n] for run in runs]) for n in shared}))
-    return made
+        name = ", ".join(f"{key} = {values[number]}" for key, values in columns if key != "seed")
+        groups.setdefault(name, []).append(run_scalars(result))
+    return {
+        name: {n: np.array([run[n] for run in runs]) for n in runs[0] if all(n in run for run in runs)}
+        for name, runs in groups.items()
+    }
 
 
 def deviation(values: np.ndarray) -> float:
@@ -119,10 +102,10 @@ def table(results: list[Result], _chosen: argparse.Namespace | None = None) -> l
             "ehlpetsc summary lists single runs"
         )
     rows: list[Sequence] = [COLUMNS]
-    for ensemble in found:
-        for name, values in ensemble.scalars.items():
+    for ensemble, scalars in found.items():
+        for name, values in scalars.items():
             reduced = values.mean(), deviation(values), values.min(), values.max()
-            rows.append((ensemble.name, name, _units(name), values.size, *(f"{v:.6g}" for v in reduced)))
+            rows.append((ensemble, name, _units(name), values.size, *(f"{v:.6g}" for v in reduced)))
     return rows
 
 

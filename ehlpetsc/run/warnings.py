@@ -46,8 +46,6 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
 
 def domain_faults(case: Case, scales: Scales) -> list[str]:
     """Faults of the domain that make the result meaningless, one message each; checked before a run."""
-    if case.contact.yield_pressure:
-        return _too_narrow(case, scales)
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
     opening = inlet_opening(_smallest_expected_film(case, scales), case.mesh.points_per_half_width)
@@ -56,18 +54,6 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
     points = case.mesh.points_per_half_width
     where = f"{case.path}: mesh.points_per_half_width = {points}"
     return [f"{where}: {_coarse(opening)}, which leaves no film; {_finer_mesh_hint(case, scales)}"]
-
-
-def _too_narrow(case: Case, scales: Scales) -> list[str]:
-    """Fault of a domain too narrow to bear the load at the yield pressure."""
-    pressure = min(case.contact.yield_pressure)
-    needed, width = scales.load / (pressure * scales.a), case.mesh.outlet - case.mesh.inlet
-    if needed < width:
-        return []
-    return [
-        f"{case.path}: contact.yield_pressure = {1e-9 * pressure:g} GPa bears the load on {needed:.3g} half "
-        f"widths or more, the domain has {width:.3g}; put mesh.inlet and mesh.outlet further out"
-    ]
 
 
 def _smallest_expected_film(case: Case, scales: Scales) -> float:

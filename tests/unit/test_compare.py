@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_results import P0, A, make_result
 
-from ehlpetsc.analysis.compare import compare, interpolated, main
+from ehlpetsc.analysis.compare import compare, main
 from ehlpetsc.results.reader import read_result
 
 
@@ -61,27 +61,9 @@ def test_finer_mesh_and_time_step_are_compared_at_common_nodes(tmp_path):
     assert 0 < found["contact_count"].max < 0.03
 
 
-def test_meshes_without_common_nodes_differ_by_interpolation_error(tmp_path):
-    found = []
-    for nodes in (100, 400, 1600):
-        one = make_result(tmp_path / "a.h5", nodes=nodes, steps=6)
-        other = make_result(tmp_path / "b.h5", nodes=nodes + 7, steps=6)
-        found.append(differences(one, other)["pressure"].rms / P0)
-    assert 0.05 > found[0] > 3 * found[1] > 9 * found[2] > 0
-
-
 def test_nan_in_one_result_is_a_difference(tmp_path, result, capsys):
     """Friction is left out of both, which is the same; a nan in the pressure of one is not."""
     assert differences(result, result)["steps/friction"].max == 0
     status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
     assert status == 1
     assert "different: pressure;" in text
-
-
-def test_interpolation_is_exact_for_linear_data_and_at_the_ends():
-    grid = np.array([0.0, 1.0, 3.0])
-    points = np.array([0.0, 0.5, 2.0, 3.0])
-    np.testing.assert_allclose(interpolated(grid, 2 * grid + 1, points), [1, 2, 5, 7])
-    np.testing.assert_array_equal(
-        interpolated(grid, np.array([np.nan, 1.0, 2.0]), points)[[2, 3]], [1.5, 2.0]
-    )
