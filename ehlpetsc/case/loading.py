@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
+from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import parse_toml, plain, read_text
 from ehlpetsc.case.checking import Fault, Tables, check, in_si, is_number
@@ -227,30 +228,26 @@ def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
     faults = []
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
-        if not isinstance(table, dict):
+        spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
+        if spec is None or spec.synthetic:  # smooth, or its faults are reported with its keys
             continue
-        key, kind = ("z", list) if "z" in table else ("file", str)
-        if isinstance(table.get(key), kind) and table[key]:
-            try:
-                _check_profile(folder, table, case)
-            except ProfileError as error:
-                faults.append(f"surface.{side}.{key} = {show(table[key])}: {error}")
+        try:
+            _check_profile(folder, spec, case)
+        except ProfileError as error:
+            key = "z" if "z" in table else "file"
+            faults.append(f"surface.{side}.{key} = {show(table[key])}: {error}")
     return faults
 
 
-def _check_profile(folder: Path, table: dict[str, Any], case: Case | None) -> None:
+def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
     from ehlpetsc.surfaces.profile_checks import absurd  # smooth surfaces need none
     from ehlpetsc.surfaces.samples import samples
 
-    spec, faults = check(PROFILE, table)
-    if faults:  # reported with its keys
-        return
-    if case is None or case.contact is None:
+    if case is None:
         samples(folder, spec)
         return
     scales = Scales.of(case)
-    profile_samples = samples(folder, spec, scales.dx)
     film = scales.h * expected_film(case, scales) if case.fluid else 0.0
-    fault = absurd(profile_samples, scales.a, scales.dx, scales.h, film)
+    fault = absurd(samples(folder, spec, scales.dx), scales.a, scales.dx, scales.h, film)
     if fault:
         raise ProfileError(fault)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from ehlpetsc.life.checks import check_case, check_files, check_resolution, pass
 from ehlpetsc.life.history import LifeFile
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.positions import Positions
+from ehlpetsc.run.forecast import work_time
 from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
@@ -29,39 +30,20 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
 
 
-WIDTHS = {"solved": 6, "passes": 14, "D1": 7, "D2": 7, "pitted1": 9, "pitted2": 9}
-WIDTHS |= {"worn1": 9, "worn2": 9, "friction": 10, "time": 8}
-
-
-def _columns(values: Iterable[str]) -> str:
-    return "".join(f"{value:>{width}}" for value, width in zip(values, WIDTHS.values(), strict=True))
-
-
 def opening(case: Case, scales: Scales, scene: Scene, positions: int) -> str:
-    """Lines before the first round: passes of a round, steps and expected run time of a pass; header.
-
-    `positions`: of surface 2.
-    """
-    from ehlpetsc.run import forecast
-
-    seconds = forecast.work_time(case, scales, scene.roughness)
-    rounds = f"rounds of {positions} passes" if positions > 1 else "rounds of one pass"
-    steps = scene.operation.step_count(scales.dt)
-    head = f"{rounds}, each of {steps} steps and {duration(seconds)} on one rank; worn in um^2"
-    return f"{head}\n{_columns(WIDTHS)}"
+    """Line before the first round: passes of a round, one a position of surface 2, and expected time."""
+    seconds, steps = work_time(case, scales, scene.roughness), scene.operation.step_count(scales.dt)
+    return f"passes of a round: {positions}, each of {steps} steps and {duration(seconds)} on one rank"
 
 
 def line_of(history: LifeHistory, seconds: float) -> str:
-    """Line of the last row, whose round took a wall clock time."""
+    """Line of the last row, whose round took a wall clock time: worn areas in m^2."""
     row = history.rows[-1]
-    values = [f"{history.solved}", f"{row['passes']:,}"]
-    for name, unit, form in (
-        ("damage", 1.0, ".3g"),
-        ("pitted_share", 1.0, ".2%"),
-        ("wear_volume", 1e12, ".4g"),
-    ):
-        values += [f"{unit * row[f'{name}_{k}']:{form}}" for k in (1, 2)]
-    return _columns([*values, f"{row['friction']:.4f}", duration(seconds)])
+    values = {"solved": history.solved, "passes": row["passes"]}
+    for name, label in (("damage", "D"), ("pitted_share", "pitted"), ("wear_volume", "worn")):
+        values |= {f"{label}{k}": f"{row[f'{name}_{k}']:.3g}" for k in (1, 2)}
+    values |= {"friction": f"{row['friction']:.4f}", "wall": duration(seconds)}
+    return " ".join(f"{name}={value}" for name, value in values.items())
 
 
 def run_life(

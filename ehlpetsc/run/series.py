@@ -21,7 +21,7 @@ from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.index import Index, flat_keys
+from ehlpetsc.results.index import Index
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.forecast import steps
@@ -44,23 +44,19 @@ WAITING = "waiting"  # state of a member that is not computed yet
 def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
     """Names of the members of a series, as ``viscosity=0.002``, from the values in which members differ.
 
-    A table among the values is named by the entries that differ. Members have numbers if the names are empty,
-    too long or not unique. `settings` are those of each member, see `ehlpetsc.case.combinations.settings_of`.
+    Members have numbers if these names are too long or not unique, or if values are lists or tables.
+    `settings` are those of each member, see `ehlpetsc.case.combinations.settings_of`.
     """
-    flat = [flat_keys({".".join(keys): value for keys, value in member}) for member in settings]
-    keys = list(dict.fromkeys(key for member in flat for key in member))
-    keys = [key for key in keys if any(member.get(key) != flat[0].get(key) for member in flat)] or keys
-    label = settings[0][0][0][-1] if len(settings[0]) == 1 else "member"
-    names = []
-    for number, member in enumerate(flat, 1):
-        values = {key.rpartition(".")[2]: member[key] for key in keys if key in member}
-        text = ",".join(f"{key}={value}" for key, value in values.items())
-        has_list = any(isinstance(value, list) for value in values.values())
-        is_usable = values and len(text) <= MAX_NAME_LENGTH and not has_list
-        names.append(text if is_usable else f"{label}={number}")
-    if len(set(names)) < len(names):
-        names = [f"{label}={number}" for number in range(1, len(names) + 1)]
-    return names
+    columns = [(column[0][0][-1], [value for _, value in column]) for column in zip(*settings, strict=True)]
+    differing = [(key, values) for key, values in columns if any(value != values[0] for value in values)]
+    names = [
+        ",".join(f"{key}={values[n]}" for key, values in differing or columns) for n in range(len(settings))
+    ]
+    is_plain = not any(isinstance(value, list | dict) for _, values in columns for value in values)
+    if is_plain and len(set(names)) == len(names) and max(map(len, names)) <= MAX_NAME_LENGTH:
+        return names
+    label = columns[0][0] if len(columns) == 1 else "member"
+    return [f"{label}={number}" for number in range(1, len(names) + 1)]
 
 
 def members_of(case: Case, output: Path) -> list[Member]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.driver import WIDTHS, line_of
+from ehlpetsc.life.driver import line_of
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.regimes import outcome, winner
 from ehlpetsc.pictures import lives
@@ -35,10 +35,14 @@ def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, w
     assert found["first_failure"] == (8e5 if pits else None) and found["solved"] == 2
 
 
-def test_line_of_a_round_fits_a_terminal():
-    line = line_of(life(pits=2, rows=3), 3.4)
-    assert len(line) == sum(WIDTHS.values()) <= 90
-    assert line.split() == ["3", "30", "0.3", "0.3", "20.00%", "20.00%", "3", "3", "0.1000", "3.4", "s"]
+def test_line_of_a_round_names_its_figures():
+    figures = dict(entry.split("=") for entry in line_of(life(pits=2, rows=3), 3.4).split())
+    assert figures.pop("friction") == "0.1000" and figures.pop("wall") == "3s"
+    expected = {"solved": 3, "passes": 30, "D1": 0.3, "D2": 0.3, "pitted1": 0.2, "pitted2": 0.2}
+    assert {name: float(value) for name, value in figures.items()} == expected | {
+        "worn1": 3e-12,
+        "worn2": 3e-12,
+    }
 
 
 def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
