@@ -90,7 +90,7 @@ def curves_by_contact(results: list[Result]) -> dict[str, list[Result]]:
     for result in results:
         case, contact = result.case, result.case.contact
         if contact.asperity_height:
-            law = f"layer of {1e9 * contact.asperity_height:g} nm,\nbeta = {contact.asperity_stiffness:.2g}"
+            law = f"layer of {1e9 * contact.asperity_height:.3g} nm,\nbeta = {contact.asperity_stiffness:.2g}"
         else:
             film = contact.boundary_film
             law = f"rigid, boundary film {1e9 * film:g} nm" if film else "direct contact"
@@ -123,7 +123,7 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
             means = [point.scalars[name][0] for point in shown]
             dashed = dict(color=f"C{number}", ms=3.0, lw=0.9, label=label)
             panel.plot([abs(point.at) for point in shown], means, "s--", **dashed)
-    limits = dict(color=style.SECOND, lw=0.9, ls="--", label="solids alone\n(boundary_friction)")
+    limits = dict(color="k", lw=0.9, ls="-.", label="solids alone\n(boundary_friction)")
     axes[0].plot(speeds, [point.boundary for point in points], **limits)
     smooth = [point.smooth for point in points]
     axes[0].plot(speeds, smooth, color="0.35", lw=0.9, ls=":", label="smooth contact")
