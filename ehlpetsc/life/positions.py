@@ -3,8 +3,8 @@
 With `time.pass_shift` surface 2 begins each pass further on, as the teeth of a wheel follow each other: the
 columns of body 2 cover all positions. Without it there is one position.
 
-Of gears a pass is one engagement of a pinion tooth, from the begin of its contact to the end, and a position
-is a tooth of the wheel. Columns then count along the flanks. In the time in which a pinion tooth meets
+With gears a pass is one engagement of a pinion tooth, from the beginning of its contact to the end, and a
+position is a tooth of the wheel. Columns then count along the flanks. In the time in which a pinion tooth meets
 N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be alike.
 """
 

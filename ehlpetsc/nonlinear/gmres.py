@@ -156,7 +156,7 @@ def least_residual(numbers: tuple, new: int, norm: float) -> float:
 
 @compiled
 def combine(z: np.ndarray, numbers: tuple, number: int, solution: np.ndarray) -> None:
-    """Fill in the sum of so many vectors z that leaves the least residual."""
+    """Fill in the sum of so many vectors z that leaves the minimum residual."""
     hessenberg, _, right = numbers
     factors = right[:number].copy()
     for k in range(number - 1, -1, -1):

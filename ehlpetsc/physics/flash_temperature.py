@@ -57,7 +57,7 @@ def blok_flash_temperature(
     a: float | np.ndarray,
     effusivities: Sequence[float],
 ) -> float | np.ndarray:
-    r"""Largest flash temperature of a line contact [K] by Blok's formula.
+    r"""Maximum flash temperature of a line contact [K] by Blok's formula.
 
     :math:`T=1.11\,\frac{\mu w'|u_1-u_2|}{(e_1\sqrt{|u_1|}+e_2\sqrt{|u_2|})\sqrt{2a}}` (Blok 1937, as in
     ISO/TS 6336-20), e the thermal effusivities :math:`\sqrt{k\rho c}`.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MIN_SAMPLES = 4096  # points at which a table is evaluated for time steps and extremes
 END_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
 MIN_ENTRAINMENT_RATIO = 1e-3  # of the faster surface's speed: smaller entrainment speeds are no scale
-MAX_SPEED_CHANGE = 0.04  # in a time step, of the largest speed, for a Courant number of 1
+MAX_SPEED_CHANGE = 0.04  # in a time step, of the maximum speed, for a Courant number of 1
 MIN_STEPS = 25  # of a table in which nothing moves for some time, for a Courant number of 1
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 SHOWN_INSTANTS = 3  # instants of the life
-SHOWN_DAMAGE = 0.1  # of the largest: cells with as much are within the picture
+SHOWN_DAMAGE = 0.1  # of the maximum: cells with as much are within the picture
 MIN_LOG_DAMAGE = -3.0  # log10 of the damage at the lower end of the colours
 
 

@@ -184,7 +184,7 @@ def _summary(output: str, wall: float) -> None:
 
 
 def _largest(result: PostResult, criterion: str, surface: str, depth: int) -> float:
-    """Largest damage or utilisation by a criterion at depth number `depth`; nan if no point passed."""
+    """Maximum damage or utilisation by a criterion at depth number `depth`; nan if no point passed."""
     values = result.criteria[criterion][surface][depth, result.complete[surface]]
     return values.max() if values.size else np.nan
 

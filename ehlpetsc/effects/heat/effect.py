@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ehlpetsc.effects.heat.step import HeatStep
 
 
-STEADY = 2e-5  # of the largest temperature rise: change between two solutions that ends the steady start
+STEADY = 2e-5  # of the maximum temperature rise: change between two solutions that ends the steady start
 MIN_TEMPERATURE_RISE = 1e-3  # K
 
 
@@ -135,7 +135,7 @@ class Heat(Effect):
         return shear if solution.inputs.fluid is None else record.shear
 
     def observe(self, record: HeatRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Temperatures and heat fluxes; their largest and mean values."""
+        """Temperatures and heat fluxes; their maximum and mean values."""
         values = record.solved, record.wall_1, record.wall_2, record.flux_1, record.flux_2
         fields = dict(zip(self.fields, values, strict=True))
         scalars = {"heat": record.heat, "heat_error": record.error}

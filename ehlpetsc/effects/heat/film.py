@@ -173,7 +173,7 @@ def faces(
     oil
         Nodes where the Reynolds equation holds: flow through faces of others has no meaning, shape (nodes,).
     max_flow
-        Largest pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
+        Maximum pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
     couette
         Filled in: mass flow of the mean speed through the faces i-1/2, in u a^2/R, shape (nodes + 1,).
     pressure_heat

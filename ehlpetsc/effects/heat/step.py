@@ -28,11 +28,11 @@ MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
-MIN_RESPONSE = 0.01  # of the largest one
+MIN_RESPONSE = 0.01  # of the maximum
 MIN_TEMPERATURE_RISE = 1e-3  # K
 DEPTH = 6
 ITERATIONS = 200
-ACCURACY = 1e-11  # of the largest value
+ACCURACY = 1e-11  # of the maximum
 
 
 class Temperatures(NamedTuple):

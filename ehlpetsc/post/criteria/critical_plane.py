@@ -12,9 +12,9 @@ With :math:`\sigma_y=\nu(\sigma_x+\sigma_z)` and no shear out of the section, sh
 :math:`t\cdot\sigma n` and normal stress :math:`n\cdot\sigma n` are sums of the three in-plane stresses.
 Planes tilted by opposite angles are equivalent, so that tilts from 0 to 90 degrees suffice.
 
-The cycles of the shear stress are counted; the largest normal stress of a cycle is that in its closed loop.
+The cycles of the shear stress are counted; the maximum normal stress of a cycle is that in its closed loop.
 First all planes of a coarse grid are evaluated on the samples at which the path turns, in the order of their
-widest range, until no other plane can reach the largest damage so far. The best two planes are then improved
+widest range, until no other plane can reach the maximum damage so far. The best two planes are then improved
 by a pattern search, and the damage of the best plane is counted on all samples.
 
 The stress on a plane is a weighted sum of the three stresses. Samples at which one of 13 such sums reverses

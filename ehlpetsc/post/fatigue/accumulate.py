@@ -54,7 +54,7 @@ MEAN_STRESSES = ("none", "morrow")
 
 
 class Damage(NamedTuple):
-    """Damage, counted cycles and largest equivalent range (Pa) of each history."""
+    """Damage, counted cycles and maximum equivalent range (Pa) of each history."""
 
     damage: np.ndarray
     cycles: np.ndarray
@@ -85,7 +85,7 @@ _squared = compiled(von_mises_squared, error_model="python", nogil=True)
 def _sum_cycles(
     stress: np.ndarray, nu: float, counts: tuple, cycles: np.ndarray, law: tuple
 ) -> tuple[float, float, float]:
-    """Damage, number and largest squared range of the cycles of one history (3, samples)."""
+    """Damage, number and maximum squared range of the cycles of one history (3, samples)."""
     (_, morrow, rule, residual), constants, table = law
     n, full = counts
     total = number = largest = 0.0
@@ -168,7 +168,7 @@ def damage(
     strain: str = DEFAULT_STRAIN,
     residual_stress: float = 0.0,
 ) -> Damage:
-    """Damage of one pass of each history, cycles of the scalar with the largest damage, shape (...).
+    """Damage of one pass of each history, cycles of the scalar with the maximum damage, shape (...).
 
     Parameters
     ----------
