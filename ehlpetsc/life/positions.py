@@ -4,8 +4,8 @@ With `time.pass_shift` surface 2 begins each pass further on, as the teeth of a 
 columns of body 2 cover all positions. Without it there is one position.
 
 With gears a pass is one engagement of a pinion tooth, from the beginning of its contact to the end, and a
-position is a tooth of the wheel. Columns then count along the flanks. In the time in which a pinion tooth meets
-N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be alike.
+position is a tooth of the wheel. Columns then count along the flanks. In the time in which a pinion tooth
+meets N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken to be alike.
 """
 
 from __future__ import annotations
