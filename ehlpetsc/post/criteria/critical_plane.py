@@ -221,12 +221,17 @@ def _coarse(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> tu
     _, _, series, normal = work
     for g in range(grid.shape[0]):
         _on_plane(grid[g], stress, law, work)
-        width = series[:size].max() - series[:size].min()
-        bounds[g] = _cycle_damage(width, normal[:size].max(), law)
+        low, high, way, highest = series[0], series[0], abs(series[size - 1] - series[0]), normal[0]
+        for k in range(1, size):
+            way += abs(series[k] - series[k - 1])
+            low, high, highest = min(low, series[k]), max(high, series[k]), max(highest, normal[k])
+        # ranges of the cycles sum up to half the way, and damage rises faster than the range
+        cycles = max(0.5 * way / (high - low), 1.0) if high > low else 1.0
+        bounds[g] = cycles * _cycle_damage(high - low, highest, law)
     order, first, second = np.argsort(-bounds), 0, len(bounds) - 1
     damages = np.full(order.size, -1.0)
     for n in range(order.size):
-        if (size // 2 + 1) * bounds[order[n]] <= damages[second]:
+        if bounds[order[n]] <= damages[second]:
             break
         damage = plane_damage(grid[order[n]], stress, law, NEGLIGIBLE_RANGE, work)
         if damage > damages[first]:
