@@ -9,6 +9,7 @@ import numpy as np
 
 from ehlpetsc.life import laws
 from ehlpetsc.surfaces.body_field import BodyField
+from ehlpetsc.surfaces.filters import MIN_SPACINGS, low_pass
 
 if TYPE_CHECKING:
     from ehlpetsc.life.jumps import Rates
@@ -105,18 +106,27 @@ class LifeBody(NamedTuple):
         return (self.s >= stretch[0] - slack) & (self.s <= stretch[1] + slack)
 
     def gap_field(
-        self, stretch: tuple[float, float], reach: tuple[float, float], averaged: float = np.inf
+        self,
+        stretch: tuple[float, float],
+        reach: tuple[float, float],
+        averaged: float = np.inf,
+        short_cutoff: float | None = None,
     ) -> BodyField:
         """Depth of the present surface for the solver; beyond the stretch its mean.
 
         The contact begins and ends on parts of the bodies that are not followed: they wear as the mean of
-        the stretch, or of the part of it that is next to them.
+        the stretch, or of the part of it that is next to them. Edges of pits are rounded as the profile is:
+        sharp ones would be as sharp as the mesh.
 
         `stretch`: abscissas that pass the whole contact [m]. `reach`: abscissas that the mesh meets [m].
         `averaged`: length at either end of the stretch of which the mean is taken [m]; by default all of it.
+        `short_cutoff`: of the filter of the profile [m].
         """
         width, met = self.s[1] - self.s[0], self.columns_within(stretch)
-        depth = self.recession[met]
+        pit = self.pit
+        if short_cutoff and pit.any() and short_cutoff > MIN_SPACINGS * width:
+            pit = np.maximum(low_pass(self.s, pit, short_cutoff), 0.0)
+        depth = (self.wear + pit)[met]
         first, last = self.s[met][[0, -1]]
         before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)
         after = max(int(np.ceil((reach[1] - last) / width)) + 1, 0)

@@ -77,7 +77,9 @@ class Positions:
         for k, body in enumerate(bodies):
             faces = np.concatenate([scene.mesh_on_bodies.faces(travelled)[k][[0, -1]] for travelled in ends])
             stretch = self._stretch(body, k, position)
-            fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged))
+            spec = (self.case.surface.body_1, self.case.surface.body_2)[k]
+            cutoff = spec.short_cutoff if spec else None
+            fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged, cutoff))
         records = {"wear": WearRecord(BodyFields(*fields), BodyFields.zero(self.scales.dx))}
         return records | ({"plastic_deformation": plastic} if plastic else {})
 

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.special import erf
 from support import CASES, COARSE_LIFE, ROOT
 
 from ehlpetsc.base.errors import CaseError, OutputError
@@ -270,3 +271,19 @@ def test_life_on_an_unresolved_profile_is_refused(tmp_path):
 def test_case_without_a_life_is_refused(file, keys, text):
     with pytest.raises(CaseError, match=text):
         check_case(load(CASES / file, keys))
+
+
+def test_solver_meets_pits_without_waves_below_the_short_cutoff():
+    """Filtered as the profile is, on any columns: the same pit on columns half as wide has the same edges."""
+    fields = []
+    for width in (1.0, 0.5):
+        s = np.arange(0.5 * width, 200.0, width)
+        pit = np.where(np.abs(s - 100.0) < 10.0, 5.0, 0.0)
+        one = LifeBody.new(s, np.zeros(s.size), EDGES)._replace(pit=pit)
+        fields.append(one.gap_field((s[0], s[-1]), (s[0], s[-1]), short_cutoff=40.0))
+    coarse, fine = (field.means(np.arange(2.0, 199.0)) for field in fields)
+    assert coarse == pytest.approx(fine, abs=0.02)
+    width = 40.0 * np.sqrt(np.log(2.0) / np.pi)  # of the Gaussian weight exp[-pi (x/width)^2]/width
+    assert coarse.max() == pytest.approx(5.0 * erf(np.sqrt(np.pi) * 10.0 / width), rel=2e-3)
+    assert np.abs(np.diff(coarse)).max() == pytest.approx(5.0 / width, rel=0.05)
+    assert coarse.sum() == pytest.approx(100.0)
