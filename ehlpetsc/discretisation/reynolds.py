@@ -206,5 +206,4 @@ class NoOil:
     def evaluate(
         self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """See :meth:`.reynolds.Reynolds.evaluate`."""
         return q[self.owned], self._derivatives

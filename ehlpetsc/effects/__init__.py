@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from ehlpetsc.effects.effect import RoughSurfaces
 from ehlpetsc.effects.heat.effect import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
-from ehlpetsc.effects.roughness import RoughSurfaces
 from ehlpetsc.effects.wear import Wear
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
@@ -188,6 +188,24 @@ class Effect:
         dict of str to pair of ndarray or None
         """
         return {}
+
+
+class RoughSurfaces(Effect):
+    """Heights of both profiles, means over the cells of the mesh, subtracted from the gap."""
+
+    name = "roughness"
+    moves_with_surfaces = True
+
+    @classmethod
+    def is_in(cls, case: Any) -> bool:
+        """Whether one of the surfaces has a profile."""
+        return bool(case.surface.body_1 or case.surface.body_2)
+
+    def inputs(self, record: Any, inputs: StepInputs, step: Step) -> StepInputs:
+        """Add the roughness at the end of the step to the gap."""
+        scales = self.scene.scales
+        heights = self.scene.roughness.phi_after(scales.x * scales.a, step.travelled, scales.dx)
+        return replace(inputs, phi=inputs.phi + heights / scales.h)
 
 
 def flat(record: Any, name: str) -> dict[str, Any]:

@@ -86,7 +86,7 @@ class NewtonSolver:
         self._set_jacobian(self.snes)
         if self.snes.getType() == "vinewtonrsls":
             self.snes.setVariableBounds(system.lower, system.upper)
-            if model.starts_unconstrained and "snes_type" not in self._options.user_set:
+            if model.starts_unconstrained and "snes_type" not in self._options.given:
                 self._unconstrained_snes = self._snes_of_type("newtonls")
                 self._set_jacobian(self._unconstrained_snes)
 
@@ -142,7 +142,7 @@ class NewtonSolver:
         Exponential residuals fall by a factor e an iteration, so it needs more than a time step; a limit set
         by the user holds for both.
         """
-        if "snes_max_it" in self._options.user_set:
+        if "snes_max_it" in self._options.given:
             return self._max_it
         return needed or START_FACTOR * self._max_it
 
@@ -209,7 +209,7 @@ class NewtonSolver:
 
     def _set_tolerances(self, snes: PETSc.SNES, max_it: int) -> None:
         system = self.system
-        if "ksp_atol" not in self._options.user_set:
+        if "ksp_atol" not in self._options.given:
             snes.ksp.setTolerances(atol=LINEAR_ATOL * self._atol)
         if system.factors:
             system.factors.invalidate()

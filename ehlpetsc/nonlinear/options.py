@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import importlib
 import threading
 from typing import Any
 
@@ -75,11 +74,6 @@ class RunOptions:
         self.deferred_views: list[str] = []
         self.unused = set(self.given)
 
-    @property
-    def user_set(self) -> set[str]:
-        """Names of the options set by the user."""
-        return set(self.given)
-
     def value(self, name: str, default: Any = None) -> Any:
         """Value of an option, which counts as used."""
         if name in self.given:
@@ -122,7 +116,14 @@ class RunOptions:
 
     def loose_tolerances(self) -> list[str]:
         """One message for every tolerance of the user that is looser than the default."""
-        return loose_tolerances(self.given, float(self._defaults["snes_atol"]))
+        lines = []
+        for name, default in {"snes_atol": float(self._defaults["snes_atol"]), **DEFAULT_TOLERANCES}.items():
+            value = _number(self.given.get(name, default))
+            if value is not None and value > default:
+                lines.append(
+                    f"-{name} {value:g} is looser than the program's {default:g}: results are less certain"
+                )
+        return lines
 
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
@@ -133,7 +134,7 @@ class RunOptions:
     def _enter(self, table: PETSc.Options) -> None:
         in_table = table.getAll()
         self.given = wanted = self._of_case | in_table | self._of_call
-        check_options(wanted, len(self._defaults | PRECONDITIONER | KRYLOV))
+        check_options(wanted)
         wanted = self._defaults | _linear_solver(wanted) | wanted
         self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [
@@ -182,30 +183,16 @@ def was_read(name: str) -> bool:
     return bool(answer.value)
 
 
-MAX_OPTIONS = 512  # size of PETSc's table
 DEFAULT_TOLERANCES = {"snes_rtol": 0.0, "snes_stol": 0.0, "snes_vi_zero_tolerance": 1e-8}
 NO_FINITE_DIFFERENCES = "PETSc's finite differences would replace the Jacobian; leave it out"
 REFUSED = {"snes_mf": NO_FINITE_DIFFERENCES, "snes_mf_operator": NO_FINITE_DIFFERENCES}
 NUMERIC_PREFIXES, NOT_FINITE = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
-# parts of the names of options that only print
-OUTPUT_OPTIONS = ("monitor", "view", "reason", "log_", "options_", "info", "malloc", "help")
 
 
 def refusal(error: PETSc.Error, user_options: dict) -> str | None:
-    """Message of an error of PETSc with the options that can cause it; None if none can.
-
-    Parameters
-    ----------
-    user_options
-        Options of the user.
-    """
+    """Message of an error of PETSc with the options of the user that can cause it; None if none can."""
     reason = petsc_message(error)
-    is_of_output = "viewer" in reason.lower()
-    possible = {
-        name: value
-        for name, value in user_options.items()
-        if not name.startswith("ehl_") and any(part in name for part in OUTPUT_OPTIONS) == is_of_output
-    }
+    possible = {name: value for name, value in user_options.items() if not name.startswith("ehl_")}
     named = {  # a viewer is type:file:format, of which PETSc names one
         name: value
         for name, value in possible.items()
@@ -223,63 +210,13 @@ def petsc_message(error: PETSc.Error) -> str:
     return str(error).splitlines()[-1].split("] ")[-1]
 
 
-def check_options(options: dict, program_count: int) -> None:
-    """Refuse options that PETSc would accept although they fail later or end the process.
-
-    Parameters
-    ----------
-    options
-        Options of the user.
-    program_count
-        Number of options that the program sets.
-
-    Raises
-    ------
-    UsageError
-    """
-    if len(options) + program_count > MAX_OPTIONS:
-        raise UsageError(
-            f"{len(options)} options for PETSc, whose table holds {MAX_OPTIONS} with the program's own; "
-            "give fewer"
-        )
+def check_options(options: dict) -> None:
+    """Refuse options that PETSc would accept although they fail later or end the process."""
     for name, value in options.items():
         if name in REFUSED and str(value).lower() not in ("false", "no", "0"):
             raise UsageError(f"-{name}: {REFUSED[name]}")
         if name.startswith(NUMERIC_PREFIXES) and str(value).lower().strip().lstrip("+-") in NOT_FINITE:
             raise UsageError(f"-{name} {value}: allowed: a number")
-    if options.get("pc_python_type"):
-        _check_class(options["pc_python_type"])
-
-
-def _check_class(path: str) -> None:
-    """Refuse a class that is not a preconditioner, which PETSc would notice during the first solve."""
-    module, _, name = path.rpartition(".")
-    try:
-        preconditioner = getattr(importlib.import_module(module), name)()
-    except Exception as error:
-        raise UsageError(f"-pc_python_type {path}: {error}; allowed: a class, package.module.Class") from None
-    if not callable(getattr(preconditioner, "apply", None)):
-        raise UsageError(f"-pc_python_type {path}: has no method apply(pc, x, y), as a preconditioner has")
-
-
-def loose_tolerances(values: dict, atol: float) -> list[str]:
-    """One message for every tolerance that is looser than the default.
-
-    Parameters
-    ----------
-    values
-        Options.
-    atol
-        Default of ``-snes_atol``.
-    """
-    lines = []
-    for name, default in {"snes_atol": atol, **DEFAULT_TOLERANCES}.items():
-        value = _number(values.get(name, default))
-        if value is not None and value > default:
-            lines.append(
-                f"-{name} {value:g} is looser than the program's {default:g}: results are less certain"
-            )
-    return lines
 
 
 def _number(text: Any) -> float | None:

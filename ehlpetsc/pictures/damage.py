@@ -41,17 +41,10 @@ class Map(NamedTuple):
     is_damage: bool = True
 
 
-def draw(
-    inputs: Sequence[str],
-    outputs: Sequence[str],
-    folder: str,
-    point: tuple[float, float] | None = None,
-    frame: int | None = None,
-) -> list[str]:
+def draw(inputs: Sequence[str], outputs: Sequence[str], folder: str) -> list[str]:
     """Draw all pictures of result files and their post-processing results; returns the names of the files.
 
-    `folder` is "" for that of each result, `point` the s/a and z/a of the stress history, `frame` the stored
-    frame of the stresses.
+    `folder` is "" for that of each result.
     """
     names = []
     if folder:
@@ -59,7 +52,7 @@ def draw(
     results = [PostResult(output) for output in outputs]
     for path, output, result in zip(inputs, outputs, results, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
-        names += _of_one(path, result, stem, point, frame)
+        names += _of_one(path, result, stem)
     common = Path(folder or Path(outputs[0]).parent)
     if len(results) > 1:
         names += _compared(sorted(results, key=lambda r: r.ratio), common)
@@ -75,9 +68,7 @@ def _save(figure: Figure, stem: str | Path) -> list[str]:
     return names
 
 
-def _of_one(
-    path: str, result: PostResult, stem: Path, point: tuple[float, float] | None, frame: int | None
-) -> list[str]:
+def _of_one(path: str, result: PostResult, stem: Path) -> list[str]:
     names = []
     for surface in result.surfaces:
         if result.complete[surface].any():
@@ -86,8 +77,8 @@ def _of_one(
                 names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
     if result.height.size:
         names += _save(depth_picture(result), f"{stem}.exceedance")
-    names += _save(field_picture(path, result, frame), f"{stem}.stress")
-    return names + _save(history_picture(path, result, point), f"{stem}.history")
+    names += _save(field_picture(path, result), f"{stem}.stress")
+    return names + _save(history_picture(path, result), f"{stem}.history")
 
 
 def _compared(results: list[PostResult], folder: Path) -> list[str]:

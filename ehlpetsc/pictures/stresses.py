@@ -1,4 +1,4 @@
-"""Stresses in a solid at an instant, and the stress history of a body point with its counted cycles."""
+"""Stresses in a solid at an instant, and the stress history of a body point."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from ehlpetsc.base.errors import PostError
 from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, damage
 from ehlpetsc.post.fatigue.cycles import rainflow
-from ehlpetsc.post.fatigue.strain_life import cycles_to_failure, equivalent_range
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
@@ -31,7 +29,6 @@ COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")
 COLOURS = ("#4477aa", style.DARK, style.FILM)  # of the components over time
 VON_MISES = r"$\sigma_{vM}$"
 MARKED_CYCLES = 12
-MIN_CYCLE_DAMAGE = 1e-12  # of the maximum: below the lower end of the axis
 
 
 def along_body(result: PostResult, surface: str, s: np.ndarray) -> np.ndarray:
@@ -42,13 +39,11 @@ def along_body(result: PostResult, surface: str, s: np.ndarray) -> np.ndarray:
     return 1e3 * (result.attrs.get("inlet", passed[-1]) - s)
 
 
-def field_picture(path: str, result: PostResult, frame: int | None) -> Figure:
-    """Pressure, and stresses in the solid of the result's main surface, at one stored frame."""
+def field_picture(path: str, result: PostResult) -> Figure:
+    """Pressure, and stresses in the solid of the result's main surface, at the middle stored frame."""
     surface = result.main
     with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
-        frame = loads.time.size // 2 if frame is None else frame
-        if not 0 <= frame < loads.time.size:
-            raise PostError(f"frame {frame}: there are frames 0 to {loads.time.size - 1}")
+        frame = loads.time.size // 2
         p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
         nu = read_settings(loads.case).materials[surface].poisson_ratio
         z = FIELD_DEPTH * np.linspace(0.0, 1.0, 121) ** 2
@@ -92,48 +87,29 @@ def mark_maximum(axes: Axes, x: np.ndarray, z: np.ndarray, values: np.ndarray, a
     axes.set_title(text, fontsize="small", loc="left")
 
 
-def history_picture(path: str, result: PostResult, point: tuple[float, float] | None) -> Figure:
-    """Stress history of one body point, with [heat] its temperature, and its counted cycles."""
+def history_picture(path: str, result: PostResult) -> Figure:
+    """Stress history of the body point of the maximum damage with its cycles; with [heat] its temperature."""
     surface = result.main
-    s, z = (point[0] * result.a, point[1]) if point else result.worst_point(surface)
-    check_passed(result, surface, s)
+    s, z = result.worst_point(surface)
     with Loads(path, result.attrs.get("settings", "").splitlines()) as loads:
         material = read_settings(loads.case).materials[surface]
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
         heat = temperature_history(loads, surface, s) if loads.is_heated(surface) else None
     channel = counted_channel(result.attrs["count"], values, material)
     cycles = rainflow(1e-9 * values[channel])
-    i, j = cycles[:, 3].astype(int), cycles[:, 4].astype(int)
-    dx, dz, dt = (component[j] - component[i] for component in values)
-    ranges = equivalent_range(dx, material.poisson_ratio * (dx + dz), dz, dt)
-    damages = 1.0 / cycles_to_failure(ranges, material, strain=result.attrs.get("strain", "direct"))
-    heights = (1.6, 1.0) if heat is None else (1.6, 0.7, 1.0)
-    figure, (top, *between, bottom) = style.new_figure(
-        len(heights), 1, (8.0, 2.0 * sum(heights)), height_ratios=heights
-    )
+    rows = 1 if heat is None else 2
+    figure, axes = style.new_figure(rows, 1, (8.0, 1.0 + 2.2 * rows), sharex=True, squeeze=False)
     step = time[1] - time[0]  # zero stress before and after
     padded = 1e6 * np.concatenate([[time[0] - step], time, [time[-1] + step]])
-    draw_history(top, padded, 1e-9 * values, channel, cycles)
-    for axes in between:
-        axes.plot(1e6 * time, heat, color=style.SECOND, lw=0.9)
-        axes.set(ylabel="temperature\nof the surface [K]", xlim=top.get_xlim())
-    (between or [top])[0].set_xlabel("time [µs]")
-    draw_cycles(bottom, cycles[:, 0], damages)
+    draw_history(axes[0, 0], padded, 1e-9 * values, channel, cycles)
+    if heat is not None:
+        axes[1, 0].plot(1e6 * time, heat, color=style.SECOND, lw=0.9)
+        axes[1, 0].set_ylabel("temperature\nof the surface [K]")
+    axes[-1, 0].set_xlabel("time [µs]")
     where = f"{along_body(result, surface, s):.4g} mm (s/a = {s / result.a:.4g}), z/a = {z:g}"
-    counted = f"{len(cycles)} cycles of {COMPONENTS[channel]}, damage {np.sum(damages):.3g}"
+    counted = f"{len(cycles)} cycles of {COMPONENTS[channel]}, damage {np.nanmax(result.damage[surface]):.3g}"
     style.set_title(figure, f"surface {surface}, {where}: {counted}")
     return figure
-
-
-def check_passed(result: PostResult, surface: str, s: float) -> None:
-    """Refuse a body point whose history is incomplete; the message names the range of complete ones."""
-    passed = result.s[result.complete[surface]]
-    if not passed[0] - 1e-9 * result.a <= s <= passed[-1] + 1e-9 * result.a:
-        raise PostError(
-            f"--point s/a = {s / result.a:.6g}: not a point of surface {surface} that passed the whole "
-            f"contact with all its frames stored; s/a = {passed[0] / result.a:.6g} to "
-            f"{passed[-1] / result.a:.6g} is allowed"
-        )
 
 
 def counted_channel(count: str, values: np.ndarray, material: Material) -> int:
@@ -151,18 +127,9 @@ def draw_history(axes: Axes, time: np.ndarray, values: np.ndarray, channel: int,
         axes.plot(time, stresses, lw=0.9, color=colour, label=name)
     counted = values[channel]
     for row in cycles[np.argsort(-cycles[:, 0])][:MARKED_CYCLES]:
-        i, j = int(row[3]), int(row[4])
+        i, j = row[2:].astype(int)
         axes.plot(time[[i, j]], counted[[i, j]], "o", ms=3, color=style.SECOND)
         axes.vlines(time[j], *sorted((counted[i], counted[j])), color=style.SECOND, lw=0.8)
         axes.hlines(counted[i], *sorted((time[i], time[j])), color=style.SECOND, lw=0.5, ls=":")
     axes.set_ylabel("stress [GPa]")
     style.legend_beside(axes)
-
-
-def draw_cycles(axes: Axes, ranges: np.ndarray, damages: np.ndarray) -> None:
-    """Draw the damage of each cycle over its range [GPa]."""
-    axes.plot(ranges, damages, ".", ms=6, color=style.SECOND)
-    maximum = damages.max(initial=0.0) or 1.0
-    axes.set(yscale="log", ylim=(MIN_CYCLE_DAMAGE * maximum, 10.0 * maximum))
-    axes.set(xlabel="range of the counted stress [GPa]", ylabel="1/N of the cycle")
-    axes.grid(color="0.92")

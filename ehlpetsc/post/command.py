@@ -50,10 +50,6 @@ def _parser() -> CommandParser:
     add("--jobs", type=int, default=1, metavar="N", help="threads (default 1)")
     pictures = "also draw PNG and SVG, in FOLDER or beside the result"
     add("--pictures", nargs="?", const="", metavar="FOLDER", help=pictures)
-    point = "body point of the history picture (default: that of the maximum damage)"
-    add("--point", nargs=2, type=float, metavar=("S/A", "Z/A"), help=point)
-    frame = "stored frame of the stress picture (default: the middle one)"
-    add("--frame", type=int, metavar="K", help=frame)
     return parser
 
 
@@ -85,8 +81,6 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
     """Raise UsageError for options that do not fit each other."""
     if chosen.output and len(files) > 1:
         raise UsageError("-o names one file: give one RESULT.h5, or leave it out")
-    if chosen.point and not chosen.point[1] >= 0:
-        raise UsageError(f"--point: the depth z/a = {chosen.point[1]:g} must be 0 or more")
     for setting in chosen.set:
         if not setting.startswith(("post.", "contact.material=")):
             raise UsageError(f"--set {setting}: allowed: post.KEY=VALUE and contact.material=NAME")
@@ -163,8 +157,10 @@ def _summary(output: str, wall: float) -> None:
     for k, z in enumerate(result.z):
         words = [f"z/a={z:<6g}"]
         for surface in surfaces:
-            words.append(f"{surface}: D_max={result.largest(surface, k):.3e}")
-            words += [f"{name}={_largest(result, name, surface, k):.3g}" for name in result.criteria]
+            if not result.complete[surface].any():
+                continue
+            words.append(f"{surface}: D_max={result.passed(surface)[k].max():.3e}")
+            words += [f"{name}={result.passed(surface, name)[k].max():.3g}" for name in result.criteria]
         if (fit := result.fits[k]).beta > 0:
             words.append(f"weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
         print(" ".join(words))
@@ -181,12 +177,6 @@ def _summary(output: str, wall: float) -> None:
         f"ehlpetsc post: done {output} points {points} depths={len(result.z)} "
         f"asperities={len(result.height)} wall={wall:.2f}"
     )
-
-
-def _largest(result: PostResult, criterion: str, surface: str, depth: int) -> float:
-    """Maximum damage or utilisation by a criterion at depth number `depth`; nan if no point passed."""
-    values = result.criteria[criterion][surface][depth, result.complete[surface]]
-    return values.max() if values.size else np.nan
 
 
 def note_damage(index: str | Path) -> list[tuple[int, dict]]:
@@ -224,5 +214,5 @@ def _draw(paths: Sequence[str], chosen: argparse.Namespace) -> None:
     from ehlpetsc.pictures.damage import draw
 
     outputs = [_output(path, chosen) for path in paths]
-    for name in draw(paths, outputs, chosen.pictures, chosen.point, chosen.frame):
+    for name in draw(paths, outputs, chosen.pictures):
         print(name)

@@ -100,22 +100,16 @@ class PostResult:
     ----------
     s, z
         Body points [m]; depths z/a.
-    surfaces, main
-        Surfaces with damage; the one of `height`, `under` and `fits`.
+    surfaces
+        Surfaces with damage.
     damage, complete
         By surface, shapes (nz, ns) and (ns,).
     profiles
         (s, z) by rough surface.
-    height, under
-        Heights (peaks,) of the asperities of `main`, and the damage (nz, peaks) under them.
-    fits
-        Weibull distribution of `under`, one a depth.
     criteria
         By criterion, then surface: damage or utilisation (nz, ns).
     temperatures
         By surface; empty of a run without [heat].
-    ratio
-        Slide/roll ratio.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -126,55 +120,59 @@ class PostResult:
             self.attrs = attributes(file)
             names = [name for surface in SURFACES for name in stored_names(surface)]
             self._arrays = {name: file[name][:] for name in names if name in file}
-        self.a, self.ratio = float(self.attrs["a"]), self.attrs.get("slide_roll_ratio", np.nan)
-        self.title = self.attrs.get("title", "")
+        self.a = float(self.attrs["a"])
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
-        self.surfaces = [side for side in SURFACES if f"damage/{side}" in self._arrays]
-        self.main = self.attrs.get("surface", next(iter(self.surfaces), None))
-        self.damage = {side: self._arrays[f"damage/{side}"] for side in self.surfaces}
-        self.complete = {
-            side: self._get(f"damage/{side}_complete", ~np.isnan(values[0])).astype(bool)
-            for side, values in self.damage.items()
-        }
-        self.profiles = {
-            side: (self._arrays[f"profile/{side}_s"], self._arrays[f"profile/{side}_z"])
-            for side in self.surfaces
-            if f"profile/{side}_s" in self._arrays
-        }
-        self._read_asperities()
+        self.damage = self._of_surfaces("damage/{n}")
+        self.surfaces = list(self.damage)
+        passed = self._of_surfaces("damage/{n}_complete")
+        self.complete = {side: values.astype(bool) for side, values in passed.items()}
+        heights = self._of_surfaces("profile/{n}_z")
+        self.profiles = {side: (s, heights[side]) for side, s in self._of_surfaces("profile/{n}_s").items()}
+        columns = [self._of_surfaces(f"temperature/{{n}}_{name}") for name in PointTemperatures._fields]
         self.temperatures = {
-            side: PointTemperatures(
-                *(self._arrays[f"temperature/{side}_{name}"] for name in PointTemperatures._fields)
-            )
-            for side in self.surfaces
-            if f"temperature/{side}_flash" in self._arrays
+            side: PointTemperatures(*(column[side] for column in columns)) for side in columns[0]
         }
         self.criteria = {
-            name.replace("_", "-"): {
-                side: self._arrays[f"criteria/{name}/{side}_{kind}"] for side in self.surfaces
-            }
+            name.replace("_", "-"): found
             for name, kind in CRITERIA.items()
-            if f"criteria/{name}/{self.main}_{kind}" in self._arrays
+            if (found := self._of_surfaces(f"criteria/{name}/{{n}}_{kind}"))
         }
 
-    def _get(self, name: str, default: np.ndarray) -> np.ndarray:
-        return self._arrays.get(name, default)
+    def _of_surfaces(self, name: str) -> dict[str, np.ndarray]:
+        """Stored arrays of a name with {n} by surface."""
+        names = {side: name.format(n=side) for side in SURFACES}
+        return {side: self._arrays[key] for side, key in names.items() if key in self._arrays}
 
-    def _read_asperities(self) -> None:
-        self.height = self._get(f"asperities/{self.main}_height", np.empty(0))
-        self.under = self._get(f"asperities/{self.main}_damage", np.empty((len(self.z), 0)))
-        columns = [self._get(f"weibull/{self.main}_{name}", np.empty(0)) for name in WeibullFit._fields]
-        self.fits = [WeibullFit(*map(float, row)) for row in zip(*columns, strict=True)]
+    @property
+    def ratio(self) -> float:
+        """Slide/roll ratio."""
+        return self.attrs["slide_roll_ratio"]
 
-    def passed(self, surface: str) -> np.ndarray:
-        """Damage (nz, points) of the points that passed the whole contact; empty if not computed."""
-        if surface not in self.damage:
-            return np.empty((len(self.z), 0))
-        return self.damage[surface][:, self.complete[surface]]
+    @property
+    def main(self) -> str:
+        """Surface whose asperities `height`, `under` and `fits` are of."""
+        return self.attrs["surface"]
 
-    def largest(self, surface: str, depth: int) -> float:
-        """Largest damage of a surface at depth number `depth`; nan if no point passed."""
-        return self.passed(surface)[depth].max(initial=-np.inf) if self.complete[surface].any() else np.nan
+    @property
+    def height(self) -> np.ndarray:
+        """Heights of the asperities [m], shape (peaks,)."""
+        return self._arrays[f"asperities/{self.main}_height"]
+
+    @property
+    def under(self) -> np.ndarray:
+        """Damage under the asperities, shape (nz, peaks)."""
+        return self._arrays[f"asperities/{self.main}_damage"]
+
+    @property
+    def fits(self) -> list[WeibullFit]:
+        """Weibull distribution of `under`, one a depth."""
+        columns = [self._arrays[f"weibull/{self.main}_{name}"] for name in WeibullFit._fields]
+        return [WeibullFit(*map(float, row)) for row in zip(*columns, strict=True)]
+
+    def passed(self, surface: str, criterion: str | None = None) -> np.ndarray:
+        """Damage (nz, points), or that of a criterion, of the points that passed the whole contact."""
+        values = self.criteria[criterion] if criterion else self.damage
+        return values[surface][:, self.complete[surface]]
 
     def summary(self) -> dict:
         """Depths, and for each surface the maximum and median damage at each depth.

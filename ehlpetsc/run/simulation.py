@@ -158,7 +158,7 @@ class Simulation:
         self.solution: State | None = None
         with self.options:
             solver: Any = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
-            self._is_monitored = not self.options.user_set.isdisjoint(MONITOR_OPTIONS)
+            self._is_monitored = any(name in self.options.given for name in MONITOR_OPTIONS)
         before = after.solution.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}

@@ -80,6 +80,7 @@ def test_ensemble_has_damage_quantiles(tmp_path):
         file.attrs.update(a=1e-3, case=result.attrs["case"])
         file["damage/s"], file["damage/z_over_a"] = np.arange(102.0), [0.01]
         file["damage/2"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
+        file["damage/2_complete"] = [1] * 101 + [0]
         for name in ("highest", "mean", "flash"):
             file[f"temperature/2_{name}"] = [*np.linspace(20.0, 120.0, 101), np.nan]
     with read_result(path) as result:

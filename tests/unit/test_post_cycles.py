@@ -15,8 +15,8 @@ ASTM = [-2, 1, -3, 5, -1, 3, -4, 4, -2]
 
 def counts(cycles):
     total = Counter()
-    for size, _, count, *_ in cycles:
-        total[size] += count
+    for size, *_ in cycles:
+        total[size] += 1
     return dict(total)
 
 
@@ -46,10 +46,6 @@ def three_point(series):
     return {size: count for size, count in total.items() if size > 0}
 
 
-def test_astm_example():
-    assert counts(rainflow(ASTM, "half")) == {3: 0.5, 4: 1.5, 6: 0.5, 8: 1.0, 9: 0.5}
-
-
 def test_astm_example_repeated():
     assert counts(rainflow(ASTM)) == {3: 1, 4: 1, 7: 1, 9: 1}
 
@@ -57,14 +53,14 @@ def test_astm_example_repeated():
 def test_largest_range_is_not_dropped():
     series = [0, 100, -50, 80, -100, 0]
     assert counts(rainflow(series)) == {200: 1, 130: 1}
-    assert counts(rainflow(series, "half"))[200] == 0.5
 
 
 def test_random_series_against_the_standard():
     rng = np.random.default_rng(0)
     for k in range(1000):
         series = rng.integers(-8, 9, rng.integers(2, 80)) if k % 2 else rng.normal(size=rng.integers(2, 300))
-        assert counts(rainflow(series, "half")) == three_point(series.tolist())
+        once = np.roll(series, -series.argmax()).tolist()  # a period that begins and ends at its maximum
+        assert counts(rainflow(series)) == three_point([*once, once[0]])
 
 
 @given(st.lists(st.integers(-9, 9), min_size=2, max_size=60))
@@ -81,15 +77,15 @@ def test_closed_residue_is_one_period(series):
 def test_sum_of_closed_ranges_is_half_the_path(series):
     cycles = rainflow(series)
     path = np.abs(np.diff([*series, series[0]])).sum()
-    assert 2 * (cycles[:, 0] * cycles[:, 2]).sum() == pytest.approx(path, rel=1e-9, abs=1e-300)
+    assert 2 * cycles[:, 0].sum() == pytest.approx(path, rel=1e-9, abs=1e-300)
 
 
 def test_plateaus_keep_their_first_sample():
     series = [0, 0, 5, 5, 5, 1, 1, 3, 3, 0, 0]
     cycles = rainflow(series)
-    assert sorted(map(tuple, cycles[:, 3:])) == [(2, 9), (5, 7)]
+    assert sorted(map(tuple, cycles[:, 2:])) == [(2, 9), (5, 7)]
 
 
 def test_constant_and_short_series_have_no_cycles():
     for series in ([], [1.0], [2.0, 2.0, 2.0]):
-        assert rainflow(series).shape == (0, 5)
+        assert rainflow(series).shape == (0, 4)

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from support.made_loads import LOAD, A, Scene, write
+from support.made_loads import LOAD, Scene, write
 
 from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.loading import load
@@ -46,19 +46,6 @@ def test_history_contains_every_sample_of_every_point(scene, tmp_path):
             time, values = history_at(loads, "2", result.s[j], 0.0)
             assert time.size == motion.leave[j] - motion.enter[j] + 1 == values.shape[1] - 2
             assert time[0] == loads.time[motion.enter[j]]
-
-
-def test_picture_point_must_have_passed(scene, tmp_path):
-    from ehlpetsc.pictures.stresses import history_picture
-
-    path = write(tmp_path / "a.h5", scene)
-    run(Job(str(path), str(tmp_path / "o.h5"), depths=(0.0,)))
-    result = PostResult(tmp_path / "o.h5")
-    allowed = result.s[result.complete[result.main]] / A
-    history_picture(path, result, (allowed[-1], 0.0))
-    for s in (0.0, allowed[-1] + 0.1, allowed[0] - 0.1):  # began inside the contact, did not go through it
-        with pytest.raises(PostError, match=f"--point s/a = .* {allowed[0]:.6g} to {allowed[-1]:.6g} "):
-            history_picture(path, result, (s, 0.0))
 
 
 def test_points_follow_surface_positions_under_changing_speeds(scene, tmp_path):

@@ -148,9 +148,6 @@ def test_pictures_for_two_slide_roll_ratios(tmp_path, capsys, monkeypatch):
     compared = ("damage_2", "damage_1", "exceedance_z0", "exceedance_z0.1")
     for stem in (*of_one, *(f"compared.{kind}" for kind in compared)):
         assert f"{stem}.svg" in drawn
-    assert "frames 0 to" in refused(capsys, main, paths[0], "--pictures", "--frame", "99999")
-    message = refused(capsys, main, paths[0], "--pictures", "--point", "400", "0.1")
-    assert is_line_with(message.splitlines()[-1], "--point s/a = 400: ", "s/a = -5.1 to -2.5 ")
 
 
 @pytest.fixture(scope="module")
@@ -231,7 +228,7 @@ def test_depth_of_the_largest_von_mises_stress_is_marked(result):
     assert main([str(result)]) == 0
     found = PostResult(result.with_name("run.post.h5"))
     axes = next(
-        a for a in stresses.field_picture(str(result), found, None).axes if "maximum" in a.get_title("left")
+        a for a in stresses.field_picture(str(result), found).axes if "maximum" in a.get_title("left")
     )
     (mark,) = axes.lines
     (x,), (z,) = mark.get_data()

@@ -85,6 +85,6 @@ def test_temperature_pictures(result, tmp_path):
     path = result()
     main([str(path)])
     found = PostResult(tmp_path / "run.post.h5")
-    for figure in (damage_picture(found, "2"), history_picture(path, found, None)):
+    for figure in (damage_picture(found, "2"), history_picture(path, found)):
         labels = [axes.get_ylabel() for axes in figure.axes]
         assert sum(label.startswith("temperature") for label in labels) == 1

@@ -80,7 +80,12 @@ class Layer:
 
 
 class CompliantContact(SeparatedContact):
-    """Oil and the asperities of a layer carry side by side."""
+    """Oil and the asperities of a layer carry side by side.
+
+    `smallest` is the film at which the asperities carry the yield pressure.
+    """
+
+    smallest = -np.inf
 
     def __init__(self, layer: Layer):
         self.layer = layer
@@ -88,14 +93,12 @@ class CompliantContact(SeparatedContact):
         self.minimum_film = asperity_separation(1.0, *self.law)
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """See :class:`.model.ContactModel`."""
         solids, slope = asperity_pressures(w, self.law)
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
         mask = solids > self.layer.contact_pressure
         return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones, mask)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
         return asperity_pressures(w, self.law)[0]
 
     def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
@@ -115,7 +118,6 @@ class CompliantContact(SeparatedContact):
         return asperity_separations(np.maximum(pressure, DRY_START_EDGE_PRESSURE), self.law)
 
     def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See :class:`.model.ContactModel`."""
         film = np.maximum(gap, asperity_separation(DRY_START_EDGE_PRESSURE, *self.law))
         return np.zeros_like(pressure), np.where(pressure > 0.0, self._separation(pressure), film)
 
@@ -135,10 +137,9 @@ class CompliantContact(SeparatedContact):
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         """See :class:`.model.ContactModel`; linear in h."""
-        return pressure_change(now, step, self.law)
+        return pressure_change(now, step, self.law, self.yield_pressure, self.smallest)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        """See :class:`.model.ContactModel`."""
         limit_rise(now, step, self.law)
 
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
@@ -161,7 +162,6 @@ class CompliantContact(SeparatedContact):
         return full, ~full & (state.p_w < -STIFF_SLOPE)
 
     def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        """See :class:`.model.ContactModel`."""
         full, stiff = (kind[local] for kind in self._kinds(state))
         first, second, slope = solution[:, 0].copy(), solution[:, 1].copy(), state.p_w[local]
         solution[:, 0] = np.where(stiff, second, first - np.where(full, slope * second, 0.0))
@@ -175,7 +175,6 @@ class CompliantContact(SeparatedContact):
         )
 
     def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        """See :class:`.model.ContactModel`."""
         return super().diagnostics(loads, scales, thin_film) | {
             "contact_length_10mpa": scales.dx * loads.contact_mask.sum(),
             "contact_length_100mpa": scales.dx * (loads.contact_pressure > self.layer.high_pressure).sum(),
@@ -183,13 +182,19 @@ class CompliantContact(SeparatedContact):
 
 
 @compiled
-def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple) -> float:
-    """Largest change of total pressure, that of the asperities linearised."""
+def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float, smallest: float) -> float:
+    """Largest change of total pressure; where it stays at `limit`, of the pressure of the solids."""
     largest = 0.0
     for i in range(len(now)):
-        q, new_q = now[i, 0], now[i, 0] - step[i, 0]
-        slope = asperity_pressure(now[i, 1], *law)[1]
-        largest = max(largest, abs(max(new_q, 0.0) - max(q, 0.0) - slope * step[i, 1]))
+        q, w, new_q = now[i, 0], now[i, 1], now[i, 0] - step[i, 0]
+        solids, slope = asperity_pressure(max(w, smallest), *law)
+        rise = 0.0 if w < smallest else -slope * step[i, 1]
+        total = min(max(q, 0.0) + solids, limit)
+        new_total = min(max(new_q, 0.0) + solids + rise, limit)
+        change = abs(new_total - total)
+        if total == limit and new_total == limit:
+            change = abs(min(solids + rise, limit) - solids)
+        largest = max(largest, change)
     return largest
 
 

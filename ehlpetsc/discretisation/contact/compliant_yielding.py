@@ -49,7 +49,6 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         self.minimum_film = max(self.minimum_film, self.smallest)
 
     def elastic(self) -> ContactModel | None:
-        """See :class:`.model.ContactModel`."""
         return CompliantContact(self.layer)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
@@ -57,7 +56,6 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         return super().contact_pressure(np.maximum(w, self.smallest))
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """See :class:`.model.ContactModel`."""
         elastic = super().state(q, np.maximum(w, self.smallest))
         closed, excess = w < self.smallest, elastic.pressure - self.yield_pressure
         by_oil = (excess > 0.0) & (q > AMBIENT_TOLERANCE) & ~closed
@@ -73,7 +71,6 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         return state._replace(h_w=np.where(closed, 0.0, 1.0))
 
     def reset_yielding(self, q: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See :class:`.model.ContactModel`."""
         w = np.maximum(w, self.smallest)
         return np.minimum(q, self.yield_pressure - self.contact_pressure(w)), w
 
@@ -83,12 +80,7 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         q, w = super().dry_start(np.minimum(pressure, self.yield_pressure), gap)
         return q, np.where(excess > 0.0, self.smallest - self.compliance * excess, w)
 
-    def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
-        """See :class:`.model.ContactModel`."""
-        return pressure_change(now, step, self.law, self.yield_pressure, self.smallest)
-
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        """See :class:`.model.ContactModel`."""
         limit_steps(now, step, self.law, self.yield_pressure, self.smallest, self.compliance)
 
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
@@ -120,30 +112,12 @@ class CompliantYieldingContact(Yielding, CompliantContact):
         return by_oil, state.plastic.yielding & ~by_oil
 
     def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        """See :class:`.model.ContactModel`."""
         first, second = solution[:, 0].copy(), solution[:, 1].copy()
         super().from_band(state, local, solution)
         by_oil, closed = (kind[local] for kind in self._plastic_kinds(state))
         slope = -state.plastic.reynolds_w[local]
         solution[:, 0] = np.where(by_oil, first - slope * second, np.where(closed, second, solution[:, 0]))
         solution[:, 1] = np.where(by_oil, second, np.where(closed, -self.compliance * first, solution[:, 1]))
-
-
-@compiled
-def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float, smallest: float) -> float:
-    """Largest change of total pressure; where it stays at `limit`, of the pressure of the solids."""
-    largest = 0.0
-    for i in range(len(now)):
-        q, w, new_q = now[i, 0], now[i, 1], now[i, 0] - step[i, 0]
-        solids, slope = asperity_pressure(max(w, smallest), *law)
-        rise = 0.0 if w < smallest else -slope * step[i, 1]
-        total = min(max(q, 0.0) + solids, limit)
-        new_total = min(max(new_q, 0.0) + solids + rise, limit)
-        change = abs(new_total - total)
-        if total == limit and new_total == limit:
-            change = abs(min(solids + rise, limit) - solids)
-        largest = max(largest, change)
-    return largest
 
 
 @compiled

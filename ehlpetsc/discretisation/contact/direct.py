@@ -39,11 +39,9 @@ class DirectContact(ContactModel):
         self.bound_tolerance = tolerance
 
     def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
         return np.maximum(q, self.lowest_pressure)
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """See :class:`.model.ContactModel`."""
         p_q = np.where(q > self.lowest_pressure - AMBIENT_TOLERANCE, 1.0, 0.0)
         zeros, ones = np.zeros(len(w)), np.ones(len(w))
         return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones, w <= self.lower_bound)
@@ -58,7 +56,6 @@ class DirectContact(ContactModel):
         return at_bound | ((w <= self.lower_bound + self.bound_tolerance) & (reynolds_residual > 0.0))
 
     def w_from_film(self, h: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
         return np.maximum(h, self.lower_bound)
 
     def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
@@ -66,11 +63,9 @@ class DirectContact(ContactModel):
         return self.w_from_film(h)
 
     def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See :class:`.model.ContactModel`."""
         return pressure, gap
 
     def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
         return interpolated
 
     def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
@@ -78,11 +73,9 @@ class DirectContact(ContactModel):
         return state._replace(p_q=np.where(state.contact_mask, 1.0, state.p_q))
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
-        """See :class:`.model.ContactModel`."""
         return pressure_change(now, step, self.lower_bound, self.lowest_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        """See :class:`.model.ContactModel`."""
         clip_cavities(now, step, self.lower_bound)
 
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
@@ -92,7 +85,6 @@ class DirectContact(ContactModel):
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float
     ) -> tuple[str | None, np.ndarray]:
-        """See :class:`.model.ContactModel`."""
         bound, residual = self.lower_bound, reynolds_residual
         if w.min() < bound - self.bound_tolerance:
             return f"a film is {w.min() - bound:.2g} a^2/R below its bound", residual
@@ -130,7 +122,6 @@ class DryContact(DirectContact):
     lowest_pressure = -np.inf
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        """See :class:`.model.ContactModel`."""
         close_overlaps(now, step, self.lower_bound)
 
 

@@ -33,7 +33,6 @@ class SeparatedContact(ContactModel):
     def surface_loads(
         self, q: np.ndarray, w: np.ndarray, h: np.ndarray, reynolds_residual: np.ndarray
     ) -> SurfaceLoads:
-        """See :class:`.model.ContactModel`."""
         mask, pressure = self.contact_mask(w, reynolds_residual), self.state(q, w).pressure
         solids, everywhere = self.contact_pressure(w), np.ones(len(w), dtype=bool)
         oil = pressure - solids
@@ -44,7 +43,6 @@ class SeparatedContact(ContactModel):
         return scales.dx * loads.contact_mask.sum()
 
     def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        """See :class:`.model.ContactModel`."""
         thin = loads.film < thin_film * self.minimum_film
         total = loads.pressure.sum()
         return {
@@ -71,7 +69,6 @@ class MixedContact(SeparatedContact):
         self.stiffness = stiffness
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """See :class:`.model.ContactModel`."""
         mask, pressure = w < 0.0, np.maximum(q, 0.0) + self._carried(w)
         p_w, h_w = np.where(mask, -self.stiffness, 0.0), np.where(mask, 0.0, 1.0)
         film = self.boundary_film + np.maximum(w, 0.0)
@@ -85,7 +82,6 @@ class MixedContact(SeparatedContact):
         return np.minimum(self._carried(w), self.yield_pressure)
 
     def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
         return w < 0.0
 
     def w_from_film(self, h: np.ndarray) -> np.ndarray:
@@ -93,7 +89,6 @@ class MixedContact(SeparatedContact):
         return np.maximum(h - self.boundary_film, 0.0)
 
     def w_from_state(self, h: np.ndarray, contact_pressure: np.ndarray) -> np.ndarray:
-        """See :class:`.model.ContactModel`."""
         return np.where(contact_pressure > 0.0, -contact_pressure / self.stiffness, self.w_from_film(h))
 
     def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
@@ -101,11 +96,9 @@ class MixedContact(SeparatedContact):
         return np.where(shifted < 0.0, shifted, interpolated)
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
-        """See :class:`.model.ContactModel`."""
         return pressure_change(now, step, self.stiffness, self.yield_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        """See :class:`.model.ContactModel`."""
         limit_contact_switch(now, step, self.stiffness, film_after_release)
 
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
@@ -116,7 +109,6 @@ class MixedContact(SeparatedContact):
         return BandEntries(p_first, none, state.h_w, derivatives)
 
     def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        """See :class:`.model.ContactModel`."""
         solid = np.flatnonzero(state.contact_mask[local])
         first, oil = solution[solid, 0], solution[solid, 1]
         solution[solid, 0] = oil

@@ -89,11 +89,9 @@ class YieldingContact(Yielding, MixedContact):
         self.yield_pressure, self.compliance = yield_pressure, 1.0 / stiffness
 
     def elastic(self) -> ContactModel | None:
-        """See :class:`.model.ContactModel`."""
         return MixedContact(self.boundary_film, self.stiffness)
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """See :class:`.model.ContactModel`."""
         elastic = super().state(q, w)
         excess = elastic.pressure - self.yield_pressure
         yielding = excess > 0.0
@@ -110,13 +108,11 @@ class YieldingContact(Yielding, MixedContact):
         return self.at_yield_pressure(elastic, plastic, solids)
 
     def reset_yielding(self, q: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See :class:`.model.ContactModel`."""
         solids = self.contact_pressure(w)
         q = np.minimum(q, self.yield_pressure - solids)
         return q, np.maximum(w, -self.compliance * self.yield_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        """See :class:`.model.ContactModel`."""
         limit_contact_switch(now, step, self.stiffness, film_after_release)
         limit_yield_switch(now, step, self.stiffness, self.yield_pressure)
 
@@ -135,7 +131,6 @@ class YieldingContact(Yielding, MixedContact):
         return BandEntries(p_first, separation_first, state.h_w, derivatives)
 
     def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        """See :class:`.model.ContactModel`."""
         solid = np.flatnonzero(state.contact_mask[local])
         first, oil = solution[solid, 0], solution[solid, 1]
         by_oil = state.plastic.depth_q[local][solid] > 0.0

@@ -183,7 +183,7 @@ def _on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -
 @compiled(error_model="python", nogil=True)
 def _cycle_damage(width: float, normal: float, law: tuple) -> float:
     """1/N of a cycle with a range and a maximum normal stress."""
-    _, _, _, sensitivity, curve, lives = law
+    _, _, sensitivity, curve, lives = law
     if width <= 0:
         return 0.0
     parameter = interpolate(2 * log(width), curve)
@@ -196,9 +196,9 @@ def _cycle_damage(width: float, normal: float, law: tuple) -> float:
 def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: float, work: tuple) -> float:
     """Damage on one plane, without cycles below `threshold` of the widest range."""
     stack, cycles, series, normal = work
-    size, closed = stress.shape[1], law[2]
+    size = stress.shape[1]
     _on_plane(angles, stress, law, work)
-    n, full = find_cycles(series[:size], closed, stack, cycles)
+    n = find_cycles(series[:size], stack, cycles)
     min_range = threshold * (series[:size].max() - series[:size].min())
     total = 0.0
     for k in range(n):
@@ -207,10 +207,10 @@ def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: 
         if width <= min_range:
             continue
         highest = 0.0
-        start, count = loop_of(series, size, i, j, closed)
+        start, count = loop_of(series, size, i, j)
         for m in range(start, start + count):
             highest = max(highest, normal[m if m < size else m - size])
-        total += (1.0 if k < full else 0.5) * _cycle_damage(width, highest, law)
+        total += _cycle_damage(width, highest, law)
     return total
 
 
@@ -316,14 +316,14 @@ class PlaneCounter:
     def __init__(self, material: Material, constants: Criteria, counting: Counting, samples: int) -> None:
         counting.check()
         self.grid, self.tables = planes_and_directions(), shear_tables(material, counting.strain)
-        self.head = (material.poisson_ratio, counting.residue == "closed", constants.sensitivity(material))
+        self.head = material.poisson_ratio, constants.sensitivity(material)
         self.work = (*workspace(samples), np.empty(samples), np.empty(samples))
         self.spare = np.empty((3, samples)), np.empty(samples, np.int64)
 
     def law(self, residual: float) -> tuple:
         """Constants of the compiled functions; residual stress [Pa]."""
-        nu, closed, sensitivity = self.head
-        return nu, float(residual), closed, sensitivity, *self.tables
+        nu, sensitivity = self.head
+        return nu, float(residual), sensitivity, *self.tables
 
     def __call__(
         self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
@@ -345,7 +345,6 @@ def critical_plane(
     txz: np.ndarray,
     material: Material,
     constants: Criteria | None = None,
-    residue: str = "closed",
     strain: str = DEFAULT_STRAIN,
     residual_stress: float = 0.0,
 ) -> PlaneDamage:
@@ -357,13 +356,13 @@ def critical_plane(
     ----------
     sx, sz, txz
         Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    residue, strain
+    strain
         See :func:`ehlpetsc.post.damage`.
     residual_stress
         Residual stress along the surface, equal in x and y, zero in z [Pa]; adds to the normal stress of a
         plane.
     """
-    counting = Counting(residue=residue, strain=strain)
+    counting = Counting(strain=strain)
 
     def counter_of(samples: int) -> PlaneCounter:
         return PlaneCounter(material, constants or Criteria(), counting, samples)

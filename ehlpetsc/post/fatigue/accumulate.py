@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.fatigue.cycles import RESIDUES, find_cycles, workspace
+from ehlpetsc.post.fatigue.cycles import find_cycles, workspace
 from ehlpetsc.post.fatigue.strain_life import (
     DEFAULT_STRAIN,
     STRAINS,
@@ -65,13 +65,12 @@ class Counting(NamedTuple):
     """Options of counting, explained in :func:`damage`."""
 
     count: str = "max3"  # type: ignore[assignment]
-    residue: str = "closed"
     mean_stress: str = "none"
     strain: str = DEFAULT_STRAIN
 
     def check(self) -> Counting:
         """Raise ValueError for an unknown option."""
-        choices = (CHANNELS, RESIDUES, MEAN_STRESSES, STRAINS)
+        choices = (CHANNELS, MEAN_STRESSES, STRAINS)
         for name, value, allowed in zip(self._fields, self, choices, strict=True):
             if value not in allowed:
                 raise ValueError(f"{name} = {value!r}: must be one of {', '.join(allowed)}")
@@ -82,14 +81,11 @@ _squared = compiled(von_mises_squared, error_model="python", nogil=True)
 
 
 @compiled(error_model="python", nogil=True)
-def _sum_cycles(
-    stress: np.ndarray, nu: float, counts: tuple, cycles: np.ndarray, law: tuple
-) -> tuple[float, float, float]:
-    """Damage, number and maximum squared range of the cycles of one history (3, samples)."""
-    (_, morrow, rule, residual), constants, table = law
-    n, full = counts
+def _sum_cycles(stress: np.ndarray, nu: float, cycles: np.ndarray, law: tuple) -> tuple[float, float, float]:
+    """Damage, number and largest squared range of the cycles of one history (3, samples)."""
+    (morrow, rule, residual), constants, table = law
     total = number = largest = 0.0
-    for k in range(n):
+    for k in range(len(cycles)):
         i, j = cycles[k, 0], cycles[k, 1]
         xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
         dsx, dsz = xj - xi, zj - zi
@@ -102,9 +98,8 @@ def _sum_cycles(
             damage = cycle_damage(dsv, mean, rule, constants)
         else:
             damage = look_up(squared, table)
-        weight = 1.0 if k < full else 0.5
-        total += weight * damage
-        number += weight
+        total += damage
+        number += 1.0
         largest = max(largest, squared)
     return total, number, largest
 
@@ -121,8 +116,8 @@ def damage_of_points(
         worst = -1.0
         for channel in channels:
             scalar[: lengths[point]] = history[channel]  # copied: counting is compiled once for all kinds
-            counts = find_cycles(scalar[: lengths[point]], law[0][0], stack, cycles)
-            total, number, largest = _sum_cycles(history, nu, counts, cycles, law)
+            count = find_cycles(scalar[: lengths[point]], stack, cycles)
+            total, number, largest = _sum_cycles(history, nu, cycles[:count], law)
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
                 out[point, 0], out[point, 1], out[point, 2] = total, number, sqrt(largest)
@@ -137,11 +132,7 @@ class Counter:
         counting.check()
         self.material = material
         self.channels = np.array(CHANNELS[counting.count])
-        self.options = (
-            counting.residue == "closed",
-            counting.mean_stress == "morrow",
-            STRAINS.index(counting.strain),
-        )
+        self.options = counting.mean_stress == "morrow", STRAINS.index(counting.strain)
         self.table = life_table(material, counting.strain)
         self.work = (*workspace(samples), np.empty(samples))
 
@@ -163,7 +154,6 @@ def damage(
     txz: np.ndarray,
     material: Material,
     count: str = "max3",
-    residue: str = "closed",
     mean_stress: str = "none",
     strain: str = DEFAULT_STRAIN,
     residual_stress: float = 0.0,
@@ -178,8 +168,6 @@ def damage(
         Scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and txz
         separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
         sz change together, under a passing asperity txz reverses while sz peaks).
-    residue
-        See :func:`ehlpetsc.post.fatigue.cycles.rainflow`.
     mean_stress
         Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading
         the mean stress) from the fatigue strength. The benefit of compression is limited to that of a
@@ -192,5 +180,5 @@ def damage(
         Residual stress along the surface, equal in x and y, zero in z [Pa]; enters twice in the mean of
         Morrow's term, and has no effect without this term.
     """
-    counting = Counting(count, residue, mean_stress, strain)
+    counting = Counting(count, mean_stress, strain)
     return Damage(*evaluate(sx, sz, txz, lambda n: Counter(material, counting, n), residual_stress))

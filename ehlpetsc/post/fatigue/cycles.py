@@ -1,9 +1,8 @@
-r"""Rainflow counting by the four-point method; the residue is counted as a closed history or as half cycles.
+r"""Rainflow counting by the four-point method; the residue is counted as that of a repeated history.
 
 A four-point count alone leaves a residue of the largest ranges, which is not conservative to ignore. The
-history of a point that passes the contact repeatedly is periodic; hence by default the residue is closed:
-it begins and ends with its largest reversal (ASTM E1049, 5.4.5, repeating histories). Counted as half
-cycles, the result is that of ASTM E1049, 5.4.4.
+history of a point that passes the contact repeatedly is periodic; hence the residue is closed: it
+begins and ends with its largest reversal (ASTM E1049, 5.4.5, repeating histories).
 
 Closed loop of a counted cycle, and a history as points whose distances are von Mises stresses.
 
@@ -25,8 +24,6 @@ from math import sqrt
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
-
-RESIDUES = ("closed", "half")
 
 
 @compiled(error_model="python", nogil=True)
@@ -76,8 +73,8 @@ def _close_residue(series: np.ndarray, stack: np.ndarray, top: int, cycles: np.n
 
 
 @compiled(error_model="python", nogil=True)
-def find_cycles(series: np.ndarray, closed: bool, stack: np.ndarray, cycles: np.ndarray) -> tuple[int, int]:
-    """Write the two reversals of each cycle into `cycles`; return the numbers of all and of full cycles.
+def find_cycles(series: np.ndarray, stack: np.ndarray, cycles: np.ndarray) -> int:
+    """Write the two reversals of each cycle into `cycles`; return their number.
 
     `series` must be finite; the arrays are those of :func:`workspace`. The first sample of a plateau is the
     reversal.
@@ -92,7 +89,7 @@ def find_cycles(series: np.ndarray, closed: bool, stack: np.ndarray, cycles: np.
         if series[i] != value:
             break
     else:
-        return 0, 0
+        return ZERO
     rising = series[i] > value
     for k in range(i, size):
         new = series[k]
@@ -108,12 +105,7 @@ def find_cycles(series: np.ndarray, closed: bool, stack: np.ndarray, cycles: np.
         last = k
     stack[top] = last
     top, n = _close(series, stack, ZERO, top + 1, cycles, n)
-    if closed:
-        n = _close_residue(series, stack, top, cycles, n)
-        return n, n
-    for i in range(top - 1):
-        cycles[n + i, 0], cycles[n + i, 1] = stack[i], stack[i + 1]
-    return n + top - 1, n
+    return _close_residue(series, stack, top, cycles, n)
 
 
 def workspace(size: int) -> tuple[np.ndarray, np.ndarray]:
@@ -121,32 +113,26 @@ def workspace(size: int) -> tuple[np.ndarray, np.ndarray]:
     return np.empty(2 * size + 4, np.int64), np.empty((size + 2, 2), np.int64)
 
 
-def rainflow(series: np.ndarray, residue: str = "closed") -> np.ndarray:
-    """Rainflow cycles of one history: range, mean, count (1 or 0.5), indices of the two reversals.
+def rainflow(series: np.ndarray) -> np.ndarray:
+    """Rainflow cycles of one history that repeats: range, mean, indices of the two reversals.
 
-    "closed": the history repeats, all cycles are full, and a cycle whose second reversal comes before the
-    first spans the repetition. "half": ranges that do not close count as half cycles, as in ASTM E1049,
-    5.4.4.
+    A cycle whose second reversal comes before the first spans the repetition.
     """
     series = np.ascontiguousarray(series, dtype=float)
-    if residue not in RESIDUES:
-        raise ValueError(f"residue must be one of {', '.join(RESIDUES)}")
     if series.ndim != 1 or not np.isfinite(series).all():
         raise ValueError("a history must be one row of finite values")
     if series.size < 2:
-        return np.empty((0, 5))
+        return np.empty((0, 4))
     stack, cycles = workspace(series.size)
-    n, full = find_cycles(series, residue == "closed", stack, cycles)
-    i, j = cycles[:n].T
-    weight = np.where(np.arange(n) < full, 1.0, 0.5)
-    return np.column_stack([np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, weight, i, j])
+    i, j = cycles[: find_cycles(series, stack, cycles)].T
+    return np.column_stack([np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, i, j])
 
 
 @compiled(error_model="python", nogil=True)
-def loop_of(series: np.ndarray, size: int, i: int, j: int, closed: bool) -> tuple[int, int]:
+def loop_of(series: np.ndarray, size: int, i: int, j: int) -> tuple[int, int]:
     """First sample and number of samples of the loop of the cycle between samples i and j of series[:size].
 
-    `closed`: the history repeats, so that a loop may extend across its end, as from i to j < i.
+    The history repeats: a loop may extend across its end, as from i to j < i.
     """
     low, high = min(series[i], series[j]), max(series[i], series[j])
     count, first = (j - i) % size + 1, i
@@ -154,7 +140,7 @@ def loop_of(series: np.ndarray, size: int, i: int, j: int, closed: bool) -> tupl
         at = first if step < 0 else first + count - 1
         while count < size:
             at += step
-            if not (closed or 0 <= at < size) or not low <= series[at % size] <= high:
+            if not low <= series[at % size] <= high:
                 break
             count += 1
             if step < 0:

@@ -44,7 +44,6 @@ from math import exp, inf, log
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
 STRAINS = ("direct", "neuber", "glinka")
 DEFAULT_STRAIN = "neuber"
@@ -120,37 +119,11 @@ class Material:
         return *curve, self.fatigue_strength, self.fatigue_ductility, self.b, self.c
 
 
-def equivalent_range(dsx: np.ndarray, dsy: np.ndarray, dsz: np.ndarray, dtxz: np.ndarray) -> np.ndarray:
-    """Equivalent stress range from component ranges with their signs, Pa (Holmes et al. 2005, eq. (12))."""
-    return np.sqrt(von_mises_squared(dsx, dsy, dsz, dtxz))
-
-
 def rule_of(strain: str) -> int:
     """Index of a rule in `STRAINS`; ValueError for an unknown rule."""
     if strain not in STRAINS:
         raise ValueError(f"strain = {strain!r}: must be one of {', '.join(STRAINS)}")
     return STRAINS.index(strain)
-
-
-def strain_range(dsv: np.ndarray, material: Material, strain: str = "direct") -> np.ndarray:
-    """Strain range of an elastic stress range dsv in Pa (Holmes et al. 2005, eq. (13)).
-
-    `strain`: rule applied to the elastic range first.
-    """
-    dsv = np.asarray(dsv, float)
-    if rule_of(strain):
-        dsv = local_range(dsv, material, strain)
-    return dsv / material.youngs_modulus + 2 * (dsv / (2 * material.hardening_coefficient)) ** (
-        1 / material.cyclic_hardening
-    )
-
-
-def local_range(dsv: np.ndarray, material: Material, strain: str) -> np.ndarray:
-    """Elastic-plastic stress range from an elastic range, Pa."""
-    dsv, rule = np.asarray(dsv, float), rule_of(strain)
-    curve = material.constants()[:3]
-    logs = [log_local_range(log(value), *curve, rule)[0] if value > 0 else -inf for value in dsv.ravel()]
-    return np.exp(logs).reshape(dsv.shape)[()]
 
 
 @compiled(error_model="python", nogil=True)
