@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -17,16 +16,14 @@ from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, PostError, 
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES, Counting
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.results.index import files_of, read_index
-from ehlpetsc.results.output_guard import Lock, atomic_write, check_output_path
-from ehlpetsc.results.post_result import SURFACES, PostResult, damage_beside, post_path
-from ehlpetsc.results.reader import read_result
+from ehlpetsc.results.index import files_of
+from ehlpetsc.results.output_guard import check_output_path
+from ehlpetsc.results.post_result import SURFACES, PostResult, post_path
 
 DESCRIPTION = (
     "Stress histories of body points, rainflow cycles, fatigue damage and its statistics from result files. "
     "Material and depths come from the case in the file, table [post]."
 )
-PASSES_INDEX = ".passes.json"
 
 
 def _parser() -> CommandParser:
@@ -34,7 +31,7 @@ def _parser() -> CommandParser:
     add = parser.add_argument
     several = (
         "several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
-        "OUTPUT.passes.json: its passes, whose damage is then added to it"
+        "OUTPUT.passes.json: its passes"
     )
     add("results", nargs="+", metavar="RESULT.h5", help=several)
     output = "result, of a single input (default: RESULT.post.h5 beside it)"
@@ -69,8 +66,6 @@ def main(words: Sequence[str]) -> int:
         _status(partial(_process, path, arguments, files), path, _output(path, arguments)) for path in files
     ]
     done = [path for path, status in zip(files, statuses, strict=True) if status == ExitStatus.DONE]
-    for index in [path for path in arguments.results if done and path.endswith(PASSES_INDEX)]:
-        statuses.append(_status(partial(_print_passes, index), index, index))
     if arguments.pictures is not None and done:
         work = partial(_draw, done, arguments)
         statuses.append(_status(work, "pictures", arguments.pictures or "pictures"))
@@ -177,37 +172,6 @@ def _summary(output: str, wall: float) -> None:
         f"ehlpetsc post: done {output} points {points} depths={len(result.z)} "
         f"asperities={len(result.height)} wall={wall:.2f}"
     )
-
-
-def note_damage(index: str | Path) -> list[tuple[int, dict]]:
-    """Add the damage of every pass to an index of passes, under "damage"; the number and damage of each pass.
-
-    The damage is that of `ehlpetsc.results.post_result.PostResult.summary`.
-    """
-    index = Path(index)
-    with Lock(index, "wait for it"):
-        content, damages = read_index(index), []
-        for row in content["passes"]:
-            with read_result(index.with_name(row["file"])) as result:
-                damage = damage_beside(result)
-            if damage is not None:
-                row["damage"] = damage.summary()
-                damages.append((row["pass"], row["damage"]))
-        atomic_write(index, json.dumps(content, indent=1).encode())
-    return damages
-
-
-def _print_passes(index: str) -> None:
-    """Add the damage of every pass to the index of a run, and print one line for each pass."""
-    passes = note_damage(index)
-    for number, damage in passes:
-        words = [f"pass {number}:"]
-        for side in [side for side in sorted(SURFACES) if side in damage]:
-            words.append(f"{side} D_max={max(damage[side]['largest']):.3e}")
-            if "flash_temperature" in damage[side]:
-                words.append(f"flash_max={damage[side]['flash_temperature']:.4g} K")
-        print(" ".join(words))
-    print(f"ehlpetsc post: done {index} passes={len(passes)}")
 
 
 def _draw(paths: Sequence[str], chosen: argparse.Namespace) -> None:

@@ -174,21 +174,6 @@ class PostResult:
         values = self.criteria[criterion] if criterion else self.damage
         return values[surface][:, self.complete[surface]]
 
-    def summary(self) -> dict:
-        """Depths, and for each surface the maximum and median damage at each depth.
-
-        With [heat] also the maximum flash temperature [K].
-        """
-        summary = {"z_over_a": self.z.tolist()}
-        for side in self.surfaces:
-            values = self.passed(side)
-            if values.size:
-                largest, median = values.max(axis=1), np.median(values, axis=1)
-                summary[side] = {"largest": largest.tolist(), "median": median.tolist()}
-                if side in self.temperatures:
-                    summary[side]["flash_temperature"] = float(np.nanmax(self.temperatures[side].flash))
-        return summary
-
     def worst_point(self, surface: str) -> tuple[float, float]:
         """(s, z/a) of the largest damage."""
         values = np.nan_to_num(self.damage[surface], nan=-1.0)

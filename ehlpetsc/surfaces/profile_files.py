@@ -49,7 +49,6 @@ class Layout:
     fill_gaps: float | None = None
 
 
-ProfileWithNotes = tuple[np.ndarray, np.ndarray, tuple[str, ...]]
 KEYS = tuple(Layout.__dataclass_fields__)
 
 

@@ -47,9 +47,7 @@ def foreign(folder, name):
     return path
 
 
-@pytest.mark.parametrize(
-    "words, name", [([], "one.png"), (["--report"], "one.html"), (["--movie"], "one.gif")]
-)
+@pytest.mark.parametrize("words, name", [([], "one.png"), (["--report"], "one.html")])
 def test_full_disk_keeps_the_older_picture(tmp_path, capsys, words, name):
     result = make_result(tmp_path / "one.h5", steps=3)
     assert plot([str(result), *words]) == 0

@@ -1,4 +1,4 @@
-"""Which mechanism wins a life; its line, picture and movie."""
+"""Which mechanism wins a life; its line and picture."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Surfaces after a pass, and damage of passes in their index."""
+"""Surfaces after a pass, and damage of passes."""
 
 import json
 
@@ -29,20 +29,11 @@ def index(tmp_path):
     return path
 
 
-def test_damage_of_every_pass_is_added_to_the_index(index, capsys):
+def test_every_pass_of_an_index_is_processed(index, capsys):
     assert main([str(index)]) == ExitStatus.DONE
-    message = capsys.readouterr().out
-    rows = json.loads(index.read_text())["passes"]
-    for number, row in enumerate(rows, 1):
-        known = PostResult(index.with_name(f"run.pass{number}.post.h5"))
-        assert row["set_volume"] == 1e-12 and row["damage"]["z_over_a"] == [0.0, 0.1]
-        for side in ("1", "2"):
-            passed = known.damage[side][:, known.complete[side]]
-            assert row["damage"][side]["largest"] == passed.max(axis=1).tolist()
-            assert row["damage"][side]["median"] == np.median(passed, axis=1).tolist()
-        assert f"pass {number}: 1 D_max={max(row['damage']['1']['largest']):.3e}" in message
-    assert rows[1]["damage"]["2"]["largest"][0] < rows[0]["damage"]["2"]["largest"][0]
-    assert f"done {index} passes=2" in message
+    assert capsys.readouterr().out.count("ehlpetsc post: done ") == 2
+    first, second = (PostResult(index.with_name(f"run.pass{k}.post.h5")).passed("2")[0].max() for k in (1, 2))
+    assert second < first
 
 
 def test_damage_of_another_case_is_not_that_of_a_pass(index):

@@ -39,7 +39,6 @@ class ReducedSystem:
         self._band[:, self._diagonal] = self._wanted[np.arange(len(taken)), taken] = ONE
         for k in range(-BORDER, 0):
             self._rows[k, :, k] = ONE
-        self._sums_alone = np.eye(BORDER, cut + BORDER, cut)
 
     def rows_of_inverse(self, values: np.ndarray) -> np.ndarray:
         """Coefficients of the unknowns that this rank takes, and of the sums over all ranks.
