@@ -243,11 +243,11 @@ def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
     from ehlpetsc.surfaces.profile_checks import absurd  # smooth surfaces need none
     from ehlpetsc.surfaces.samples import samples
 
+    given = samples(folder, spec)
     if case is None:
-        samples(folder, spec)
         return
     scales = Scales.of(case)
     film = scales.h * expected_film(case, scales) if case.fluid else 0.0
-    fault = absurd(samples(folder, spec, scales.dx), scales.a, scales.dx, scales.h, film)
+    fault = absurd(given, scales.a, scales.dx, scales.h, film)
     if fault:
         raise ProfileError(fault)

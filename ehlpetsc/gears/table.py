@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ehlpetsc.base.materials import elastic_constants
 from ehlpetsc.gears.load_sharing import edge_contact
-from ehlpetsc.gears.path import describe, gear_loss_factor
-from ehlpetsc.gears.standards import STANDARDS, loss_factor, values_of
+from ehlpetsc.gears.path import Path, describe, gear_loss_factor
+from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
 from ehlpetsc.physics.scales import hertz_line, reduced_modulus
-
-if TYPE_CHECKING:
-    from ehlpetsc.gears.path import Path
-    from ehlpetsc.gears.standards import Rating
 
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
 

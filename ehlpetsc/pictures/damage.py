@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from ehlpetsc.base.errors import PostError
@@ -15,11 +18,6 @@ from ehlpetsc.pictures.stresses import along_body, field_picture, history_pictur
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
 from ehlpetsc.results.output_guard import PICTURES, check_derived
 from ehlpetsc.results.post_result import PostResult, WeibullFit
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.contour import ContourSet
-    from matplotlib.figure import Figure
 
 FORMATS = ("png", "svg")
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper

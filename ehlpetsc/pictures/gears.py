@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehlpetsc.analysis.gear_run import FLANKS, SCALARS
+from ehlpetsc.analysis.gear_run import FLANKS, SCALARS, GearRun
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES, share
-from ehlpetsc.gears.standards import values_of
+from ehlpetsc.gears.path import Path as ContactPath
+from ehlpetsc.gears.standards import Rating, values_of
 from ehlpetsc.gears.table import hertz
 from ehlpetsc.pictures import style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from ehlpetsc.analysis.gear_run import GearRun
-    from ehlpetsc.gears.path import Path as ContactPath
-    from ehlpetsc.gears.standards import Rating
 
 WIDTH, PANEL, FONT, DPI = 3.35, 0.95, 8, 300  # inches, points, dots per inch: one column
 POSITION = "position from the pitch point [mm]"
@@ -171,7 +164,7 @@ def _panels(count: int, title: str, height: float = PANEL, shared: bool = True) 
 def _finish(figure: Figure, axes: np.ndarray, target: Path, label: str = POSITION) -> None:
     figure.align_ylabels(list(axes))
     axes[-1].set_xlabel(label, fontsize=FONT)
-    style.save(figure, target, chosen=Namespace(size=None, no_title=False, dpi=DPI))
+    style.save(figure, target, dpi=DPI)
 
 
 def _legend_above(axis: Axes, columns: int) -> None:

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.accumulate import CHANNELS, damage
 from ehlpetsc.post.fatigue.cycles import rainflow
+from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.post.stresses.half_plane import stress, von_mises
 from ehlpetsc.post.temperatures import temperature_history
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.contour import ContourSet
-    from matplotlib.figure import Figure
-
-    from ehlpetsc.post.fatigue.strain_life import Material
-    from ehlpetsc.results.post_result import PostResult
+from ehlpetsc.results.post_result import PostResult
 
 FIELD_DEPTH = 1.5  # half-widths
 COMPONENTS = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$")

@@ -50,13 +50,15 @@ def set_title(figure: Figure, *lines: str) -> None:
     figure.suptitle("\n".join(filter(None, lines)), fontsize="medium")
 
 
-def save(figure: Figure, *paths: str | Path, chosen: argparse.Namespace | None = None) -> None:
+def save(
+    figure: Figure, *paths: str | Path, chosen: argparse.Namespace | None = None, dpi: float = DPI
+) -> None:
     """Write a figure, in the format of each file name; `chosen` has the options of `add_options`."""
-    if chosen and chosen.size:
-        figure.set_size_inches(chosen.size)
-    if chosen and chosen.no_title:
-        figure.suptitle("")
-    dpi = chosen.dpi if chosen else DPI
+    if chosen:
+        dpi = chosen.dpi
+        figure.set_size_inches(chosen.size or figure.get_size_inches())
+        if chosen.no_title:
+            figure.suptitle("")
     figure.set_dpi(dpi)
     figure.draw_without_rendering()  # one layout for all formats
     figure.set_layout_engine("none")

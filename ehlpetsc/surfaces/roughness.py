@@ -68,10 +68,6 @@ class Roughness:
         ----------
         positions
             By default both profiles begin to enter with their first point.
-
-        Raises
-        ------
-        ProfileError
         """
         sides, positions = {}, positions or SurfacePositions()
         speeds = directed_speeds(case, scales)
@@ -125,7 +121,7 @@ def _profile(
         swept_length = scales.duration * abs(speed)
     starts_rough = case.time is not None and case.time.start == "rough"
     return Profile(
-        samples(case.path.parent, spec, scales.dx),
+        samples(case.path.parent, spec),
         speed,
         case.time is not None,
         inlet,

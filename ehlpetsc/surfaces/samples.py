@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.surfaces import synthetic
-from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass, thinned
+from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 if TYPE_CHECKING:
@@ -52,19 +52,10 @@ class Samples:
         return self.length / (self.X.size - 1)
 
 
-def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
-    """Samples of one surface: read or generated, thinned, levelled, filtered, centred, flipped, scaled.
+def samples(folder: Path, spec: Values) -> Samples:
+    """Samples of one surface: read or generated, levelled, filtered, centred, flipped, scaled.
 
-    Parameters
-    ----------
-    folder
-        Folder of the case file, in which profile files are.
-    cell
-        Spacing of the mesh [m], to which much denser samples are thinned.
-
-    Raises
-    ------
-    ProfileError
+    Profile files are in `folder`, that of the case file.
     """
     if spec.synthetic is not None:
         X, z, repeats = synthetic.sampled(spec.synthetic)
@@ -76,9 +67,7 @@ def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
         X, z, found = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
         X, z, found = read_profile(folder / spec.file, layout_of(spec))
-    notes, read = list(found), X.size
-    if cell is not None:
-        X, z = thinned(X, z, min(filter(None, (cell, spec.cutoff, spec.short_cutoff))))
+    notes = list(found)
     if spec.level:
         z = levelled(X, z)
     if spec.cutoff is not None:
@@ -87,10 +76,6 @@ def samples(folder: Path, spec: Values, cell: float | None = None) -> Samples:
         ra, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
         shown = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
         notes.append(f"short_cutoff: Ra {shown[0]} before, {shown[1]} after")
-        if cell is not None:
-            X, z = thinned(X, z, cell)
-    if z.size < read:
-        notes.append(f"{read} points, thinned to {z.size} local means")
     mean = float(z.mean())
     if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
         z = z - mean

@@ -11,7 +11,7 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
-from ehlpetsc.surfaces.filters import high_pass, low_pass
+from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
@@ -349,3 +349,10 @@ def test_travel_to_entry_and_filling():
     assert entry_times(ridge.surface_2, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
     still, s = rough("dry_rough.toml")
     assert entry_times(still.surface_2, s) is None
+
+
+def test_levelling_removes_a_line_only():
+    X = np.linspace(0.0, 4e-3, 10_001)
+    z = 1e-7 * np.cos(2 * np.pi * X / 1e-4)
+    np.testing.assert_allclose(levelled(X, z + 3e-3 * X - 7e-6), levelled(X, z), atol=1e-18)
+    np.testing.assert_allclose(levelled(X, z), z - np.polynomial.Polynomial.fit(X, z, 1)(X), atol=1e-20)

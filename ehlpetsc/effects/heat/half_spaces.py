@@ -15,17 +15,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.effects.heat.record import BodyHeat
 from ehlpetsc.physics.flash_temperature import Solid
-
-if TYPE_CHECKING:
-    from ehlpetsc.physics.scales import Scales
-
+from ehlpetsc.physics.scales import Scales
 
 STEP = 1.2  # of the trapezoidal rule in y: its relative error is 2 |Gamma(1/2 + 2 pi i/STEP)|/sqrt(pi) = 8e-4
 FASTEST = 30.0  # rate of the fastest term times the time step

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
+from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
-from ehlpetsc.effects.effect import Step
+from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces
 from ehlpetsc.effects.heat.film_law import MEAN, MIN_SLOPE, R1, R2, SPREAD, W1, W2, FilmLaw, G, film_law
 from ehlpetsc.effects.heat.half_spaces import Body
@@ -18,11 +19,6 @@ from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.physics.flash_temperature import Solid
 from ehlpetsc.physics.laws import LAWS, viscosity_law
-
-if TYPE_CHECKING:
-    from ehlpetsc.discretisation.ehl_problem import Solution
-    from ehlpetsc.effects.effect import Scene
-
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
