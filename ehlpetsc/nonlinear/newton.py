@@ -49,11 +49,6 @@ class NewtonSolver:
         Absolute tolerance of the last solve.
     bounded : bool
         Whether SNES enforces the bound of the contact model.
-
-    Raises
-    ------
-    UsageError
-        An option is refused by PETSc or by the system.
     """
 
     def __init__(self, system: TwoFields, options: RunOptions | None = None):

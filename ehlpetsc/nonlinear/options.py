@@ -82,13 +82,7 @@ class RunOptions:
         return (self._defaults | self.given).get(name, default)
 
     def real(self, name: str, default: float | None = None) -> float:
-        """Value of an option as a number.
-
-        Raises
-        ------
-        UsageError
-            The value is not a number.
-        """
+        """Value of an option as a number."""
         value = self.value(name, default)
         try:
             return float(value)

@@ -33,11 +33,6 @@ def solver_of(
     ----------
     film_scale
         Expected film in a^2/R.
-
-    Raises
-    ------
-    UsageError
-        Gauss-Seidel sweeps with a dry or mixed contact.
     """
     name = options.value("ehl_scheme")
     check_scheme(name)

@@ -64,11 +64,6 @@ class TwoFields:
         Whether a film is at its bound after the last evaluated step, on any rank.
     operator, preconditioned : petsc4py.PETSc.Mat
         The Jacobian, and the matrix for preconditioners; set by :meth:`create_matrices`.
-
-    Raises
-    ------
-    UsageError
-        More ranks than the mesh has blocks.
     """
 
     def __init__(
@@ -217,13 +212,7 @@ class TwoFields:
 
 
 def first_nodes(n: int, ranks: int) -> list[int]:
-    """First nodes of all ranks, multiples of `BLOCK`, and n.
-
-    Raises
-    ------
-    UsageError
-        A rank would have no block.
-    """
+    """First nodes of all ranks, multiples of `BLOCK`, and n."""
     max_ranks = max(n // BLOCK, 1)
     if ranks > max_ranks:
         raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {max_ranks}")

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from ehlpetsc.life.history import LifeBody, LifeHistory
 from ehlpetsc.pictures import style
+
+if TYPE_CHECKING:
+    from ehlpetsc.life.history import LifeBody, LifeHistory
 
 SHOWN_INSTANTS = 3  # instants of the life
 SHOWN_DAMAGE = 0.1  # of the maximum: cells with as much are within the picture

@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.base.command_parser import CommandParser
-from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, PostError, UsageError, not_written
+from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES, Counting
 from ehlpetsc.post.run import Job, run
@@ -52,23 +52,20 @@ def _parser() -> CommandParser:
 
 def main(words: Sequence[str]) -> int:
     """Process each file and draw the processed results; returns the exit status."""
-    parser = _parser()
-    arguments = parser.parse_args(words)
-    try:
-        files = [str(file) for path in arguments.results for file in files_of(path)]
-        _check(arguments, files)
-    except OutputError as fault:
-        _say(str(fault))
-        return ExitStatus.BAD_INPUT
-    except UsageError as fault:
-        parser.error(str(fault))
+    chosen = _parser().parse_args(words)
+    return exit_status("post", lambda: _run(chosen))
+
+
+def _run(chosen: argparse.Namespace) -> int:
+    files = [str(file) for path in chosen.results for file in files_of(path)]
+    _check(chosen, files)
     statuses = [
-        _status(partial(_process, path, arguments, files), path, _output(path, arguments)) for path in files
+        exit_status("post", partial(_process, path, chosen, files), output=_output(path, chosen))
+        for path in files
     ]
     done = [path for path, status in zip(files, statuses, strict=True) if status == ExitStatus.DONE]
-    if arguments.pictures is not None and done:
-        work = partial(_draw, done, arguments)
-        statuses.append(_status(work, "pictures", arguments.pictures or "pictures"))
+    if chosen.pictures is not None and done:
+        statuses.append(exit_status("post", partial(_draw, done, chosen), output="pictures"))
     return max(statuses)
 
 
@@ -84,25 +81,7 @@ def _check(chosen: argparse.Namespace, files: Sequence[str]) -> None:
 
 
 def _say(text: str) -> None:
-    """Print lines to standard error."""
-    for line in text.splitlines():
-        print(f"ehlpetsc post: {line}", file=sys.stderr)
-
-
-def _status(work: Callable[[], None], path: str, output: str) -> int:
-    """Run work() and print its faults; `path` is its input, `output` its output."""
-    try:
-        work()
-    except (PostError, OutputError, CaseError) as fault:
-        for line in str(fault).splitlines():
-            _say(line if line.startswith(str(path)) else f"{path}: {line}")
-        return ExitStatus.BAD_INPUT
-    except BrokenPipeError:
-        raise
-    except OSError as fault:
-        _say(not_written(fault, fault.filename or output))
-        return ExitStatus.BAD_INPUT
-    return ExitStatus.DONE
+    print(f"ehlpetsc post: {text}", file=sys.stderr)
 
 
 def _progress(text: str) -> None:

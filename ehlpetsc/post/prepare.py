@@ -64,13 +64,7 @@ def read_settings(case: Case) -> Settings:
 
 
 def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> Prepared:
-    """Find the body points whose damage can be computed, and report what limits it.
-
-    Raises
-    ------
-    PostError
-        The result is not suitable for damage; the message states the reason.
-    """
+    """Find the body points whose damage can be computed, and report what limits it."""
     settings = read_settings(loads.case)
     loads.check(surfaces)
     every = max(int(np.median(np.diff(loads.step))), 1)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehlpetsc import __version__
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, PostError
 from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
@@ -71,22 +71,16 @@ def run(
     """Compute damage and statistics of one result file and write them to `job.output`, replacing it.
 
     `report` is called with warnings and notes, `progress` with the finished part.
-
-    Raises
-    ------
-    OutputError, CaseError
-        The result file or its case cannot be read.
-    PostError
-        The result file is not suitable for damage.
-    OSError
-        The output cannot be written, as on a full disk; no file is left.
     """
     job.counting.check()
     depths = () if job.depths is None else (("post.depths", list(job.depths)),)
     with Loads(job.path, [*job.settings, *depths]) as loads:
         identity = job.fingerprint()
         job = job.of_case(loads.case)
-        prepared = prepare(loads, job.surfaces, report)
+        try:
+            prepared = prepare(loads, job.surfaces, report)
+        except PostError as fault:
+            raise PostError(f"{job.path}: {fault}") from None
         for note in _notes(job, loads):
             report(note)
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.settings.depths}

@@ -43,11 +43,6 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
         Wavelength [m].
     key
         Key of the cut-off in the case.
-
-    Raises
-    ------
-    ProfileError
-        x is not equally spaced, or the cut-off is longer than the profile or shorter than its waves.
     """
     from scipy.fft import dct, idct
 

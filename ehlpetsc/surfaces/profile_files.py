@@ -67,10 +67,6 @@ def read_profile(
         Both in m, X increasing; heights positive out of the metal, shape (n,).
     notes
         Notes on the processing of the numbers.
-
-    Raises
-    ------
-    ProfileError
     """
     path = Path(path)
     try:
