@@ -14,7 +14,6 @@ import numpy as np
 
 from ehlpetsc.base.environment import has
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.case.loading import Case
 from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import default_window, frame_to_show, travel_of
@@ -81,8 +80,7 @@ def facts(result: Result) -> list[tuple[str, str]]:
     attrs, steps = result.attrs, result.steps
     rows = [
         ("ended as", str(attrs.get("status", "unknown"))),
-        *_conditions(result, result.case),
-        ("half-width a, pressure p0", f"{1e3 * attrs['a']:.4g} mm, {1e-9 * attrs['p0']:.4g} GPa"),
+        ("contact", f"{result.case.contact.model} contact, {style.conditions([result])}"),
         ("nodes, steps", f"{len(result.x)}, {len(steps('time')) - 1}"),
         ("minimum film", f"{1e6 * np.nanmin(steps('h_min')):.4g} µm"),
         ("maximum pressure", f"{1e-9 * np.nanmax(steps('p_max')):.4g} GPa"),
@@ -98,32 +96,6 @@ def facts(result: Result) -> list[tuple[str, str]]:
         if np.isfinite(steps(name)).any():
             rows.append((f"maximum error of the {words}", f"{np.nanmax(steps(name)):.2g}"))
     return rows + [("limit", line) for line in str(attrs.get("limits", "")).strip().splitlines()]
-
-
-def _conditions(result: Result, case: Case) -> list[tuple[str, str]]:
-    """Contact, oil and speeds, with their ranges where they vary."""
-    if "load_given" in result.scalars:
-        load, radius = result.steps("load_given"), result.steps("radius")
-        speeds = [result.steps("speed_1"), result.steps("speed_2")]
-    else:
-        load, radius = case.contact.load, case.contact.radius
-        speeds = [result.attrs["u1"], result.attrs["u2"]]
-    rows = [
-        ("contact", f"{case.contact.model} contact"),
-        ("load", f"{_range(load, 1e-3)} N/mm"),
-        ("radius", f"{_range(radius, 1e3)} mm"),
-    ]
-    if case.fluid:
-        shown = " and ".join(_range(speed) for speed in speeds)
-        oil = f"{1e3 * case.fluid.viscosity:.4g} mPa s, {case.fluid.law}"
-        rows += [("speeds of surface 1 and 2", f"{shown} m/s"), ("oil", oil)]
-    return rows
-
-
-def _range(values: np.ndarray | float, factor: float = 1.0) -> str:
-    """One value, or minimum and maximum."""
-    ends = (f"{factor * end:.4g}" for end in (np.nanmin(values), np.nanmax(values)))
-    return " to ".join(dict.fromkeys(ends))
 
 
 def frames(result: Result) -> dict:
@@ -165,12 +137,10 @@ def scalars_over_time(result: Result) -> dict:
         finite = values[np.isfinite(values)]
         if not finite.size or np.ptp(finite) <= MIN_CHANGE * np.abs(finite).max():
             continue
-        attributes = result[f"steps/{name}"].attrs
-        units = attributes.get("units", "1")
-        unit, factor = SHOWN_UNITS.get(units, (units, 1.0))
-        words = attributes.get("long_name", name.replace("_", " "))
+        scalar = STEP_SCALARS[name]
+        unit, factor = SHOWN_UNITS.get(scalar.units, (scalar.units, 1.0))
         reduce = np.fmin.reduce if name in MINIMUM_SCALARS else np.fmax.reduce
-        label = f"{words} [{unit}]" if unit else words
+        label = f"{scalar.long_name} [{unit}]" if unit else scalar.long_name
         figures.append({"name": label, "y": _packed(binned(factor * values, width, reduce))})
     return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
 
