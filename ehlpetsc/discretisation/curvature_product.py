@@ -42,14 +42,9 @@ def exponentials(
 
     Gauss-Legendre quadrature in :math:`v=\ln(1+t/a)`, in which the integrand is an entire function.
 
-    Parameters
-    ----------
-    kernel : shape (n,)
-        :func:`.deflection.curvature_kernel`.
-    nearest
-        First distance represented, at least 3.
-    tolerance
-        Relative error, at least 1e-11: the kernel itself is rounded.
+    `kernel`: :func:`.deflection.curvature_kernel`, shape (n,).
+    `nearest`: first distance represented, at least 3.
+    `tolerance`: relative error, at least 1e-11: the kernel itself is rounded.
 
     Returns
     -------
@@ -102,14 +97,9 @@ class Blocks(NamedTuple):
     ) -> Blocks:
         """Blocks of a rank.
 
-        Parameters
-        ----------
-        kernel : shape (n,)
-            f at distances of 0 .. n-1 nodes.
-        cuts
-            First nodes of all ranks, multiples of `BLOCK`, and n; by default one rank has the mesh.
-        tolerance
-            Relative error of f beyond `BLOCK` nodes.
+        `kernel`: f at distances of 0 .. n-1 nodes, shape (n,).
+        `cuts`: first nodes of all ranks, multiples of `BLOCK`, and n; by default one rank has the mesh.
+        `tolerance`: relative error of f beyond `BLOCK` nodes.
         """
         cuts = (0, len(kernel)) if cuts is None else cuts
         rates, weights = exponentials(kernel, BLOCK + 1, tolerance)

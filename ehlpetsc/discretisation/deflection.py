@@ -80,10 +80,7 @@ def fast_length(n: int) -> int:
 class SymmetricToeplitz:
     """Exact product with a symmetric Toeplitz kernel by FFT, O(n log n).
 
-    Parameters
-    ----------
-    kernel : shape (n,)
-        Value at distance 0 .. n-1 nodes.
+    `kernel`: value at distance 0 .. n-1 nodes, shape (n,).
     """
 
     def __init__(self, kernel: np.ndarray):
@@ -116,12 +113,8 @@ class PressureSums(NamedTuple):
 class Deflection:
     """Deflection rows of the nodes first .. last-1.
 
-    Parameters
-    ----------
-    n
-        Number of nodes of the mesh.
-    dx
-        Spacing in half-widths.
+    `n`: number of nodes of the mesh.
+    `dx`: spacing in half-widths.
 
     Attributes
     ----------
@@ -172,14 +165,7 @@ class Deflection:
     def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
         """Linear form in the local rows.
 
-        Parameters
-        ----------
-        separation
-            At the nodes of `window`.
-
-        Returns
-        -------
-        ndarray, shape (last - first,)
+        `separation`: at the nodes of `window`.
         """
         rows = np.empty(self.last - self.first)
         deflection_rows(separation, approach, *sums, self.form, rows)

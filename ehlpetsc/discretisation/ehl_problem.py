@@ -52,20 +52,12 @@ class Evaluation:
 class Solution:
     """An accepted solution on the whole mesh, dimensionless; arrays of shape (nx,).
 
-    Attributes
-    ----------
-    unknowns
-        As solved, with the plastic deformation of the step.
-    nodes
-        Pressure, film and plastic deformation of the step.
-    loads
-        Pressures, film and friction on the surfaces.
-    residual
-        Rows F of the Reynolds equation.
-    mass
-        Mass per area of the film, :math:`\rho h(1-\theta)`; None without oil.
-    inputs
-        Of the solve.
+    `unknowns`: as solved, with the plastic deformation of the step.
+    `nodes`: pressure, film and plastic deformation of the step.
+    `loads`: pressures, film and friction on the surfaces.
+    `residual`: rows F of the Reynolds equation.
+    `mass`: mass per area of the film, :math:`\rho h(1-\theta)`; None without oil.
+    `inputs`: of the solve.
     """
 
     unknowns: Unknowns
@@ -79,19 +71,11 @@ class Solution:
 class EHLProblem:
     """Residual and derivatives of the nodes first .. last-1.
 
-    Parameters
-    ----------
-    film_scale
-        Scale of the Reynolds rows, about the expected film, in a^2/R.
-    first, last
-        Local nodes; the rank that owns the last one owns the load row.
-    bound_tolerance
-        Tolerance of the active set in a^2/R: films this close to their bound count as on it.
+    `film_scale`: scale of the Reynolds rows, about the expected film, in a^2/R.
+    `first`, `last`: local nodes; the rank that owns the last one owns the load row.
+    `bound_tolerance`: tolerance of the active set in a^2/R: films this close to their bound count as on it.
 
-    Attributes
-    ----------
-    window, owned : slice
-        Nodes on which the local rows depend; indices of the local nodes in the window.
+    `window`, `owned`: nodes on which the local rows depend; indices of the local nodes in the window.
     """
 
     def __init__(

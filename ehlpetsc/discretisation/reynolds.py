@@ -43,16 +43,10 @@ from ehlpetsc.physics.scales import Scales
 class Reynolds:
     """Rows of the Reynolds equation for the nodes first .. last-1 of a mesh.
 
-    Parameters
-    ----------
-    film_scale
-        Divisor of F, in a^2/R.
-    first, last
-        Range of the evaluated rows.
-    start
-        First node of the arrays that are passed in.
-    layer
-        Rms height of the compliant layer [m], 0 without one.
+    `film_scale`: divisor of F, in a^2/R.
+    `first`, `last`: range of the evaluated rows.
+    `start`: first node of the arrays that are passed in.
+    `layer`: rms height of the compliant layer [m], 0 without one.
 
     Attributes
     ----------
@@ -120,12 +114,8 @@ class Reynolds:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows and its derivatives.
 
-        Parameters
-        ----------
-        q, h
-            Unknowns from the node `start` on.
-        temperatures
-            See :meth:`properties`.
+        `q`, `h`: unknowns from the node `start` on.
+        `temperatures`: see :meth:`properties`.
 
         Returns
         -------
@@ -186,10 +176,7 @@ def nodal(
 class NoOil:
     """Rows of the nodes first .. last-1; interface of :class:`.reynolds.Reynolds`.
 
-    Parameters
-    ----------
-    start
-        First node of the arrays that are passed in.
+    `start`: first node of the arrays that are passed in.
     """
 
     def __init__(self, first: int, last: int, start: int = 0):

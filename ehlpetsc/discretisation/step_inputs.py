@@ -26,12 +26,8 @@ class FilmHistory:
     dt, dt_older
         Current and previous time step, in units of a/u; `dt_older` None starts with backward Euler.
 
-    Attributes
-    ----------
-    k : float
-        Factor of the extrapolation from the two levels of the current step.
-    extrapolated : ndarray, shape (nx,)
-        Extrapolation from the two older levels.
+    `k`: factor of the extrapolation from the two levels of the current step.
+    `extrapolated`: extrapolation from the two older levels, shape (nx,).
     """
 
     def __init__(self, m: np.ndarray, m_older: np.ndarray, dt: float, dt_older: float | None = None):

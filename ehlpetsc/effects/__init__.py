@@ -24,9 +24,6 @@ EFFECTS: list[type[Effect]] = [RoughSurfaces, PlasticDeformation, Wear, Heat]
 def effects_of(scene: Scene, records: Collection[str] = ()) -> list[Effect]:
     """Effects of a scene: the effects of its case, and effects with a record of an earlier pass.
 
-    Parameters
-    ----------
-    records
-        Names of the records of an earlier pass or of a restart file.
+    `records`: names of the records of an earlier pass or of a restart file.
     """
     return [kind(scene) for kind in EFFECTS if kind.is_in(scene.case) or kind.name in records]

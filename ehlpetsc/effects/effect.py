@@ -73,14 +73,9 @@ def combined_rq(case: Case, roughness: Roughness | None) -> float:
 class Step(NamedTuple):
     """End of a time step.
 
-    Attributes
-    ----------
-    time
-        [s]
-    dt
-        Length of the step [s]; None: the steady start.
-    travelled
-        Distances travelled by surfaces 1 and 2 since time 0 [m].
+    `time`: [s]
+    `dt`: length of the step [s]; None: the steady start.
+    `travelled`: distances travelled by surfaces 1 and 2 since time 0 [m].
     """
 
     time: float
@@ -130,34 +125,21 @@ class Effect:
     def start(self, before: Any | None = None) -> Any:
         """Record at time 0.
 
-        Parameters
-        ----------
-        before
-            Record at the end of the previous pass.
+        `before`: record at the end of the previous pass.
         """
         return self.record()
 
     def inputs(self, record: Any, inputs: StepInputs, step: Step) -> StepInputs:
         """Inputs of the solve with the contribution of the effect.
 
-        Parameters
-        ----------
-        record
-            Record at the beginning of the step.
-
-        Returns
-        -------
-        StepInputs
+        `record`: record at the beginning of the step.
         """
         return inputs
 
     def accept(self, record: Any, solution: Solution, step: Step) -> Any:
         """Record at the end of an accepted step.
 
-        Parameters
-        ----------
-        record
-            Record at the beginning of the step.
+        `record`: record at the beginning of the step.
         """
         return record
 
@@ -178,14 +160,7 @@ class Effect:
     ) -> dict[str, Sequence[np.ndarray | None]]:
         """Values of the quantities `surface` at points of surfaces 1 and 2.
 
-        Parameters
-        ----------
-        points
-            Body points s [m]; None: not stored.
-
-        Returns
-        -------
-        dict of str to pair of ndarray or None
+        `points`: body points s [m]; None: not stored.
         """
         return {}
 

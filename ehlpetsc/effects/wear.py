@@ -35,16 +35,10 @@ WEAR = KeyTable(
 def wear_depth(coefficient: float, contact_pressure: np.ndarray, sliding: float, dt: float) -> np.ndarray:
     """Depth worn off a surface in a step [m].
 
-    Parameters
-    ----------
-    coefficient
-        k [m^2/N].
-    contact_pressure
-        p_c at the end of the step [Pa].
-    sliding
-        u1 - u2 [m/s].
-    dt
-        Length of the step [s].
+    `coefficient`: k [m^2/N].
+    `contact_pressure`: p_c at the end of the step [Pa].
+    `sliding`: u1 - u2 [m/s].
+    `dt`: length of the step [s].
     """
     return coefficient * abs(sliding) * dt * contact_pressure
 

@@ -19,20 +19,12 @@ PATH_INTERVALS = 2000  # equal intervals of the path, in addition to its points
 class Path:
     """Conditions of a contact from A, tip of the wheel, to E, tip of the pinion.
 
-    Attributes
-    ----------
-    time
-        From A on [s], increasing, shape (n,).
-    load
-        Load of this pair of teeth [N/m], shape (n,).
-    radius
-        Radius of relative curvature [m], shape (n,).
-    speed_1, speed_2
-        Speeds of the flanks of pinion and wheel through the contact [m/s], shape (n,).
-    rho
-        Position on the line of action from the base circle of the pinion [m], shape (n,).
-    pressure_angle
-        Working pressure angle [degrees].
+    `time`: from A on [s], increasing, shape (n,).
+    `load`: load of this pair of teeth [N/m], shape (n,).
+    `radius`: radius of relative curvature [m], shape (n,).
+    `speed_1`, `speed_2`: speeds of the flanks of pinion and wheel through the contact [m/s], shape (n,).
+    `rho`: position on the line of action from the base circle of the pinion [m], shape (n,).
+    `pressure_angle`: working pressure angle [degrees].
     """
 
     time: np.ndarray
@@ -145,10 +137,7 @@ def gear_loss_factor(path: Path) -> float:
 def loss(path: Path, friction: float | np.ndarray) -> float:
     r"""Power lost over the transmitted power, with friction coefficients along the path.
 
-    Parameters
-    ----------
-    friction
-        :math:`\mu` at the samples of the path, shape (n,).
+    `friction`: :math:`\mu` at the samples of the path, shape (n,).
     """
     pair = path.pair
     sliding = np.abs(path.speed_1 - path.speed_2) / pair.base_speed

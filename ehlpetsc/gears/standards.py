@@ -115,10 +115,7 @@ def bulk_temperatures(
     coefficients of heat transfer h [W/(m^2 K)], :math:`T_{oil}+\frac12P_{loss}/(hA)`: half of the losses to
     each gear, A its two sides and the cylinder of its tips.
 
-    Parameters
-    ----------
-    coefficient
-        Coefficient of friction, also along the path; None: of ISO/TR 14179-2.
+    `coefficient`: coefficient of friction, also along the path; None: of ISO/TR 14179-2.
     """
     path, pair = rating.path, rating.path.pair
     coefficient = friction(rating) if coefficient is None else coefficient

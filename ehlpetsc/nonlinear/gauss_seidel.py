@@ -57,17 +57,10 @@ HERTZ_STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2,
 class GaussSeidelSolver:
     """Solver of one scene by sweeps, with the interface of :class:`ehlpetsc.nonlinear.newton.NewtonSolver`.
 
-    Parameters
-    ----------
-    case, scales, film_scale
-        As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
-    tolerance
-        Tolerance of the residual, as ``-snes_atol``.
+    `case`, `scales`, `film_scale`: as in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
+    `tolerance`: tolerance of the residual, as ``-snes_atol``.
 
-    Attributes
-    ----------
-    sweeps : int
-        Number of sweeps of all solves so far.
+    `sweeps`: number of sweeps of all solves so far.
     """
 
     def __init__(self, case: Any, scales: Scales, film_scale: float, tolerance: float):
@@ -166,14 +159,9 @@ class Linearised(NamedTuple):
 class DeflectionForm(NamedTuple):
     r"""Constants of the deflection rows inside the mesh.
 
-    Attributes
-    ----------
-    far_field : shape (n,)
-        Contribution of the undeformed gap and of distant pressures to E.
-    kernel : shape (2 near + 1,)
-        Curvature kernel at -near .. near nodes.
-    curvature_coefficient
-        :math:`\pi/\Delta x`, coefficient of the second difference of h.
+    `far_field`: contribution of the undeformed gap and of distant pressures to E, shape (n,).
+    `kernel`: curvature kernel at -near .. near nodes, shape (2 near + 1,).
+    `curvature_coefficient`: :math:`\pi/\Delta x`, coefficient of the second difference of h.
     """
 
     far_field: np.ndarray
@@ -193,14 +181,9 @@ def sweep(
 ) -> None:
     """Update every pair once, in the direction of flow, in place.
 
-    Parameters
-    ----------
-    q, h, p : shape (n,)
-        Newest values; the first and the last h, and the first q, do not change.
-    bound
-        Minimum of h.
-    relaxation : shape (n,)
-        Relaxation factor of each node.
+    `q`, `h`, `p`: newest values; the first and the last h, and the first q, do not change, shape (n,).
+    `bound`: minimum of h.
+    `relaxation`: relaxation factor of each node, shape (n,).
     """
     q_old, h_old, residual, derivatives = linearised
     far_field, kernel, curvature_coefficient = deflection

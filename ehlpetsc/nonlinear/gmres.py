@@ -80,10 +80,7 @@ def iterations(
     limits
         Iterations, relative and absolute tolerance, divergence tolerance.
 
-    Returns
-    -------
-    ndarray
-        Norms of the residual, from the right-hand side's on.
+    Returns the norms of the residual, from that of the right-hand side on.
     """
     (collective, rank, _), (max_it, rtol, atol, divtol) = place, limits
     halo, factors = ((collective, rank), buffers, matrices, pressures), (place, lu, cuts, border, room)

@@ -39,10 +39,7 @@ PIVOT_REGULARISATION = 1e-3  # in place of dp/dq at cavitated nodes, in precondi
 def pivot_regularisation(*derivatives: np.ndarray) -> np.ndarray:
     """Addition to the diagonal of the deflection rows in preconditioners, where no entry depends on q.
 
-    Parameters
-    ----------
-    derivatives
-        Derivatives of the quantities in the rows with respect to q of their own node.
+    `derivatives`: derivatives of the quantities in the rows with respect to q of their own node.
     """
     has_entry = np.any([d != 0.0 for d in derivatives], axis=0)
     return np.where(has_entry, 0.0, PIVOT_REGULARISATION)
@@ -51,21 +48,12 @@ def pivot_regularisation(*derivatives: np.ndarray) -> np.ndarray:
 class JacobianOperator:
     """Matrix-free Jacobian, context of PETSc's Python matrix.
 
-    Parameters
-    ----------
-    factors
-        Factors of the default preconditioner, kept between solves.
+    `factors`: factors of the default preconditioner, kept between solves.
 
-    Attributes
-    ----------
-    model, state, reynolds_derivatives
-        Point of linearisation, as in `ehl_problem.Evaluation`.
-    size : int
-        Local unknowns of the whole system.
-    active : slice or ndarray of int
-        Local indices of the unknowns in the system.
-    inactive_nodes : ndarray of int
-        Local nodes whose second unknown is not in the system.
+    `model`, `state`, `reynolds_derivatives`: point of linearisation, as in `ehl_problem.Evaluation`.
+    `size`: local unknowns of the whole system.
+    `active`: local indices of the unknowns in the system.
+    `inactive_nodes`: local nodes whose second unknown is not in the system.
     """
 
     def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
@@ -118,10 +106,7 @@ class JacobianOperator:
 class NearFieldMatrix:
     """The Jacobian with the deflection of `near_field` nodes on either side, in an AIJ matrix.
 
-    Parameters
-    ----------
-    matrix
-        AIJ matrix whose sizes are set.
+    `matrix`: AIJ matrix whose sizes are set.
     """
 
     def __init__(self, problem: EHLProblem, near_field: int, matrix: PETSc.Mat):
@@ -200,12 +185,8 @@ def set_rows(matrix: PETSc.Mat, rows: np.ndarray, columns: np.ndarray, values: n
 def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> PETSc.Mat:
     """Square matrix with a Python context, ready for products.
 
-    Parameters
-    ----------
-    context
-        With methods of PETSc's names: ``mult``, ``createSubMatrix``.
-    sizes
-        Rows on this rank, and of all ranks.
+    `context`: with methods of PETSc's names: ``mult``, ``createSubMatrix``.
+    `sizes`: rows on this rank, and of all ranks.
     """
     matrix = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
     matrix.setUp()

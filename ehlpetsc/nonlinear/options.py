@@ -47,12 +47,8 @@ class RunOptions:
     Precedence: defaults < `of_case` < options already in the table < `given`. Reentrant; threads enter one
     after the other.
 
-    Parameters
-    ----------
-    law : {"direct", "mixed", "compliant"}
-        Contact model.
-    of_case, given
-        `[petsc]` of the case; options of a call from Python.
+    `law`: contact model.
+    `of_case`, `given`: `[petsc]` of the case; options of a call from Python.
 
     Attributes
     ----------

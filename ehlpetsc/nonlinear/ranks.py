@@ -50,16 +50,10 @@ class Halo(NamedTuple):
     ) -> Halo:
         """Halo of one scene on one communicator.
 
-        Parameters
-        ----------
-        problem
-            Of the nodes of this rank.
-        cuts
-            First nodes of all ranks, and the number of nodes.
-        ranks
-            To outlive it.
-        tolerance
-            Of the far kernel in the pressure sums.
+        `problem`: of the nodes of this rank.
+        `cuts`: first nodes of all ranks, and the number of nodes.
+        `ranks`: to outlive it.
+        `tolerance`: of the far kernel in the pressure sums.
         """
         blocks = Blocks.of(problem.deflection.curvature, cuts, ranks.rank, tolerance)
         messages = np.zeros((ranks.size, BEHIND_LOAD + blocks.message_size))
@@ -73,12 +67,8 @@ class Halo(NamedTuple):
 def exchange_unknowns(place: tuple, buffers: tuple, matrices: tuple, room: tuple, local: tuple) -> tuple:
     """Unknowns at the nodes of the window, and sums over all pressures.
 
-    Parameters
-    ----------
-    place, buffers, matrices, room
-        Of a `Halo`.
-    local
-        Local unknowns, interleaved, h00 last on the last rank; pressures of the local nodes; flag.
+    `place`, `buffers`, `matrices`, `room`: of a `Halo`.
+    `local`: local unknowns, interleaved, h00 last on the last rank; pressures of the local nodes; flag.
 
     Returns
     -------

@@ -29,10 +29,7 @@ def solver_of(
 ) -> NewtonSolver | GaussSeidelSolver:
     """Solver of one scene on one communicator.
 
-    Parameters
-    ----------
-    film_scale
-        Expected film in a^2/R.
+    `film_scale`: expected film in a^2/R.
     """
     name = options.value("ehl_scheme")
     check_scheme(name)

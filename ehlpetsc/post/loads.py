@@ -22,20 +22,12 @@ CACHE_BYTES = 32 << 20  # of chunks of each dataset
 class Loads:
     """Loads of both surfaces over the stored frames, a context manager.
 
-    Attributes
-    ----------
-    case, case_text
-        With the overrides, and as stored.
-    x, dx, a, p0
-        Nodes [m], their spacing [m], Hertz half-width [m], Hertz pressure [Pa].
-    time, step
-        Times [s] and step numbers of the frames, shape (nt,).
-    speeds
-        Speed of each surface in the reference state [m/s].
-    travelled
-        Distance covered by each surface since time 0 at each frame [m].
-    profiles
-        (s, z) of each surface, sorted by s; None for a smooth one.
+    `case`, `case_text`: with the overrides, and as stored.
+    `x`, `dx`, `a`, `p0`: nodes [m], their spacing [m], Hertz half-width [m], Hertz pressure [Pa].
+    `time`, `step`: times [s] and step numbers of the frames, shape (nt,).
+    `speeds`: speed of each surface in the reference state [m/s].
+    `travelled`: distance covered by each surface since time 0 at each frame [m].
+    `profiles`: (s, z) of each surface, sorted by s; None for a smooth one.
     """
 
     def __init__(self, path: str | Path, overrides: Iterable = ()) -> None:

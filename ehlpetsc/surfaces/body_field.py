@@ -21,14 +21,9 @@ CELLS_PER_MESH_CELL = 4  # cells of a body per cell of the mesh
 class BodyField(NamedTuple):
     """Depth of one body over its abscissa.
 
-    Attributes
-    ----------
-    spacing
-        Width of the cells [m].
-    first
-        The abscissas of the edges are ``(first + k) spacing``.
-    depth
-        Mean depth of each cell [m], shape (cells,).
+    `spacing`: width of the cells [m].
+    `first`: the abscissas of the edges are ``(first + k) spacing``.
+    `depth`: mean depth of each cell [m], shape (cells,).
     """
 
     spacing: float
@@ -60,12 +55,8 @@ class BodyField(NamedTuple):
     def add(self, faces: np.ndarray, depth: np.ndarray) -> BodyField:
         """Field with depths [m] added between faces.
 
-        Parameters
-        ----------
-        faces
-            Shape (n + 1,).
-        depth
-            Shape (n,).
+        `faces`: shape (n + 1,).
+        `depth`: shape (n,).
         """
         where = np.flatnonzero(depth)
         if not len(where):
@@ -108,10 +99,7 @@ class BodyFields(NamedTuple):
 class MeshOnBodies:
     """Cells of the mesh in the abscissas of both bodies.
 
-    Parameters
-    ----------
-    offsets
-        Signed shift of the points of both bodies [m], see :meth:`.roughness.SurfacePositions.offsets`.
+    `offsets`: signed shift of the points of both bodies [m], see :meth:`.roughness.SurfacePositions.offsets`.
     """
 
     def __init__(self, scales: Scales, offsets: Sequence[float] = (0.0, 0.0)) -> None:
@@ -132,10 +120,7 @@ class MeshOnBodies:
     def add(self, fields: BodyFields, travelled: Sequence[float], depths: Sequence[np.ndarray]) -> BodyFields:
         """Fields with depths at the nodes [m], shape (nx,) for each body, added.
 
-        Parameters
-        ----------
-        travelled
-            Distances travelled by both bodies [m].
+        `travelled`: distances travelled by both bodies [m].
         """
         return BodyFields(
             *(

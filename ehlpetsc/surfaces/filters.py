@@ -35,14 +35,9 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
     mirrored, as in a run; a cosine transform then gives the convolution exactly, however short the cut-off.
     (ISO drops half a cut-off at either end, where a slope makes a kink of what is mirrored.)
 
-    Parameters
-    ----------
-    x, z
-        m; x equally spaced, shape (n,).
-    cutoff
-        Wavelength [m].
-    key
-        Key of the cut-off in the case.
+    `x`, `z`: m; x equally spaced, shape (n,).
+    `cutoff`: wavelength [m].
+    `key`: key of the cut-off in the case.
     """
     from scipy.fft import dct, idct
 

@@ -16,15 +16,9 @@ CURVE_POINTS = 4001  # of the Abbott curve
 def abbott_curve(X: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Material ratio curve: heights over the fraction of the profile's length above them.
 
-    Parameters
-    ----------
-    X, z
-        Abscissas, increasing, and heights [m], shape (n,).
+    `X`, `z`: abscissas, increasing, and heights [m], shape (n,).
 
-    Returns
-    -------
-    ratio, height
-        Ratio from 0 to 1, heights falling [m], shape (POINTS,).
+    Returns ratio from 0 to 1, heights falling [m], shape (POINTS,).
     """
     even = np.interp(np.linspace(X[0], X[-1], max(len(X), CURVE_POINTS)), X, z)
     ratio = np.linspace(0.0, 1.0, CURVE_POINTS)
@@ -38,14 +32,8 @@ def core(ratio: np.ndarray, height: np.ndarray) -> dict[str, float]:
     core: :math:`R_k` is its height. :math:`R_{pk}` and :math:`R_{vk}` are the heights of triangles as large
     as the areas of peaks above and valleys below it.
 
-    Parameters
-    ----------
-    ratio, height
-        See :func:`abbott_curve`.
-
-    Returns
-    -------
-    "rk", "rpk", "rvk" [m], "mr1", "mr2" (1), "top", "bottom" of the core [m].
+    `ratio`, `height`: see :func:`abbott_curve`.
+    Returns "rk", "rpk", "rvk" [m], "mr1", "mr2" (1), "top", "bottom" of the core [m].
     """
     width = round(SECANT_WIDTH * (len(ratio) - 1))
     begin = int(np.argmin(height[:-width] - height[width:]))
@@ -70,10 +58,7 @@ def core(ratio: np.ndarray, height: np.ndarray) -> dict[str, float]:
 def roughness_parameters(X: np.ndarray, z: np.ndarray) -> dict[str, float]:
     """Ra, Rq, Rz, Rk, Rpk, Rvk [m] and Rsk (1) of a profile, by lower-case name.
 
-    Parameters
-    ----------
-    X, z
-        Abscissas, increasing, and heights [m], shape (n,).
+    `X`, `z`: abscissas, increasing, and heights [m], shape (n,).
     """
     deviation = z - z.mean()
     rq = float(np.sqrt((deviation**2).mean()))

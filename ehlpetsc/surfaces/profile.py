@@ -44,18 +44,11 @@ class Profile:
     is_flank
         Whether this profile begins at x = 0 at time 0, :math:`X=-s`, as the arc length of a flank.
 
-    Attributes
-    ----------
-    is_moving
-        False if its abscissa is fixed to the domain at time 0, without a ramp.
-    enters
-        Whether it enters during the run; otherwise it is in the whole domain from the start.
-    ramp, travelled
-        Length of the ramp, and of the part of the profile that enters [m].
-    body_offset
-        Signed shift of the body points s by `begin` [m].
-    ra, rq, rsk
-        Parameters of the samples: m, m, 1.
+    `is_moving`: false if its abscissa is fixed to the domain at time 0, without a ramp.
+    `enters`: whether it enters during the run; otherwise it is in the whole domain from the start.
+    `ramp`, `travelled`: length of the ramp, and of the part of the profile that enters [m].
+    `body_offset`: signed shift of the body points s by `begin` [m].
+    `ra`, `rq`, `rsk`: parameters of the samples: m, m, 1.
     """
 
     def __init__(
@@ -104,10 +97,7 @@ class Profile:
         :math:`\frac{1}{s_{i+1}-s_i}\int_{s_i}^{s_{i+1}}z\,ds`, the integral of the spline, also across its
         mirrored continuation. The ramp is evaluated at the centre of the cell.
 
-        Parameters
-        ----------
-        faces
-            Shape (n + 1,).
+        `faces`: shape (n + 1,).
         """
         X = self._sign * (faces - self._origin)
         mean = self._level + np.diff(self._integral(X + self._begin)) / np.diff(X)

@@ -24,12 +24,8 @@ MAX_SLOPE = 1.0  # root mean square
 def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) -> str | None:
     """Message on a profile that is implausible for a contact, mostly by a wrong unit; None: plausible.
 
-    Parameters
-    ----------
-    a, dx
-        Half-width and spacing of the mesh [m].
-    approach, film
-        a^2/R and expected film [m].
+    `a`, `dx`: half-width and spacing of the mesh [m].
+    `approach`, `film`: a^2/R and expected film [m].
     """
     rq = float(samples.z.std())
     slope = float(np.sqrt(np.mean((np.diff(samples.z) / np.diff(samples.X)) ** 2)))

@@ -24,20 +24,12 @@ UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 class Layout:
     """Layout of a profile file; missing entries are detected from the file.
 
-    Attributes
-    ----------
-    unit, x_unit
-        Units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
-    spacing
-        Spacing of the points [m], for files without x.
-    columns
-        Columns of x and z, or of z alone, from 1.
-    decimal
-        "." or ",".
-    header_lines
-        Lines before the numbers.
-    fill_gaps
-        Longest gap of missing heights [m] that the spline bridges.
+    `unit`, `x_unit`: units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
+    `spacing`: spacing of the points [m], for files without x.
+    `columns`: columns of x and z, or of z alone, from 1.
+    `decimal`: "." or ",".
+    `header_lines`: lines before the numbers.
+    `fill_gaps`: longest gap of missing heights [m] that the spline bridges.
     """
 
     unit: str | None = None

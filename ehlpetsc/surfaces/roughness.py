@@ -27,10 +27,7 @@ class SurfacePositions:
     def offsets(self, speeds: Sequence[float]) -> tuple[float, ...]:
         """Signed shift of the body points by `profile_offsets` [m].
 
-        Parameters
-        ----------
-        speeds
-            See :func:`directed_speeds`.
+        `speeds`: see :func:`directed_speeds`.
         """
         return tuple(
             -begin if speed > 0.0 else begin
@@ -64,10 +61,7 @@ class Roughness:
     def of(cls, case: Case, scales: Scales, positions: SurfacePositions | None = None) -> Roughness | None:
         """Roughness of a case; None if both surfaces are smooth.
 
-        Parameters
-        ----------
-        positions
-            By default both profiles begin to enter with their first point.
+        `positions`: by default both profiles begin to enter with their first point.
         """
         sides, positions = {}, positions or SurfacePositions()
         speeds = directed_speeds(case, scales)

@@ -23,16 +23,10 @@ MEAN_TOLERANCE = 1e-3  # of Rq: smaller means are rounding
 class Samples:
     """Heights of one surface, measured or synthetic.
 
-    Attributes
-    ----------
-    X, z
-        m; heights positive out of the metal, shape (n,).
-    repeats
-        Whether the profile is continued by reflection at its ends, otherwise by height 0.
-    measured
-        Whether the heights are from a file.
-    notes
-        Notes on the processing of the numbers of a file.
+    `X`, `z`: m; heights positive out of the metal, shape (n,).
+    `repeats`: whether the profile is continued by reflection at its ends, otherwise by height 0.
+    `measured`: whether the heights are from a file.
+    `notes`: notes on the processing of the numbers of a file.
     """
 
     X: np.ndarray

@@ -57,17 +57,10 @@ def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[n
     White noise filtered with a Gaussian weight; then each height is mapped by its rank to a gamma
     (Pearson III) distribution with the parameter for which the sample has the prescribed skewness.
 
-    Parameters
-    ----------
-    ra, correlation
-        m.
-    skewness
-        Rsk of the profile.
+    `ra`, `correlation`: m.
+    `skewness`: rsk of the profile.
 
-    Returns
-    -------
-    X, z
-        m; mean 0.
+    Returns abscissas and heights [m] of mean 0.
     """
     from scipy.ndimage import gaussian_filter1d
     from scipy.optimize import brentq

@@ -26,12 +26,8 @@ def text_columns(
 ) -> tuple[np.ndarray, str]:
     """Numbers of a text file, shape (columns, rows), nan for missing ones, and the lines above them.
 
-    Parameters
-    ----------
-    decimal
-        "." or ","; default: detected.
-    header_lines
-        Lines before the numbers; default: all lines before the first line of numbers.
+    `decimal`: "." or ","; default: detected.
+    `header_lines`: lines before the numbers; default: all lines before the first line of numbers.
     """
     text, begin, above = _decoded(path), 0, 0
     while begin < len(text):

@@ -25,12 +25,8 @@ def smallest_film(contact: Any, scales: Scales) -> float:
 def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance: float = 0.0) -> ContactModel:
     """The contact model of a case.
 
-    Parameters
-    ----------
-    film_scale
-        See :func:`film_scale_of`.
-    bound_tolerance
-        Of the active set, in a^2/R.
+    `film_scale`: see :func:`film_scale_of`.
+    `bound_tolerance`: of the active set, in a^2/R.
     """
     contact = case.contact
     if contact.model == "direct":

@@ -50,14 +50,9 @@ STIFF_SLOPE = 1.0  # p0 per a^2/R: from this slope of p_c on, pressure and void 
 class Layer:
     """Constants of the law in p0 and a^2/R.
 
-    Attributes
-    ----------
-    law
-        See :class:`ehlpetsc.physics.asperities.LayerLaw`.
-    slope_modulus, hardness
-        E* h'_rms; infinite for elastic asperities.
-    contact_pressure, high_pressure
-        Thresholds of the lengths in contact.
+    `law`: see :class:`ehlpetsc.physics.asperities.LayerLaw`.
+    `slope_modulus`, `hardness`: E* h'_rms; infinite for elastic asperities.
+    `contact_pressure`, `high_pressure`: thresholds of the lengths in contact.
     """
 
     law: LayerLaw

@@ -34,12 +34,8 @@ from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
 class CompliantYieldingContact(Yielding, CompliantContact):
     """Compliant layer on solids that yield.
 
-    Parameters
-    ----------
-    yield_pressure
-        p_y in p0, of the softer surface.
-    compliance
-        D, a^2/R per p0: a scale of the unknown that carries the depth, which no answer depends on.
+    `yield_pressure`: p_y in p0, of the softer surface.
+    `compliance`: D, a^2/R per p0: a scale of the unknown that carries the depth, which no answer depends on.
     """
 
     def __init__(self, layer: Layer, yield_pressure: float, compliance: float):

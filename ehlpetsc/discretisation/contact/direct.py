@@ -25,10 +25,7 @@ from ehlpetsc.discretisation.contact.node_state import (
 class DirectContact(ContactModel):
     """Film bounded below by `bound`, with oil between the solids.
 
-    Parameters
-    ----------
-    bound, tolerance
-        In a^2/R; films this close to the bound count as on it.
+    `bound`, `tolerance`: in a^2/R; films this close to the bound count as on it.
     """
 
     starts_unconstrained = True

@@ -56,12 +56,8 @@ class SeparatedContact(ContactModel):
 class MixedContact(SeparatedContact):
     """Rigid complementarity between the pressure of the solids and the film over the boundary film.
 
-    Parameters
-    ----------
-    boundary_film
-        h_b in a^2/R.
-    stiffness
-        K, p0 per a^2/R: a scale between the two meanings of w, which no answer depends on.
+    `boundary_film`: h_b in a^2/R.
+    `stiffness`: K, p0 per a^2/R: a scale between the two meanings of w, which no answer depends on.
     """
 
     def __init__(self, boundary_film: float, stiffness: float):

@@ -84,12 +84,8 @@ class ContactModel:
     def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
         """Second unknown of a new time level.
 
-        Parameters
-        ----------
-        interpolated : shape (nx,)
-            Of the film of the last level, moved along by interpolation.
-        shifted : shape (nx,)
-            w of the last level, moved by the nearest whole number of nodes.
+        `interpolated`: of the film of the last level, moved along by interpolation, shape (nx,).
+        `shifted`: w of the last level, moved by the nearest whole number of nodes, shape (nx,).
         """
         raise NotImplementedError
 
@@ -98,12 +94,8 @@ class ContactModel:
     def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """State with the derivatives that the Newton step takes.
 
-        Parameters
-        ----------
-        owned
-            Nodes of this rank.
-        ranks_sum
-            Sum of a tuple of numbers over all ranks.
+        `owned`: nodes of this rank.
+        `ranks_sum`: sum of a tuple of numbers over all ranks.
         """
         return state
 
@@ -125,12 +117,8 @@ class ContactModel:
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """:class:`.band.BandEntries` of a state.
 
-        Parameters
-        ----------
-        state, derivatives
-            As in `ehl_problem.Evaluation`.
-        stencil : shape (local nodes, 4)
-            Nodes of each Reynolds row, by their index in the window.
+        `state`, `derivatives`: as in `ehl_problem.Evaluation`.
+        `stencil`: nodes of each Reynolds row, by their index in the window, shape (local nodes, 4).
         """
         raise NotImplementedError
 
@@ -172,9 +160,6 @@ class ContactModel:
     def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         """Scalars of the contact in SI units.
 
-        Parameters
-        ----------
-        thin_film
-            Films count as thin below this multiple of `minimum_film`.
+        `thin_film`: films count as thin below this multiple of `minimum_film`.
         """
         return {}

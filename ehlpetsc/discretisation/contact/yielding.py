@@ -40,10 +40,7 @@ class Yielding(ContactModel):
     def at_yield_pressure(self, elastic: NodeState, plastic: PlasticState, solids: np.ndarray) -> NodeState:
         """State of the nodes with the pressure of those that yield at its limit.
 
-        Parameters
-        ----------
-        solids
-            Pressure of the solids in p0.
+        `solids`: pressure of the solids in p0.
         """
         by_oil = plastic.depth_q > 0.0
         return elastic._replace(
@@ -76,12 +73,8 @@ class Yielding(ContactModel):
 class YieldingContact(Yielding, MixedContact):
     """Mixed contact of solids that yield.
 
-    Parameters
-    ----------
-    boundary_film, stiffness
-        As of :class:`.mixed.MixedContact`.
-    yield_pressure
-        p_y in p0, of the softer surface.
+    `boundary_film`, `stiffness`: as of :class:`.mixed.MixedContact`.
+    `yield_pressure`: p_y in p0, of the softer surface.
     """
 
     def __init__(self, boundary_film: float, stiffness: float, yield_pressure: float):

@@ -40,14 +40,7 @@ def exponentials(shortest: float, longest: float) -> tuple[tuple[float, ...], tu
     Trapezoidal rule in y with the step `STEP`. All terms slower than the slowest one are one more term of
     their total weight and their mean rate.
 
-    Parameters
-    ----------
-    shortest, longest
-        Range of t [s].
-
-    Returns
-    -------
-    rates, weights : tuple of float
+    `shortest`, `longest`: range of t [s].
     """
     high, low = np.log(FASTEST / shortest), np.log(SLOWEST / longest)
     count = max(int(np.ceil((high - low) / STEP)), 1) + 1
@@ -109,10 +102,7 @@ def diffuse(a: np.ndarray, ratio: float, out: np.ndarray) -> None:
     Z is the second difference times `ratio`; theta = 1/2 is second order and used where that keeps
     temperatures positive, for longer steps theta rises towards 1. No heat passes the ends of the cells.
 
-    Parameters
-    ----------
-    ratio
-        chi dt/dx^2.
+    `ratio`: chi dt/dx^2.
     """
     cells, terms = a.shape
     theta = max(0.5, 1.0 - 0.5 / ratio) if ratio > 0.0 else 0.5
@@ -191,18 +181,11 @@ def add_flux(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Terms with the flux at the end of a step, and that flux shared out to the cells by overlap.
 
-    Parameters
-    ----------
-    terms
-        Of :func:`advance_terms`, shape (cells, terms).
-    flux
-        [W/m^2], shape (nodes,).
-    first
-        Cell of the first node.
-    fraction
-        Fraction of a cell by which the nodes are ahead of the cells.
-    end
-        Of :class:`StepWeights`, shape (terms,).
+    `terms`: of :func:`advance_terms`, shape (cells, terms).
+    `flux`: [W/m^2], shape (nodes,).
+    `first`: cell of the first node.
+    `fraction`: fraction of a cell by which the nodes are ahead of the cells.
+    `end`: of :class:`StepWeights`, shape (terms,).
     """
     cells, count = terms.shape
     new, shared = np.empty((cells, count)), np.zeros(cells)
@@ -225,12 +208,8 @@ def moving_terms(
     :math:`A(x)=\int q(s)e^{-r_\pm|x-s|}ds/\sqrt{u^2+4\chi\lambda}`,
     :math:`r_\pm=(\sqrt{u^2+4\chi\lambda}\mp u)/(2\chi)` behind and ahead of s.
 
-    Parameters
-    ----------
-    diffusivity, speed
-        chi [m^2/s], u [m/s], signed.
-    dx
-        Spacing of the nodes [m].
+    `diffusivity`, `speed`: chi [m^2/s], u [m/s], signed.
+    `dx`: spacing of the nodes [m].
     """
     n = len(q)
     for m in range(len(rates)):
@@ -268,18 +247,11 @@ def _linear_weights(z: float) -> tuple[float, float]:
 class BodyStep(NamedTuple):
     """One body at the end of a step, but for the flux there.
 
-    Attributes
-    ----------
-    body
-        Its terms with the flux of the begin of the step.
-    history
-        Temperature above bulk at the nodes without the flux at the end of the step [K], shape (nx,).
-    response
-        Temperature per flux at the end of the step [m^2 K/W].
-    end
-        Contribution of that flux to the terms [s], shape (terms,).
-    fraction
-        Fraction of a cell by which the nodes are ahead of the cells.
+    `body`: its terms with the flux of the begin of the step.
+    `history`: temperature above bulk at the nodes without the flux at the end of the step [K], shape (nx,).
+    `response`: temperature per flux at the end of the step [m^2 K/W].
+    `end`: contribution of that flux to the terms [s], shape (terms,).
+    `fraction`: fraction of a cell by which the nodes are ahead of the cells.
     """
 
     body: BodyHeat
@@ -292,12 +264,8 @@ class BodyStep(NamedTuple):
 class Body:
     """Conduction into one body.
 
-    Parameters
-    ----------
-    speed
-        Of its surface at the start [m/s].
-    dt
-        Nominal time step [s].
+    `speed`: of its surface at the start [m/s].
+    `dt`: nominal time step [s].
     """
 
     def __init__(self, solid: Solid, speed: float, scales: Scales, dt: float) -> None:
@@ -339,20 +307,10 @@ class Body:
     def advance(self, body: BodyHeat, travelled: float, dt: float, speed: float) -> BodyStep:
         """The body at the end of a step.
 
-        Parameters
-        ----------
-        body
-            At its begin.
-        travelled
-            Distance travelled at the end [m].
-        dt
-            [s]
-        speed
-            [m/s], signed.
-
-        Returns
-        -------
-        BodyStep
+        `body`: at its begin.
+        `travelled`: distance travelled at the end [m].
+        `dt`: [s]
+        `speed`: [m/s], signed.
         """
         cells = len(body.flux)
         position = -travelled / self.dx

@@ -8,16 +8,10 @@ import numpy as np
 class BodyHeat(NamedTuple):
     """Heat of one body.
 
-    Attributes
-    ----------
-    first
-        Position of the first cell in the body, in cells.
-    terms
-        :math:`A_m` [J/m^2], shape (cells, terms).
-    flux
-        Heat flux at the time level [W/m^2], shape (cells,).
-    rates, weights
-        Of the sum of exponentials, shape (terms,).
+    `first`: position of the first cell in the body, in cells.
+    `terms`: :math:`A_m` [J/m^2], shape (cells, terms).
+    `flux`: heat flux at the time level [W/m^2], shape (cells,).
+    `rates`, `weights`: of the sum of exponentials, shape (terms,).
     """
 
     first: int

@@ -279,10 +279,7 @@ def _rubbed(
 def mixing(function: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
     r"""Fixed point :math:`x=g(x)` by Anderson's acceleration (Walker & Ni 2011).
 
-    Returns
-    -------
-    ndarray
-        The last argument of the function.
+    Returns the last argument of the function.
     """
     x: np.ndarray = start
     steps: list[np.ndarray] = []

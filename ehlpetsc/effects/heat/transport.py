@@ -72,18 +72,9 @@ def explicit_transport(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Storage and upwind transport by temperatures t of the old level, of :func:`.film.film_temperature`.
 
-    Parameters
-    ----------
-    stored, flow
-        As `stored` and `couette` of :class:`Film`.
-    t
-        [K], shape (nodes,).
-    inlet
-        Temperature of the oil that enters [K].
-
-    Returns
-    -------
-    a, b : ndarray, shape (nodes,)
+    `stored`, `flow`: as `stored` and `couette` of :class:`Film`.
+    `t`: [K], shape (nodes,).
+    `inlet`: temperature of the oil that enters [K].
     """
     nodes = len(t)
     a, b = np.empty(nodes), np.empty(nodes)
@@ -214,12 +205,8 @@ def heat_taken(
 ) -> float:
     """Heat that the oil stores and takes out of the contact, summed over the cells [W/m^2].
 
-    Parameters
-    ----------
-    old, stored, before_step, flow, inlet
-        As of :func:`transport`.
-    t, extrapolated
-        As it fills them in, shape (nodes,).
+    `old`, `stored`, `before_step`, `flow`, `inlet`: as of :func:`transport`.
+    `t`, `extrapolated`: as it fills them in, shape (nodes,).
     """
     nodes = len(t)
     # oil that the pressure moves takes its heat along from where it turns: the Couette flow alone carries

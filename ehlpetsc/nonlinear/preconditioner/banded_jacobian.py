@@ -30,10 +30,7 @@ FIRST_PRESSURE = FIRST_SUM + TERMS
 class BandedJacobian:
     """Indices and values of the local entries.
 
-    Parameters
-    ----------
-    problem
-        Its first node must begin a group.
+    `problem`: its first node must begin a group.
 
     Attributes
     ----------
@@ -192,15 +189,9 @@ class BandedJacobian:
     def fill(self, entries: BandEntries, inactive_nodes: np.ndarray) -> np.ndarray:
         """Entries at one state.
 
-        Parameters
-        ----------
-        inactive_nodes
-            Local nodes whose second unknown is not in the system.
+        `inactive_nodes`: local nodes whose second unknown is not in the system.
 
-        Returns
-        -------
-        ndarray, shape (groups, WIDTH, LINE)
-            As :class:`.block_lu.BlockLU` takes them.
+        Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, LINE).
         """
         self._fill_deflection(entries)
         put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)

@@ -31,14 +31,9 @@ ONE, TWO, THREE, FOUR = (unsigned(k) for k in (1, 2, 3, 4))
 class BlockLU:
     """Factors of one matrix, and room for them.
 
-    Attributes
-    ----------
-    inverses : ndarray, shape (groups, SIZE, LINE)
-        Columns of the inverse of S.
-    upper : ndarray, shape (groups, RIGHT, LINE)
-        Columns of W, of the last group too.
-    factors : tuple of ndarray
-        For :func:`forward` and :func:`backward`: the matrix, both of these and room, in one dimension.
+    `inverses`: columns of the inverse of S, shape (groups, SIZE, LINE).
+    `upper`: columns of W, of the last group too, shape (groups, RIGHT, LINE).
+    `factors`: for :func:`forward` and :func:`backward`: the matrix, both of these and room, in one dimension.
     """
 
     def __init__(self, groups: int):

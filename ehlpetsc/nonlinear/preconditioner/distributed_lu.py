@@ -46,17 +46,10 @@ ENTRIES = 2 * STENCIL  # of a Reynolds row
 class DistributedLU:
     """Factors and solves.
 
-    Parameters
-    ----------
-    band
-        Of the nodes of this rank.
-    approach_coefficient
-        Of h00 in the deflection rows of the end nodes.
+    `band`: of the nodes of this rank.
+    `approach_coefficient`: of h00 in the deflection rows of the end nodes.
 
-    Attributes
-    ----------
-    factors : tuple
-        From the first factorisation on, for compiled solves:
+    `factors`: from the first factorisation on, for compiled solves:
 
         * place: :func:`.ranks.collective`, the rank, and whether it is the first or the last one of several;
         * factors of a `BlockLU`;
@@ -66,8 +59,7 @@ class DistributedLU:
         * border: numbers of the unknowns of the local nodes; columns z, shape (2, size); inverse of the
           system of three unknowns, (BORDER, BORDER);
         * room: shape (size,); messages (ranks, CUT + BORDER); `units`.
-    units : ndarray, shape (2, nodes, 2)
-        Unknowns of the solution by each of both of the band, at each node.
+    `units`: unknowns of the solution by each of both of the band, at each node, shape (2, nodes, 2).
     """
 
     def __init__(self, band: BandedJacobian, approach_coefficient: float, ranks: MPI.Comm):
@@ -135,12 +127,8 @@ class DistributedLU:
 def are_close(entries: np.ndarray, before: np.ndarray, tolerance: float) -> bool:
     """Whether entries of the deflection rows are the same and those of Reynolds rows nearly so.
 
-    Parameters
-    ----------
-    entries, before
-        Fields of a `contact.node_state.BandEntries`.
-    tolerance
-        Of each entry, as a fraction of the largest one of its row.
+    `entries`, `before`: fields of a `contact.node_state.BandEntries`.
+    `tolerance`: of each entry, as a fraction of the largest one of its row.
     """
     rows, old_rows = entries[3], before[3]
     if not same_deflection(*entries[:3], *before[:3]):
@@ -174,10 +162,7 @@ def begin(is_outer: bool, lu: tuple, sent: tuple, y: np.ndarray, first: int, mes
 def finish(is_outer: bool, lu: tuple, cuts: tuple, y: np.ndarray, everyone: np.ndarray) -> np.ndarray:
     """Finish with the messages of all ranks.
 
-    Returns
-    -------
-    ndarray, shape (BORDER,)
-        Products of the dense rows with the solution.
+    Returns products of the dense rows with the solution, shape (BORDER,).
     """
     _, _, g, rows = cuts
     taken, width = g.shape
@@ -228,12 +213,8 @@ def finish_coupling(
 ) -> np.ndarray:
     """Finish the columns z; inverse of the system of three unknowns, shape (BORDER, BORDER).
 
-    Parameters
-    ----------
-    place, lu, cuts, ends, messages
-        As of :func:`begin_coupling`, with the rows of the inverse.
-    coefficient
-        Of h00 in the deflection rows of the end nodes.
+    `place`, `lu`, `cuts`, `ends`, `messages`: as of :func:`begin_coupling`, with the rows of the inverse.
+    `coefficient`: of h00 in the deflection rows of the end nodes.
     """
     inverse = np.empty((BORDER, BORDER))
     matrix = np.array([[1.0, 0.0, -coefficient], [0.0, 1.0, -coefficient], [0.0, 0.0, 0.0]])
@@ -253,12 +234,8 @@ def finish_coupling(
 def solve(factors: tuple, b: np.ndarray, solution: np.ndarray) -> None:
     """Fill in the solution of the local (q, h, q, h, ...), and h00 on the last rank; collective.
 
-    Parameters
-    ----------
-    factors
-        Of a `DistributedLU`.
-    b
-        Right-hand side, zero in the rows that are not in the system.
+    `factors`: of a `DistributedLU`.
+    `b`: right-hand side, zero in the rows that are not in the system.
     """
     (collective, rank, is_outer), lu, cuts, (dofs, ends, inverse), (y, everyone, units) = factors
     y[:] = 0.0

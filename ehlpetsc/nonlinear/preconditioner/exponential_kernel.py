@@ -29,15 +29,9 @@ def grouped_kernel(kernel: np.ndarray) -> np.ndarray:
 def exponentials(kernel: np.ndarray, nodes_per_half_width: float) -> tuple[np.ndarray, np.ndarray]:
     """Rates and weights of the exponentials for a kernel, fitted from a distance of two groups on.
 
-    Parameters
-    ----------
-    kernel : shape (n,)
-        :func:`ehlpetsc.discretisation.deflection.curvature_kernel`.
+    `kernel`: :func:`ehlpetsc.discretisation.deflection.curvature_kernel`, shape (n,).
 
-    Returns
-    -------
-    rates, weights : ndarray, shape (TERMS,)
-        The kernel at a distance of d groups is about ``weights @ exp(-rates * d)``.
+    The kernel at a distance of d groups is about ``weights @ exp(-rates * d)``, both of shape (TERMS,).
     """
     far = grouped_kernel(kernel)[2:]
     reach = max(REACH * nodes_per_half_width / GROUP, 1.0)

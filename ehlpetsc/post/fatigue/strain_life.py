@@ -181,14 +181,9 @@ def cycles_to_failure(
 ) -> float | np.ndarray:
     """Cycles to failure N under a constant equivalent stress range, eqs. (13) and (14) inverted to rounding.
 
-    Parameters
-    ----------
-    dsv
-        Equivalent stress range [Pa]; N is infinite at 0.
-    mean_stress
-        Subtracted from the fatigue strength in the elastic term of (14) (Morrow) [Pa].
-    strain
-        Rule applied to the elastic range before (13): "direct", "neuber" or "glinka".
+    `dsv`: equivalent stress range [Pa]; N is infinite at 0.
+    `mean_stress`: subtracted from the fatigue strength in the elastic term of (14) (Morrow) [Pa].
+    `strain`: rule applied to the elastic range before (13): "direct", "neuber" or "glinka".
     """
     rule, constants = rule_of(strain), material.constants()
     dsv, mean = np.broadcast_arrays(np.asarray(dsv, float), np.asarray(mean_stress, float))

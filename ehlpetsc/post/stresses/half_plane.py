@@ -188,10 +188,7 @@ def stress(
     poisson_ratio
         Checked, but the three in-plane stresses do not depend on it; see :func:`out_of_plane` for the fourth.
 
-    Returns
-    -------
-    tuple
-        sx, sz, txz [Pa], shape (..., nz, nx), without the axis nz if z is a number.
+    Returns sx, sz, txz [Pa], shape (..., nz, nx), without the axis nz if z is a number.
     """
     x, pressure = np.asarray(x, float), np.asarray(pressure, float)
     shear = None if shear is None else np.asarray(shear, float)
