@@ -83,7 +83,7 @@ def sentence(capsys, command, *words):
         *((command, "-o", "other.h5") for command in (plot, summary, ensemble, gears)),
         *((command, "-o", "case.toml") for command in (plot, summary, ensemble)),
         *((command, "-o", "a.series.json") for command in (summary, ensemble)),
-        *((plot, *words) for words in (("--report -o", "case.toml"), ("--movie -o", "other.restart.h5"))),
+        (plot, "--report -o", "case.toml"),
         (gears, "--csv", "other.toml"),
     ],
 )

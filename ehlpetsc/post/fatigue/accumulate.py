@@ -82,7 +82,7 @@ _squared = compiled(von_mises_squared, error_model="python", nogil=True)
 
 @compiled(error_model="python", nogil=True)
 def _sum_cycles(stress: np.ndarray, nu: float, cycles: np.ndarray, law: tuple) -> tuple[float, float, float]:
-    """Damage, number and largest squared range of the cycles of one history (3, samples)."""
+    """Damage, number and maximum squared range of the cycles of one history (3, samples)."""
     (morrow, rule, residual), constants, table = law
     total = number = largest = 0.0
     for k in range(len(cycles)):
