@@ -66,7 +66,7 @@ def command(*words, ranks=0, tampered=()):
 
 def called(words, cwd, environment=SCRIPT):
     """Run any command to its end; output and error output as text, without the comment of Open MPI 5."""
-    pipes = {"capture_output": True, "text": True, "timeout": 300, "stdin": subprocess.DEVNULL}
+    pipes = {"capture_output": True, "text": True, "timeout": 600, "stdin": subprocess.DEVNULL}
     done = subprocess.run(list(map(str, words)), cwd=cwd, env=BARE | environment, **pipes)
     done.stderr = MPIRUNS_COMMENT.sub("", done.stderr)
     return done
