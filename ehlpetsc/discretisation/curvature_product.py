@@ -72,15 +72,11 @@ def exponentials(
 class Blocks(NamedTuple):
     r"""Product :math:`\sum_kf_kp_{i+k}` over the nodes of the mesh, at the blocks of one rank.
 
-    Attributes
-    ----------
-    matrices
-        Sums at a block, its right and its left neighbour and moments to both sides, by its pressures, shape
-        (BLOCK, 3 BLOCK + 2 terms); sums by the moments that arrive, (2 terms, BLOCK); factor of a moment a
-        block further, (terms,); factors of every rank's moments (inner blocks, outer block) at the outer
-        block of this rank, (ranks, 2, terms).
-    room
-        Pressures of the blocks; sums and moments by them; the others as of :func:`scan_moments`.
+    `matrices`: sums at a block, its right and its left neighbour and moments to both sides, by its pressures,
+        shape (BLOCK, 3 BLOCK + 2 terms); sums by the moments that arrive, (2 terms, BLOCK); factor of a
+        moment a block further, (terms,); factors of every rank's moments (inner blocks, outer block) at the
+        outer block of this rank, (ranks, 2, terms).
+    `room`: pressures of the blocks; sums and moments by them; the others as of :func:`scan_moments`.
     """
 
     rank: int
@@ -215,16 +211,12 @@ def receive_moments(messages: np.ndarray, rank: int, translation: np.ndarray, in
 def scan_moments(sent: np.ndarray, decay: np.ndarray, incoming: np.ndarray, arriving: np.ndarray) -> None:
     """Fill in the moments that arrive at each block from blocks two and more away.
 
-    Parameters
-    ----------
-    sent : shape (blocks, 3 BLOCK + 2 terms)
-        Its last columns are the moments that each block sends to the right and to the left.
-    decay : shape (terms,)
-        Factor of a moment a block further.
-    incoming : shape (2, 2, terms)
-        From left and from right: what arrives at the outer block, and what is added at the block behind it.
-    arriving : shape (blocks + 2, 2 terms)
-        Of the blocks and of one beyond either end.
+    `sent`: its last columns are the moments that each block sends to the right and to the left, shape
+        (blocks, 3 BLOCK + 2 terms).
+    `decay`: factor of a moment a block further, shape (terms,).
+    `incoming`: from left and from right: what arrives at the outer block, and what is added at the block
+        behind it, shape (2, 2, terms).
+    `arriving`: of the blocks and of one beyond either end, shape (blocks + 2, 2 terms).
     """
     blocks, terms = len(sent), len(decay)
     to_right, to_left = 3 * BLOCK, 3 * BLOCK + terms

@@ -98,12 +98,9 @@ class SymmetricToeplitz:
 class PressureSums(NamedTuple):
     r"""Sums over the pressures of the whole mesh.
 
-    Attributes
-    ----------
-    curvature : shape (last - first,)
-        :math:`\sum_kf_kp_{i+k}` at the local nodes.
-    load : shape (3,)
-        Pressure terms of the rows of the first and of the last node, and :math:`\sum p\,\Delta x`.
+    `curvature`: :math:`\sum_kf_kp_{i+k}` at the local nodes, shape (last - first,).
+    `load`: pressure terms of the rows of the first and of the last node, and :math:`\sum p\,\Delta x`, shape
+        (3,).
     """
 
     curvature: np.ndarray
@@ -116,22 +113,14 @@ class Deflection:
     `n`: number of nodes of the mesh.
     `dx`: spacing in half-widths.
 
-    Attributes
-    ----------
-    window : slice
-        Nodes on which the rows depend, first .. last-1 among them.
-    curvature : ndarray, shape (n,)
-        Kernel f_k.
-    curvature_coefficient : float
-        Coefficient of the second difference of the separation.
-    end_row_coefficient : float
-        Coefficient of the separation in the row of an end node; that of h00 is its negative.
-    ends : list of int
-        End nodes of the mesh among the local nodes.
-    form : tuple
-        Constants of :func:`deflection_rows`.
-    load_weights : ndarray, shape (3, last - first)
-        Coefficients of the local pressures in `PressureSums.load`.
+    `window`: nodes on which the rows depend, first .. last-1 among them.
+    `curvature`: kernel f_k, shape (n,).
+    `curvature_coefficient`: coefficient of the second difference of the separation.
+    `end_row_coefficient`: coefficient of the separation in the row of an end node; that of h00 is its
+        negative.
+    `ends`: end nodes of the mesh among the local nodes.
+    `form`: constants of :func:`deflection_rows`.
+    `load_weights`: coefficients of the local pressures in `PressureSums.load`, shape (3, last - first).
     """
 
     def __init__(self, n: int, dx: float, first: int, last: int):
@@ -182,14 +171,9 @@ def deflection_rows(
 ) -> None:
     """Fill in the deflection rows, shape (rows,).
 
-    Parameters
-    ----------
-    g
-        Separation.
-    curvature, load
-        See `PressureSums`.
-    form
-        Index in g of the first row's node, 0: the first node of the mesh; `curvature_coefficient` and
+    `g`: separation.
+    `curvature`, `load`: see `PressureSums`.
+    `form`: index in g of the first row's node, 0: the first node of the mesh; `curvature_coefficient` and
         `end_row_coefficient` of `Deflection`; whether the last row is that of the last node of the mesh.
     """
     start, coefficient, end_coefficient, has_last = form

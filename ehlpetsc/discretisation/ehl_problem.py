@@ -34,12 +34,9 @@ from ehlpetsc.physics.scales import Scales
 class Evaluation:
     """Residual and derivatives at one state.
 
-    Attributes
-    ----------
-    residual
-        Local rows, interleaved; shape of the local part of the vector.
-    reynolds_derivatives : shape (local nodes, 8)
-        Derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1.
+    `residual`: local rows, interleaved; shape of the local part of the vector.
+    `reynolds_derivatives`: derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1, shape
+        (local nodes, 8).
     """
 
     model: ContactModel

@@ -48,10 +48,8 @@ class Reynolds:
     `start`: first node of the arrays that are passed in.
     `layer`: rms height of the compliant layer [m], 0 without one.
 
-    Attributes
-    ----------
-    columns : ndarray of int, shape (local nodes, 8)
-        Indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown.
+    `columns`: indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown, shape
+        (local nodes, 8).
     """
 
     def __init__(

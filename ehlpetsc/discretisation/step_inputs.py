@@ -19,12 +19,9 @@ Watch = Callable[[], object] | None  # called in every iteration; an exception t
 class FilmHistory:
     r"""Masses per area of the film at the previous time levels, for BDF2.
 
-    Parameters
-    ----------
-    m, m_older : shape (nx,)
-        :math:`\rho h(1-\theta)` one and two steps ago.
-    dt, dt_older
-        Current and previous time step, in units of a/u; `dt_older` None starts with backward Euler.
+    `m`, `m_older`: :math:`\rho h(1-\theta)` one and two steps ago, shape (nx,).
+    `dt`, `dt_older`: current and previous time step, in units of a/u; `dt_older` None starts with backward
+        Euler.
 
     `k`: factor of the extrapolation from the two levels of the current step.
     `extrapolated`: extrapolation from the two older levels, shape (nx,).
@@ -40,28 +37,16 @@ class FilmHistory:
 class StepInputs:
     """Data of a solve, without its initial guess.
 
-    Attributes
-    ----------
-    phi : shape (nx,)
-        Contribution of the roughness to the gap, in a^2/R.
-    history
-        Previous time levels; None: steady.
-    fluid
-        None: dry.
-    inlet_film
-        Oil film at the inlet in a^2/R; None: flooded.
-    conditions
-        At the end of the step.
-    load_share
-        Applied fraction of the load of `conditions`.
-    dt
-        Length of the step [s]; None: steady.
-    contact
-        Contact model of the solve; None: that of the problem.
-    heat
-        Data of the film's temperature, :class:`ehlpetsc.effects.heat.film.FilmHeat`; None: isothermal.
-    boundary_friction
-        Coefficient of friction between the solids.
+    `phi`: contribution of the roughness to the gap, in a^2/R, shape (nx,).
+    `history`: previous time levels; None: steady.
+    `fluid`: None: dry.
+    `inlet_film`: oil film at the inlet in a^2/R; None: flooded.
+    `conditions`: at the end of the step.
+    `load_share`: applied fraction of the load of `conditions`.
+    `dt`: length of the step [s]; None: steady.
+    `contact`: contact model of the solve; None: that of the problem.
+    `heat`: data of the film's temperature, :class:`ehlpetsc.effects.heat.film.FilmHeat`; None: isothermal.
+    `boundary_friction`: coefficient of friction between the solids.
     """
 
     phi: np.ndarray

@@ -91,19 +91,12 @@ class NoRecord(NamedTuple):
 class Effect:
     """Base class of effects: no influence, no quantities.
 
-    Attributes
-    ----------
-    name
-        Name of the record in the state and in restart files.
-    record
-        Type of the record, a NamedTuple.
-    table
-        Table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
-    moves_with_surfaces
-        Whether its contribution to the gap moves with the surfaces from the first step on.
-    fields, scalars, surface
-        Quantities of the effect, see :mod:`ehlpetsc.effects.quantities`: fields over the nodes, scalars of
-        every time step, depths along each surface at the end of the run.
+    `name`: name of the record in the state and in restart files.
+    `record`: type of the record, a NamedTuple.
+    `table`: table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
+    `moves_with_surfaces`: whether its contribution to the gap moves with the surfaces from the first step on.
+    `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.effects.quantities`: fields
+        over the nodes, scalars of every time step, depths along each surface at the end of the run.
     """
 
     name = ""

@@ -34,28 +34,17 @@ def angle_of(value: float) -> float:
 class GearPair:
     """Dimensions and running conditions of a gear pair; pairs of values are those of pinion and wheel.
 
-    Attributes
-    ----------
-    module, pressure_angle
-        Of the basic rack, in the normal section [m], [degrees].
-    centre_distance, tip_diameter
-        [m]; left out: of the play-free pair with `profile_shift`.
-    torque, speed
-        Torque [N m] and speed [1/min] of the pinion.
-    helix_angle
-        At the reference circle [degrees].
-    addendum, tip_clearance
-        Of the basic rack, over the module.
-    tip_radius
-        Radius of the tip edges [m].
-    tip_relief
-        Depth of the relief at both tips, falling linearly to none at B and D [m].
-    load_sharing
-        See :mod:`ehlpetsc.gears.load_sharing`; by default by relief and helix.
-    mesh_stiffness
-        Single stiffness c' of a tooth pair per face width [Pa]; by default that of ISO 6336-1.
-    path, load
-        Positions from the pitch point [m] and load of a pair there [N/m], of a tooth contact analysis.
+    `module`, `pressure_angle`: of the basic rack, in the normal section [m], [degrees].
+    `centre_distance`, `tip_diameter`: [m]; left out: of the play-free pair with `profile_shift`.
+    `torque`, `speed`: torque [N m] and speed [1/min] of the pinion.
+    `helix_angle`: at the reference circle [degrees].
+    `addendum`, `tip_clearance`: of the basic rack, over the module.
+    `tip_radius`: radius of the tip edges [m].
+    `tip_relief`: depth of the relief at both tips, falling linearly to none at B and D [m].
+    `load_sharing`: see :mod:`ehlpetsc.gears.load_sharing`; by default by relief and helix.
+    `mesh_stiffness`: single stiffness c' of a tooth pair per face width [Pa]; by default that of ISO 6336-1.
+    `path`, `load`: positions from the pitch point [m] and load of a pair there [N/m], of a tooth contact
+        analysis.
     """
 
     module: float

@@ -25,16 +25,11 @@ BULK_OF_FLASH = 0.47  # of the mean flash temperature, for dip lubrication, one 
 class Rating:
     """Contact, oil and temperatures of a gear pair, as standards need them.
 
-    Attributes
-    ----------
-    modulus
-        Reduced modulus E' [Pa].
-    roughness
-        Ra, mean of both flanks [m]; 0: smooth.
-    viscosity, pressure_viscosity
-        Of the oil at ambient pressure [Pa s], [1/Pa], functions of temperature [K].
-    bulk, oil
-        Temperatures of the gears, mean of both, and of the oil that is supplied [K].
+    `modulus`: reduced modulus E' [Pa].
+    `roughness`: Ra, mean of both flanks [m]; 0: smooth.
+    `viscosity`, `pressure_viscosity`: of the oil at ambient pressure [Pa s], [1/Pa], functions of temperature
+        [K].
+    `bulk`, `oil`: temperatures of the gears, mean of both, and of the oil that is supplied [K].
     """
 
     path: Path

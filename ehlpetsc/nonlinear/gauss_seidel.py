@@ -30,7 +30,7 @@ distributed: every rank computes all nodes.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -130,8 +130,8 @@ class GaussSeidelSolver:
         far_field[1:-1] += curvature_coefficient * (shape[:-2] - 2.0 * shape[1:-1] + shape[2:])
         relaxation = np.where(gap_is_open, OPEN_GAP_RELAXATION, 1.0 if steady else FILM_RELAXATION)
         relaxation[q <= 0.0] = 1.0
-        linearised = Linearised(q.copy(), h.copy(), self.rows.reynolds, self.derivatives)
-        deflection = DeflectionForm(-far_field, self.kernel, curvature_coefficient)
+        linearised = q.copy(), h.copy(), self.rows.reynolds, self.derivatives
+        deflection = -far_field, self.kernel, curvature_coefficient
         q[0] -= self.rows.reynolds[0] / self.derivatives[0, 4]
         p[0] = max(q[0], 0.0)
         for _ in range(sweeps):
@@ -139,49 +139,22 @@ class GaussSeidelSolver:
         self.sweeps += sweeps
 
 
-class Linearised(NamedTuple):
-    """Reynolds rows at the state of the last evaluation.
-
-    Attributes
-    ----------
-    q, h : shape (n,)
-        State of the last evaluation.
-    residual, derivatives : shape (n,), (n, 8)
-        Rows, and their derivatives with respect to (q, h) at the nodes i-2 .. i+1.
-    """
-
-    q: np.ndarray
-    h: np.ndarray
-    residual: np.ndarray
-    derivatives: np.ndarray
-
-
-class DeflectionForm(NamedTuple):
-    r"""Constants of the deflection rows inside the mesh.
-
-    `far_field`: contribution of the undeformed gap and of distant pressures to E, shape (n,).
-    `kernel`: curvature kernel at -near .. near nodes, shape (2 near + 1,).
-    `curvature_coefficient`: :math:`\pi/\Delta x`, coefficient of the second difference of h.
-    """
-
-    far_field: np.ndarray
-    kernel: np.ndarray
-    curvature_coefficient: float
-
-
 @compiled(fastmath=True)
 def sweep(
     q: np.ndarray,
     h: np.ndarray,
     p: np.ndarray,
-    linearised: Linearised,
-    deflection: DeflectionForm,
+    linearised: tuple,
+    deflection: tuple,
     bound: float,
     relaxation: np.ndarray,
 ) -> None:
-    """Update every pair once, in the direction of flow, in place.
+    r"""Update every pair once, in the direction of flow, in place.
 
     `q`, `h`, `p`: newest values; the first and the last h, and the first q, do not change, shape (n,).
+    `linearised`: (q, h) of the last evaluation, Reynolds rows there, and their derivatives, shape (n, 8).
+    `deflection`: share of the undeformed gap and of distant pressures in E, shape (n,); curvature kernel at
+    -near .. near nodes; coefficient :math:`\pi/\Delta x` of the second difference of h.
     `bound`: minimum of h.
     `relaxation`: relaxation factor of each node, shape (n,).
     """

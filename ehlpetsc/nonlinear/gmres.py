@@ -69,16 +69,11 @@ def iterations(
 ) -> np.ndarray:
     """Replace the right-hand side b by the solution to PETSc's tolerances; collective.
 
-    Parameters
-    ----------
-    state, work
-        As of :func:`.jacobian.jacobian_product`.
-    buffers, matrices, pressures
-        Of a `Halo`.
-    place, lu, cuts, border, room
-        `factors` of a `DistributedLU`; one by one, see :func:`.ranks.collective`.
-    limits
-        Iterations, relative and absolute tolerance, divergence tolerance.
+    `state`, `work`: as of :func:`.jacobian.jacobian_product`.
+    `buffers`, `matrices`, `pressures`: of a `Halo`.
+    `place`, `lu`, `cuts`, `border`, `room`: `factors` of a `DistributedLU`; one by one, see
+        :func:`.ranks.collective`.
+    `limits`: iterations, relative and absolute tolerance, divergence tolerance.
 
     Returns the norms of the residual, from that of the right-hand side on.
     """

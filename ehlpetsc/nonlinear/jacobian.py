@@ -197,16 +197,12 @@ def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> 
 def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out: np.ndarray) -> None:
     """Fill in the local rows of the product with a vector, zero in inactive rows; collective.
 
-    Parameters
-    ----------
-    state
-        :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the Reynolds
-        rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
+    `state`: :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the
+        Reynolds rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
         :func:`.deflection.deflection_rows`.
-    work
-        Work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3, window).
-    halo
-        A `ranks.Halo` as a plain tuple.
+    `work`: work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3,
+        window).
+    `halo`: a `ranks.Halo` as a plain tuple.
     """
     (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
     local = 2 * len(derivatives)

@@ -37,10 +37,8 @@ REJECTED_STEP = (
 class NewtonSolver:
     """Newton's method for one system, by SNES.
 
-    Parameters
-    ----------
-    options
-        Options, entered before because PETSc reads its table when its objects are created; default: none.
+    `options`: options, entered before because PETSc reads its table when its objects are created; default:
+        none.
 
     Attributes
     ----------

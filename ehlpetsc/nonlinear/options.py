@@ -50,15 +50,10 @@ class RunOptions:
     `law`: contact model.
     `of_case`, `given`: `[petsc]` of the case; options of a call from Python.
 
-    Attributes
-    ----------
-    deferred_views : list of str
-        ``snes_view`` and ``ksp_view`` set without a value: not put into PETSc's table, because PETSc would
-        repeat the output at every solve.
-    given : dict of str to str
-        Options of the user: of the case, of PETSc's table (from the first entry on) and of the call.
-    unused : set of str
-        Names in `of_case` and `given` that have not been read.
+    `deferred_views`: ``snes_view`` and ``ksp_view`` set without a value: not put into PETSc's table, because
+        PETSc would repeat the output at every solve.
+    `given`: options of the user: of the case, of PETSc's table (from the first entry on) and of the call.
+    `unused`: names in `of_case` and `given` that have not been read.
     """
 
     def __init__(self, law: str = "direct", of_case: dict | None = None, given: dict | None = None) -> None:

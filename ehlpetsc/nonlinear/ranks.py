@@ -28,15 +28,10 @@ BEHIND_LOAD = LOAD + 4
 class Halo(NamedTuple):
     """What a rank exchanges with others.
 
-    Attributes
-    ----------
-    place
-        :func:`collective` and the rank.
-    buffers
-        `load_weights` of `deflection.Deflection`; messages, shape (ranks, size); unknowns of the window,
-        (window, 2).
-    matrices, room
-        Of a `curvature_product.Blocks`.
+    `place`: :func:`collective` and the rank.
+    `buffers`: `load_weights` of `deflection.Deflection`; messages, shape (ranks, size); unknowns of the
+        window, (window, 2).
+    `matrices`, `room`: of a `curvature_product.Blocks`.
     """
 
     place: tuple

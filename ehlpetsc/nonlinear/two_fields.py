@@ -46,24 +46,15 @@ FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the 
 class TwoFields:
     """System of the pairs (q, w) at every node, w bounded below in direct contact.
 
-    Parameters
-    ----------
-    case, scales, film_scale
-        As in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
-    bound_tolerance
-        Tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this close to their
-        bound count as on it.
+    `case`, `scales`, `film_scale`: as in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
+    `bound_tolerance`: tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this
+        close to their bound count as on it.
 
-    Attributes
-    ----------
-    x, f : petsc4py.PETSc.Vec
-        Unknowns and residual.
-    lower, upper : petsc4py.PETSc.Vec
-        Bounds of the unknowns.
-    bound_reached : bool
-        Whether a film is at its bound after the last evaluated step, on any rank.
-    operator, preconditioned : petsc4py.PETSc.Mat
-        The Jacobian, and the matrix for preconditioners; set by :meth:`create_matrices`.
+    `x`, `f`: unknowns and residual.
+    `lower`, `upper`: bounds of the unknowns.
+    `bound_reached`: whether a film is at its bound after the last evaluated step, on any rank.
+    `operator`, `preconditioned`: the Jacobian, and the matrix for preconditioners; set by
+        :meth:`create_matrices`.
     """
 
     def __init__(
@@ -104,11 +95,9 @@ class TwoFields:
     def create_matrices(self, with_band: bool) -> None:
         """Create the Jacobian and the matrix for preconditioners.
 
-        Parameters
-        ----------
-        with_band
-            Whether preconditioners get the Jacobian itself, as :mod:`ehlpetsc.nonlinear.preconditioner` needs
-            it; otherwise an assembled matrix with the deflection of the near field.
+        `with_band`: whether preconditioners get the Jacobian itself, as
+            :mod:`ehlpetsc.nonlinear.preconditioner` needs it; otherwise an assembled matrix with the
+            deflection of the near field.
         """
         sizes = self.x.getSizes()
         self.factors = Factors(self.problem, self.ranks) if with_band else None

@@ -29,20 +29,14 @@ class Profile:
     :math:`r^3(10-15r+6r^2)`, so that film and its rate of change have no jump. With `ahead` the profile has
     entered by this length at time 0.
 
-    Parameters
-    ----------
-    speed
-        U [m/s].
-    moving
-        False in a steady case.
-    inlet, outlet, ramp, swept_length
-        Ends of the domain, length of the ramp and of the profile that enters during the run [m].
-    begin
-        Abscissa at which the profile begins, instead of 0 [m].
-    reach
-        Minimum and maximum displacement of a body whose profile is in the whole domain from the start [m].
-    is_flank
-        Whether this profile begins at x = 0 at time 0, :math:`X=-s`, as the arc length of a flank.
+    `speed`: U [m/s].
+    `moving`: false in a steady case.
+    `inlet`, `outlet`, `ramp`, `swept_length`: ends of the domain, length of the ramp and of the profile that
+        enters during the run [m].
+    `begin`: abscissa at which the profile begins, instead of 0 [m].
+    `reach`: minimum and maximum displacement of a body whose profile is in the whole domain from the start
+        [m].
+    `is_flank`: whether this profile begins at x = 0 at time 0, :math:`X=-s`, as the arc length of a flank.
 
     `is_moving`: false if its abscissa is fixed to the domain at time 0, without a ramp.
     `enters`: whether it enters during the run; otherwise it is in the whole domain from the start.

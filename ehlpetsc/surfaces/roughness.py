@@ -73,12 +73,8 @@ class Roughness:
     def phi(self, x: np.ndarray, t: float, cell: float | None = None) -> np.ndarray:
         """Contribution of both roughnesses to the gap [m], minus both heights, at time t [s].
 
-        Parameters
-        ----------
-        x
-            Positions [m], with `cell` equally spaced by it, shape (n,).
-        cell
-            Cell width of the mesh [m] over which means are taken: waves shorter than a cell, which a mesh
+        `x`: positions [m], with `cell` equally spaced by it, shape (n,).
+        `cell`: cell width of the mesh [m] over which means are taken: waves shorter than a cell, which a mesh
             does not resolve, are damped instead of aliased. Without it values at x.
         """
         travelled = [profile.speed * t if profile else 0.0 for profile in (self.surface_1, self.surface_2)]

@@ -20,18 +20,13 @@ from ehlpetsc.physics.scales import Scales
 class ContactModel:
     """Elastic solids that carry load with the oil; the defaults hold for every model with p_c of its own.
 
-    Attributes
-    ----------
-    minimum_film : float
-        Smallest film that the model aims at, in a^2/R.
-    lower_bound : float or None
-        Bound of w that the nonlinear solver enforces (SNESVI); None: no bound.
-    starts_unconstrained : bool
-        Whether a bounded system is solved without its bound first, where the guess is clear of it.
-    bound_tolerance : float
-        Tolerance of the active set: films this close to the bound count as on it, as SNES has it.
-    yield_pressure, compliance : float
-        In p0, inf for elastic solids; depth over the excess in a^2/R per p0.
+    `minimum_film`: smallest film that the model aims at, in a^2/R.
+    `lower_bound`: bound of w that the nonlinear solver enforces (SNESVI); None: no bound.
+    `starts_unconstrained`: whether a bounded system is solved without its bound first, where the guess is
+        clear of it.
+    `bound_tolerance`: tolerance of the active set: films this close to the bound count as on it, as SNES has
+        it.
+    `yield_pressure`, `compliance`: in p0, inf for elastic solids; depth over the excess in a^2/R per p0.
     """
 
     minimum_film = 0.0

@@ -19,16 +19,11 @@ def full_of_oil(q: np.ndarray) -> np.ndarray:
 class PlasticState(NamedTuple):
     """Plastic deformation of yielding nodes; arrays of shape (nx,).
 
-    Attributes
-    ----------
-    depth
-        delta, by which both surfaces together yield in the step, in a^2/R.
-    yielding
-        Mask of the nodes that yield.
-    depth_q, depth_w, reynolds_q, reynolds_w
-        Derivatives of delta, and of `NodeState.reynolds_unknown`, with respect to q and w.
-    hardening
-        Slope of the pressure over the yield pressure in the linearised system, 0 or a small one.
+    `depth`: delta, by which both surfaces together yield in the step, in a^2/R.
+    `yielding`: mask of the nodes that yield.
+    `depth_q`, `depth_w`, `reynolds_q`, `reynolds_w`: derivatives of delta, and of
+        `NodeState.reynolds_unknown`, with respect to q and w.
+    `hardening`: slope of the pressure over the yield pressure in the linearised system, 0 or a small one.
     """
 
     depth: np.ndarray
@@ -43,18 +38,12 @@ class PlasticState(NamedTuple):
 class NodeState(NamedTuple):
     """State of the nodes at given unknowns; arrays of shape (nx,).
 
-    Attributes
-    ----------
-    reynolds_unknown
-        Unknown of the Reynolds equation: oil pressure where positive, minus the void fraction where negative.
-    pressure, film
-        Total pressure p; film h of the Reynolds equation.
-    p_q, p_w, h_w
-        Derivatives of p with respect to q and w, of h with respect to w.
-    contact_mask
-        Nodes whose solids carry.
-    plastic
-        None where solids are elastic.
+    `reynolds_unknown`: unknown of the Reynolds equation: oil pressure where positive, minus the void fraction
+        where negative.
+    `pressure`, `film`: total pressure p; film h of the Reynolds equation.
+    `p_q`, `p_w`, `h_w`: derivatives of p with respect to q and w, of h with respect to w.
+    `contact_mask`: nodes whose solids carry.
+    `plastic`: None where solids are elastic.
     """
 
     reynolds_unknown: np.ndarray
@@ -128,20 +117,13 @@ def limit_cavitation(q: float, dq: float) -> float:
 class SurfaceLoads(NamedTuple):
     """Surface loads of an accepted solution; arrays of shape (nx,), pressures in p0, film in a^2/R.
 
-    Attributes
-    ----------
-    contact_mask
-        Nodes in contact.
-    pressure, contact_pressure
-        Total pressure, and the part of it that the solids carry (0 where the model does not separate them).
-    film
-        Film thickness.
-    oil_pressure, oil_mask
-        Pressure of the oil, and the nodes where it is known.
-    friction_pressure
-        Pressure under which the solids rub against each other, 0 out of contact.
-    sheared_oil
-        Nodes whose oil film is sheared.
+    `contact_mask`: nodes in contact.
+    `pressure`, `contact_pressure`: total pressure, and the part of it that the solids carry (0 where the
+        model does not separate them).
+    `film`: film thickness.
+    `oil_pressure`, `oil_mask`: pressure of the oil, and the nodes where it is known.
+    `friction_pressure`: pressure under which the solids rub against each other, 0 out of contact.
+    `sheared_oil`: nodes whose oil film is sheared.
     """
 
     contact_mask: np.ndarray
@@ -162,12 +144,10 @@ class BandEntries(NamedTuple):
     pair of its own choice (`ContactModel.band_entries`) and translates the solution back
     (`ContactModel.from_band`).
 
-    Attributes
-    ----------
-    p_first, separation_first, separation_second
-        Of the pressure by the first, of the separation by both unknowns of each node of the window.
-    reynolds_derivatives : shape (local nodes, 8)
-        Of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1.
+    `p_first`, `separation_first`, `separation_second`: of the pressure by the first, of the separation by
+        both unknowns of each node of the window.
+    `reynolds_derivatives`: of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1, shape (local
+        nodes, 8).
     """
 
     p_first: np.ndarray

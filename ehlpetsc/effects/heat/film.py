@@ -35,21 +35,13 @@ from ehlpetsc.physics.rheology import MIN_RATE, stress_spread
 class FilmHeat(NamedTuple):
     """Coefficients of the film's temperature that are fixed in a solve.
 
-    Attributes
-    ----------
-    law
-        Constants of the oil.
-    of_nodes
-        Rows `A` to `REFERENCE`, as of :func:`.film_law.film_temperature`, shape (10, nx): one array, as numba
-        looks up the types of many in a tuple anew in some calls, slowly.
-    guess
-        State of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).
-    walls
-        Temperatures without the flux of the step [K], shape (2, nx).
-    stored
-        Heat capacity of the oil carried over, over the step [W/(m^2 K)], shape (nx,).
-    bodies
-        Both bodies at the end of the step; None: steady.
+    `law`: constants of the oil.
+    `of_nodes`: rows `A` to `REFERENCE`, as of :func:`.film_law.film_temperature`, shape (10, nx): one array,
+        as numba looks up the types of many in a tuple anew in some calls, slowly.
+    `guess`: state of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).
+    `walls`: temperatures without the flux of the step [K], shape (2, nx).
+    `stored`: heat capacity of the oil carried over, over the step [W/(m^2 K)], shape (nx,).
+    `bodies`: both bodies at the end of the step; None: steady.
     """
 
     law: FilmLaw
@@ -166,22 +158,16 @@ def faces(
 ) -> None:
     r"""Couette flow, heat of the pressure flow and stress gradients of a solution on the whole mesh.
 
-    Parameters
-    ----------
-    law, table
-        Of :func:`.finite_volumes.balance`.
-    oil
-        Nodes where the Reynolds equation holds: flow through faces of others has no meaning, shape (nodes,).
-    max_flow
-        Maximum pressure flow of the heat: speed [m/s] times the film of a face, flow of any face [m^2/s].
-    couette
-        Filled in: mass flow of the mean speed through the faces i-1/2, in u a^2/R, shape (nodes + 1,).
-    pressure_heat
-        Filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node, shape (nodes,).
-    spread
-        Filled in: :func:`.rheology.stress_spread` of the nodes, shape (nodes,).
-    gradient
-        Filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
+    `law`, `table`: of :func:`.finite_volumes.balance`.
+    `oil`: nodes where the Reynolds equation holds: flow through faces of others has no meaning, shape
+        (nodes,).
+    `max_flow`: maximum pressure flow of the heat: speed [m/s] times the film of a face, flow of any face
+        [m^2/s].
+    `couette`: filled in: mass flow of the mean speed through the faces i-1/2, in u a^2/R, shape (nodes + 1,).
+    `pressure_heat`: filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node, shape
+        (nodes,).
+    `spread`: filled in: :func:`.rheology.stress_spread` of the nodes, shape (nodes,).
+    `gradient`: filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
     per_length, _, no_pressure, stress_rise, sliding, entrainment, layer = law

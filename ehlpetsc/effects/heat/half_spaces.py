@@ -57,14 +57,10 @@ def exponentials(shortest: float, longest: float) -> tuple[tuple[float, ...], tu
 class StepWeights:
     r"""Coefficients of one time step, flux linear in time over it.
 
-    Attributes
-    ----------
-    decay
-        :math:`e^{-\lambda\Delta t}`, shape (terms,).
-    begin, end
-        Contributions of the flux at the begin and at the end of the step to A [s], shape (terms,).
-    response
-        Temperature at the end of the step per flux there [m^2 K/W], without lateral diffusion.
+    `decay`: :math:`e^{-\lambda\Delta t}`, shape (terms,).
+    `begin`, `end`: contributions of the flux at the begin and at the end of the step to A [s], shape
+        (terms,).
+    `response`: temperature at the end of the step per flux there [m^2 K/W], without lateral diffusion.
     """
 
     decay: np.ndarray
@@ -137,21 +133,13 @@ def advance_terms(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Terms at the end of a step but for the flux there.
 
-    Parameters
-    ----------
-    terms
-        At its begin, shape (cells, terms).
-    flux
-        The same [W/m^2], shape (cells,).
-    shift
-        Cells by which the first cell has moved in the body; what it leaves behind is lost, and the body
+    `terms`: at its begin, shape (cells, terms).
+    `flux`: the same [W/m^2], shape (cells,).
+    `shift`: cells by which the first cell has moved in the body; what it leaves behind is lost, and the body
         brings in no heat.
-    decay, begin
-        Of :class:`StepWeights`, shape (terms,).
-    ratio
-        Of :func:`diffuse`.
-    weights
-        Of the terms in the temperature, shape (terms,).
+    `decay`, `begin`: of :class:`StepWeights`, shape (terms,).
+    `ratio`: of :func:`diffuse`.
+    `weights`: of the terms in the temperature, shape (terms,).
 
     Returns
     -------

@@ -24,41 +24,23 @@ class BodyHeat(NamedTuple):
 class HeatRecord(NamedTuple):
     """Temperatures and heat at a time level; arrays of shape (nx,) but for `flow`, (nx + 1,).
 
-    Attributes
-    ----------
-    film, wall_1, wall_2
-        Temperatures [K].
-    flux_1, flux_2
-        Heat fluxes into both bodies [W/m^2].
-    base, profile
-        State of the film, see :mod:`.film_law`.
-    solved
-        Mean temperature of the film in the solve of this level [K], on which its viscosity depended; `film`
-        is that of the accepted solution, with its own heat and flow.
-    shear
-        Mean shear stress of the film [Pa].
-    source
-        Heat of the pressure flow and of compression [W/m^2].
-    rubbing
-        Heat of the solids [W/m^2], in the walls of the next solve.
-    spread
-        Of :func:`.film_law.film_temperature`.
-    flow
-        Heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
-    response_1, response_2
-        Of the surfaces to their flux, in a steady solve [m^2 K/W].
-    pressure
-        Of the oil [Pa].
-    rate
-        Change of the film's temperature over the last step [K/s]; 0: steady.
-    extrapolated
-        Heat of the film beyond that at its temperature, see :mod:`.transport` [J/m^2].
-    heat
-        Dissipated [W/m].
-    error
-        Its imbalance over it.
-    levels
-        Number of solutions before this level; 0: none yet.
+    `film`, `wall_1`, `wall_2`: temperatures [K].
+    `flux_1`, `flux_2`: heat fluxes into both bodies [W/m^2].
+    `base`, `profile`: state of the film, see :mod:`.film_law`.
+    `solved`: mean temperature of the film in the solve of this level [K], on which its viscosity depended;
+        `film` is that of the accepted solution, with its own heat and flow.
+    `shear`: mean shear stress of the film [Pa].
+    `source`: heat of the pressure flow and of compression [W/m^2].
+    `rubbing`: heat of the solids [W/m^2], in the walls of the next solve.
+    `spread`: of :func:`.film_law.film_temperature`.
+    `flow`: heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
+    `response_1`, `response_2`: of the surfaces to their flux, in a steady solve [m^2 K/W].
+    `pressure`: of the oil [Pa].
+    `rate`: change of the film's temperature over the last step [K/s]; 0: steady.
+    `extrapolated`: heat of the film beyond that at its temperature, see :mod:`.transport` [J/m^2].
+    `heat`: dissipated [W/m].
+    `error`: its imbalance over it.
+    `levels`: number of solutions before this level; 0: none yet.
     """
 
     film: np.ndarray

@@ -35,24 +35,15 @@ SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the swe
 class Film(NamedTuple):
     """Film of a solution; arrays of shape (nx,).
 
-    Attributes
-    ----------
-    pressure, thickness
-        Of the oil [Pa]; [m], 0 where the solids are in direct contact.
-    left
-        Fraction of the gap that is full of oil.
-    old
-        Temperature at the begin of the step [K].
-    stored
-        Heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
-    change
-        By which the temperature would change in the step as fast as in the one before [K].
-    extrapolated
-        e at the begin of the step, over the step [W/m^2].
-    couette
-        Heat capacity that the mean speed moves through the faces, per cell [W/(m^2 K)], shape (nx + 1,).
-    rubbing
-        Heat of the solids [W/m^2], which arises in the walls.
+    `pressure`, `thickness`: of the oil [Pa]; [m], 0 where the solids are in direct contact.
+    `left`: fraction of the gap that is full of oil.
+    `old`: temperature at the begin of the step [K].
+    `stored`: heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
+    `change`: by which the temperature would change in the step as fast as in the one before [K].
+    `extrapolated`: e at the begin of the step, over the step [W/m^2].
+    `couette`: heat capacity that the mean speed moves through the faces, per cell [W/(m^2 K)], shape (nx +
+        1,).
+    `rubbing`: heat of the solids [W/m^2], which arises in the walls.
     """
 
     pressure: np.ndarray
@@ -137,20 +128,15 @@ def transport(
 ) -> int:
     """Temperatures of the film and heat fluxes of a solution, by sweeps along the film; returns their number.
 
-    Parameters
-    ----------
-    base, profile, t
-        State of the film to start from; the limiters are taken at the mean temperatures t [K]. `base` and
-        `profile` become those of the solution.
-    pressure, thickness, left, old, stored, change, before_step, flow
-        As `pressure` to `couette` of :class:`Film`. One by one, as numba looks up the types of many arrays in
-        a tuple, and of named tuples, anew in some calls, slowly.
-    inlet, coldest
-        Temperature of the oil that enters, minimum of it and both bodies [K].
-    law, of_nodes
-        As of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
-    t_new, q1, q2, shear_heat, extrapolated
-        Filled in; the last one is e at the end of the step, over the step [W/m^2].
+    `base`, `profile`, `t`: state of the film to start from; the limiters are taken at the mean temperatures t
+        [K]. `base` and `profile` become those of the solution.
+    `pressure`, `thickness`, `left`, `old`, `stored`, `change`, `before_step`, `flow`: as `pressure` to
+        `couette` of :class:`Film`. One by one, as numba looks up the types of many arrays in a tuple, and of
+        named tuples, anew in some calls, slowly.
+    `inlet`, `coldest`: temperature of the oil that enters, minimum of it and both bodies [K].
+    `law`, `of_nodes`: as of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
+    `t_new`, `q1`, `q2`, `shear_heat`, `extrapolated`: filled in; the last one is e at the end of the step,
+        over the step [W/m^2].
     """
     nodes, law = len(t), FilmLaw(*law)
     in_space, in_time = np.empty(nodes), np.empty(nodes)

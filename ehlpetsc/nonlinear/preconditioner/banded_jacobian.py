@@ -32,18 +32,13 @@ class BandedJacobian:
 
     `problem`: its first node must begin a group.
 
-    Attributes
-    ----------
-    groups, size : int
-        Local groups, and the room that their unknowns take.
-    dofs : ndarray, shape (2 nodes,)
-        Numbers of the unknowns (q, h, q, h, ...) of the local nodes.
-    end_groups : ndarray, shape (2, LINE)
-        Numbers of the unknowns of the first and of the last group, and of the room behind them.
-    entries : contact.node_state.BandEntries or None
-        Of the state last filled in.
-    dense : ndarray, shape (3, size)
-        Of the same state: deflection at both end nodes that the band lacks, and the load.
+    `groups`, `size`: local groups, and the room that their unknowns take.
+    `dofs`: numbers of the unknowns (q, h, q, h, ...) of the local nodes, shape (2 nodes,).
+    `end_groups`: numbers of the unknowns of the first and of the last group, and of the room behind them,
+        shape (2, LINE).
+    `entries`: of the state last filled in.
+    `dense`: of the same state: deflection at both end nodes that the band lacks, and the load, shape (3,
+        size).
     """
 
     def __init__(self, problem: EHLProblem):

@@ -44,12 +44,9 @@ class BlockLU:
     def factor(self, columns: np.ndarray) -> None:
         """Factor.
 
-        Parameters
-        ----------
-        columns : shape (groups, WIDTH, LINE)
-            What the rows of each group have of the group before, of their own and of the group behind, by
-            columns; to be left as it is while solves follow. What the first group has of one before is not
-            looked at, and what the last one has of one behind enters W alone.
+        `columns`: what the rows of each group have of the group before, of their own and of the group behind,
+            by columns; to be left as it is while solves follow. What the first group has of one before is not
+            looked at, and what the last one has of one behind enters W alone, shape (groups, WIDTH, LINE).
         """
         room = self._work, self._column, self._free, self._pivots
         self.factors = columns.ravel(), self.inverses.ravel(), self.upper.ravel(), self._column

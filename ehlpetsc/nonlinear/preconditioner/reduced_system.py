@@ -14,10 +14,8 @@ CONSTANTS, ZERO, ONE = np.array([0.0, 1.0]), -2, -1  # appended to other numbers
 class ReducedSystem:
     """Indices of w, and the rows of the inverse that a rank needs.
 
-    Parameters
-    ----------
-    left, right
-        Unknowns at a cut that the other side takes: of the last group before it, of the first one behind.
+    `left`, `right`: unknowns at a cut that the other side takes: of the last group before it, of the first
+        one behind.
     """
 
     def __init__(self, left: int, right: int, rank: int, ranks: int):
@@ -43,11 +41,8 @@ class ReducedSystem:
     def rows_of_inverse(self, values: np.ndarray) -> np.ndarray:
         """Coefficients of the unknowns that this rank takes, and of the sums over all ranks.
 
-        Parameters
-        ----------
-        values : shape (ranks, left + right + 2, left + right + BORDER)
-            Of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its sums;
-            the last two rows are not used.
+        `values`: of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its
+            sums; the last two rows are not used, shape (ranks, left + right + 2, left + right + BORDER).
 
         Returns
         -------

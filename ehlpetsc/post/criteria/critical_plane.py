@@ -352,15 +352,10 @@ def critical_plane(
 
     Equation and sources: :mod:`ehlpetsc.post.criteria.laws`.
 
-    Parameters
-    ----------
-    sx, sz, txz
-        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    strain
-        See :func:`ehlpetsc.post.damage`.
-    residual_stress
-        Residual stress along the surface, equal in x and y, zero in z [Pa]; adds to the normal stress of a
-        plane.
+    `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    `strain`: see :func:`ehlpetsc.post.damage`.
+    `residual_stress`: residual stress along the surface, equal in x and y, zero in z [Pa]; adds to the normal
+        stress of a plane.
     """
     counting = Counting(strain=strain)
 

@@ -177,14 +177,10 @@ def dang_van(
 ) -> float | np.ndarray:
     """Dang Van's utilisation U of the fatigue limit by each history; no crack for U <= 1, safety 1/U.
 
-    Parameters
-    ----------
-    sx, sz, txz
-        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    constants
-        With the two fatigue limits.
-    residual_stress
-        Residual stress along the surface, equal in x and y [Pa]; adds to the hydrostatic stress.
+    `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    `constants`: with the two fatigue limits.
+    `residual_stress`: residual stress along the surface, equal in x and y [Pa]; adds to the hydrostatic
+        stress.
     """
     constants = constants or Criteria()
     return evaluate(sx, sz, txz, lambda samples: LimitCounter(poisson_ratio, constants), residual_stress)[0]

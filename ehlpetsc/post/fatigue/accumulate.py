@@ -26,13 +26,9 @@ def evaluate(
 ) -> list:
     """Columns of results of a counter for each history, shape (...).
 
-    Parameters
-    ----------
-    sx, sz, txz
-        [Pa], shape (..., samples).
-    counter_of
-        From the number of samples to a counter with `columns`, which is called with stress
-        (points, 3, samples), lengths (points,), out (points, columns) and the residual stress.
+    `sx`, `sz`, `txz`: [Pa], shape (..., samples).
+    `counter_of`: from the number of samples to a counter with `columns`, which is called with stress (points,
+        3, samples), lengths (points,), out (points, columns) and the residual stress.
     """
     stress = np.stack(
         np.broadcast_arrays(*(np.asarray(component, float) for component in (sx, sz, txz))), axis=-2
@@ -160,25 +156,18 @@ def damage(
 ) -> Damage:
     """Damage of one pass of each history, cycles of the scalar with the maximum damage, shape (...).
 
-    Parameters
-    ----------
-    sx, sz, txz
-        Stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    count
-        Scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and txz
-        separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
+    `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
+    `count`: scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and
+        txz separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
         sz change together, under a passing asperity txz reverses while sz peaks).
-    mean_stress
-        Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in uniaxial loading
-        the mean stress) from the fatigue strength. The benefit of compression is limited to that of a
-        uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this limit
-        the contact pressure would increase lives by decades.
-    strain
-        Use of the elastic range in the cyclic stress-strain curve (13): unchanged, as in the paper, or by
-        Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.strain_life`).
-    residual_stress
-        Residual stress along the surface, equal in x and y, zero in z [Pa]; enters twice in the mean of
-        Morrow's term, and has no effect without this term.
+    `mean_stress`: Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in
+        uniaxial loading the mean stress) from the fatigue strength. The benefit of compression is limited to
+        that of a uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this
+        limit the contact pressure would increase lives by decades.
+    `strain`: use of the elastic range in the cyclic stress-strain curve (13): unchanged, as in the paper, or
+        by Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.strain_life`).
+    `residual_stress`: residual stress along the surface, equal in x and y, zero in z [Pa]; enters twice in
+        the mean of Morrow's term, and has no effect without this term.
     """
     counting = Counting(count, mean_stress, strain)
     return Damage(*evaluate(sx, sz, txz, lambda n: Counter(material, counting, n), residual_stress))

@@ -177,16 +177,11 @@ def stress(
     with :math:`D=(x-s)^2+z^2` (Holmes et al. 2005, section 2.3, restored). At z = 0 the limits from inside:
     -p and the principal value for the traction; at an end node with traction without the infinite part.
 
-    Parameters
-    ----------
-    x
-        Uniform nodes [m], shape (nx,).
-    z
-        Depth, or depths (nz,) [m].
-    pressure, shear
-        Pressure and traction in +x on this solid [Pa], shape (..., nx).
-    poisson_ratio
-        Checked, but the three in-plane stresses do not depend on it; see :func:`out_of_plane` for the fourth.
+    `x`: uniform nodes [m], shape (nx,).
+    `z`: depth, or depths (nz,) [m].
+    `pressure`, `shear`: pressure and traction in +x on this solid [Pa], shape (..., nx).
+    `poisson_ratio`: checked, but the three in-plane stresses do not depend on it; see :func:`out_of_plane`
+        for the fourth.
 
     Returns sx, sz, txz [Pa], shape (..., nz, nx), without the axis nz if z is a number.
     """
