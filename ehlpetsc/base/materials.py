@@ -165,14 +165,3 @@ def fatigue_constants(steel: Steel, post: Mapping[str, Any]) -> dict[str, float]
     constants |= {key: post[key] for key in FATIGUE_KEYS if post.get(key) is not None}
     names = ("fatigue_strength", "fatigue_ductility", "cyclic_hardening")
     return {"cyclic_strength": cyclic_strength(*(constants[name] for name in names))} | constants
-
-
-def elastic_constants(contact: Mapping[str, Any]) -> tuple[Any, Any]:
-    """Elastic moduli [Pa] and Poisson's ratios of a table `[contact]`: given there, else those of its steels.
-
-    KeyError: the table has neither.
-    """
-    keys = ("youngs_modulus", "poisson_ratio")
-    steels = named_steels(contact["material"]) if contact.get("material") else ()
-    constants = {key: [getattr(steel, key) for steel in steels] for key in keys if steels} | dict(contact)
-    return constants["youngs_modulus"], constants["poisson_ratio"]

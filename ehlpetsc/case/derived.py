@@ -25,6 +25,7 @@ from ehlpetsc.physics.laws import (
     walther_constants,
 )
 from ehlpetsc.physics.oils import OILS
+from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.standards import Rating
@@ -154,6 +155,11 @@ def with_layer_stiffness(case: Values) -> Values:
     return case.copy({"contact": contact.copy({"asperity_stiffness": stiffness})})
 
 
+def modulus_of(case: Values) -> float:
+    """Reduced modulus E' [Pa] of a case."""
+    return reduced_modulus(case.contact.youngs_modulus, case.contact.poisson_ratio)
+
+
 def rating_of(case: Values, folder: Path) -> Rating | None:
     """Gear pair with its contact, oil and temperatures, as standards need them; None without a pair or oil.
 
@@ -164,12 +170,11 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     from ehlpetsc.gears.standards import Rating
     from ehlpetsc.physics.flash_temperature import STEEL, Solid
     from ehlpetsc.physics.laws import reference_temperature, viscosity
-    from ehlpetsc.physics.scales import reduced_modulus
     from ehlpetsc.surfaces.samples import samples
 
     if case.gears is None or case.fluid is None:
         return None
-    fluid, heat, contact = case.fluid, case.heat, case.contact
+    fluid, heat = case.fluid, case.heat
     reference = reference_temperature(fluid, heat)
     solids = [STEEL, STEEL]
     if heat is not None:
@@ -187,7 +192,7 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
 
     return Rating(
         path_of_contact(case.gears.pair),
-        reduced_modulus(contact.youngs_modulus, contact.poisson_ratio),
+        modulus_of(case),
         roughness,
         lambda T: fluid.viscosity * np.exp(viscosity(0.0 * T, fluid, thermal, T)[0]),
         lambda T: fluid.pressure_viscosity * relative(T) / relative(reference),

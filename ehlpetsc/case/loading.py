@@ -28,10 +28,9 @@ from ehlpetsc.case.derived import (
     with_layer_stiffness,
 )
 from ehlpetsc.case.messages import shortened, show
-from ehlpetsc.case.tables import CASE, GEARS, Case, extend
+from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.laws import Law
 from ehlpetsc.physics.scales import Scales
@@ -98,29 +97,6 @@ def stored_case(text: str, overrides: Overrides = None) -> Case:
     if faults + found:
         raise CaseError(_lines(DICT_NAME, faults + found))
     return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
-
-
-def gear_tables(path: str | PathLike, overrides: Overrides = None) -> tuple[GearPair, Tables, Case | str]:
-    """Gear pair of a case file, its tables, and the case or the first fault outside of `[gears]`.
-
-    Raises `CaseError`.
-    """
-    data = parse_toml(path, read_text(path))
-    faults = _override(data, overrides) + in_si(data)
-    if not isinstance(data.get("gears"), dict):
-        raise CaseError([f"{path}: no [gears] table; allowed: a case with one"])
-    try:
-        data = with_columns(data, Path(path).parent, ("gears",))
-    except TableFault as error:
-        raise CaseError([f"{path}: {_file_fault(data, error).text}"]) from None
-    gears, found = check(GEARS, data["gears"], "gears.", data, {fault.place for fault in faults})
-    if faults + found:
-        raise CaseError(_lines(path, faults + found))
-    try:
-        case: Case | str = load(path, overrides)
-    except CaseError as error:  # of other tables, which the path does not need
-        case = error.faults[0]
-    return gears.pair, with_derived(data), case
 
 
 def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Case]]:

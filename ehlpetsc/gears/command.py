@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
-from ehlpetsc.base.errors import OutputError, ProfileError
+from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 
 if TYPE_CHECKING:
@@ -47,33 +47,31 @@ def main(words: list[str]) -> int:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the table, write picture and CSV file."""
-    from ehlpetsc.case.derived import rating_of
-    from ehlpetsc.case.loading import gear_tables
+    from ehlpetsc.case.derived import modulus_of, rating_of
+    from ehlpetsc.case.loading import load
     from ehlpetsc.gears.path import path_of_contact
-    from ehlpetsc.gears.table import csv, modulus_of, rows
+    from ehlpetsc.gears.table import csv, rows
 
     file = Path(chosen.files[0])
     if file.suffix in (".h5", ".json"):
         return _compare(chosen)
     if chosen.run:
         return _iterate(chosen, file)
-    pair, tables, case = gear_tables(file, chosen.set)
-    path, contact = path_of_contact(pair), tables.get("contact")
-    modulus = modulus_of(contact if isinstance(contact, dict) else {})
-    rating = None if isinstance(case, str) else rating_of(case, file.parent)
+    case = load(file, chosen.set)
+    if case.gears is None:
+        raise CaseError([f"{file}: no [gears] table; allowed: a case with one"])
+    path, modulus, rating = path_of_contact(case.gears.pair), modulus_of(case), rating_of(case, file.parent)
     target = _picture(chosen, "path")
     if chosen.csv is not None:
         check_derived(Path(chosen.csv), [file], (".csv", ".txt"), "--csv")
     print("\n".join(rows(path, modulus, rating)))
-    if isinstance(case, str):
-        print(f"note: without film, friction and temperatures of the standards: {case}")
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(path).encode())
         print(chosen.csv)
     if target:
         from ehlpetsc.pictures.gears import draw
 
-        draw(path, modulus, rating, target, str(tables.get("title", file)))
+        draw(path, modulus, rating, target, case.title)
         print(target)
 
 

@@ -3,26 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
-from ehlpetsc.base.materials import elastic_constants
 from ehlpetsc.gears.load_sharing import edge_contact
 from ehlpetsc.gears.path import Path, describe, gear_loss_factor
 from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
-from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.physics.scales import hertz_line
 
 COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
-
-
-def modulus_of(contact: Mapping[str, Any]) -> float | None:
-    """Reduced modulus E' [Pa] of the unchecked table `[contact]`; None without both moduli or materials."""
-    try:
-        return reduced_modulus(*elastic_constants(contact))
-    except (KeyError, TypeError, ValueError, ZeroDivisionError):
-        return None
 
 
 def hertz(path: Path, modulus: float) -> tuple[np.ndarray, np.ndarray]:
@@ -31,7 +20,7 @@ def hertz(path: Path, modulus: float) -> tuple[np.ndarray, np.ndarray]:
     return a, 0.25 * modulus * a / path.radius
 
 
-def rows(path: Path, modulus: float | None, rating: Rating | None) -> list[str]:
+def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
     """Lines of text: data of the pair, a table of A to E, mean values of the standards."""
     pair = path.pair
     where = [path.index(name) for name in pair.points]
@@ -49,10 +38,9 @@ def rows(path: Path, modulus: float | None, rating: Rating | None) -> list[str]:
         ("arc 1, mm", 1e3 * arcs[0]),
         ("arc 2, mm", 1e3 * arcs[1]),
     ]
-    if modulus is not None:
-        a, p0 = hertz(path, modulus)
-        quantities += [("a, mm", 1e3 * a), ("p0, GPa", 1e-9 * p0)]
-    lines = [*describe(path), *(edge_pressures(path, modulus) if modulus is not None else ())]
+    a, p0 = hertz(path, modulus)
+    quantities += [("a, mm", 1e3 * a), ("p0, GPa", 1e-9 * p0)]
+    lines = [*describe(path), *edge_pressures(path, modulus)]
     own, standard = gear_loss_factor(path), loss_factor(pair)
     lines.append(f"loss factor H_V {own:.4f} of this load sharing, {standard:.4f} of Niemann and Winter")
     names, values = {}, values_of(rating) if rating is not None else {}

@@ -29,12 +29,11 @@ STAGES = (  # figure of a run, label
 )
 
 
-def draw(path: ContactPath, modulus: float | None, rating: Rating | None, target: Path, title: str) -> None:
+def draw(path: ContactPath, modulus: float, rating: Rating | None, target: Path, title: str) -> None:
     """Draw load, pressure, radius, speeds, and film and flash temperature of standards along the path."""
     pair, position = path.pair, 1e3 * (path.rho - path.pair.points["C"])
     panels = [("load\n[kN/m]", [(rule, values, look) for rule, values, look in _sharings(path)])]
-    if modulus is not None:
-        panels.append(("Hertz pressure\n[GPa]", [("", 1e-9 * hertz(path, modulus)[1], {})]))
+    panels.append(("Hertz pressure\n[GPa]", [("", 1e-9 * hertz(path, modulus)[1], {})]))
     speeds = (path.speed_1, path.speed_2, path.speed_1 - path.speed_2)
     colours, names = (style.SURFACES["1"], style.SURFACES["2"], "0.5"), ("pinion", "wheel", "sliding")
     panels += [
