@@ -89,7 +89,7 @@ def _default(key: Key) -> str:
 def keys(name: str | None = None) -> str:
     """Keys with meaning, allowed values and default, a line each, followed by the equation of the key.
 
-    `name` is a table, as "fluid" or "surface.1", or a key, as "contact.load" or "asperity_height".
+    `name` is a table, as "fluid" or "surface.1", or a key or its symbol, as "asperity_height" or "alpha".
     """
     every, lines = tables(), []
     for place, table in every.items():
@@ -99,7 +99,10 @@ def keys(name: str | None = None) -> str:
             lines += [f"  as [{same}]"] if same != place else _lines("  ", _keys(table))
         elif not place.startswith("surface.2") or name.startswith("surface.2"):
             found = {f"{place}.{key}".lstrip("."): table.keys[key] for key in _keys(table)}
-            lines += _lines("", {key: found[key] for key in found if f".{key}".endswith(f".{name}")})
+            chosen = [
+                key for key in found if f".{key}".endswith(f".{name}") or f"`{name}`" in found[key].text
+            ]
+            lines += _lines("", {key: found[key] for key in chosen})
     if lines:
         return "\n".join(lines)
     above, _, last = name.rpartition(".")
@@ -181,7 +184,7 @@ def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc keys``; returns its exit status."""
     parser = CommandParser("keys", "Keys of a case file: meaning, unit, bounds, default.", "output overwrite")
     parser.add_argument(
-        "key", nargs="?", metavar="TABLE or KEY", help="as fluid or contact.load (default: all)"
+        "key", nargs="?", metavar="TABLE or KEY", help="as fluid, contact.load or alpha (default: all)"
     )
     chosen = parser.parse_args(words)
     return exit_status("keys", lambda: put(keys(chosen.key), chosen))

@@ -1,4 +1,4 @@
-"""Error over run time: ``python3 tests/benchmarks/accuracy.py CASE.toml [--set TABLE.KEY=VALUE ...]``.
+"""Error over processor time: ``python3 tests/benchmarks/accuracy.py CASE.toml [--set TABLE.KEY=VALUE ...]``.
 
 One setting of the case is varied at a time: mesh, time step, near field, tolerances of Newton's method and of
 the Krylov solver. Errors are relative to a reference with half the smallest spacing and Courant number
@@ -14,8 +14,10 @@ import csv
 import subprocess
 import sys
 import tempfile
+import time
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
@@ -25,7 +27,13 @@ from matplotlib.figure import Figure
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
+from ehlpetsc.pictures import style
 from ehlpetsc.results.post_result import PostResult, post_path
+from ehlpetsc.run import simulation
+from ehlpetsc.stepping import observables
+
+for module in (simulation, observables):  # `wall` of the steps becomes processor time
+    module.clock = SimpleNamespace(monotonic=time.process_time)
 
 MESH, STEP, NEAR = "mesh.points_per_half_width", "time.courant", "mesh.near_field"
 NEWTON, KRYLOV = "snes_atol", "ksp_rtol"
@@ -41,7 +49,7 @@ MEASURES = {
     "contact": "length in contact",
     "damage": "damage, decades",
 }
-COLUMNS = ("varied", "value", "converged", "wall_s", "newton", "steps", *MEASURES)
+COLUMNS = ("varied", "value", "converged", "cpu_s", "newton", "steps", *MEASURES)
 ORDERS = (0.5, 2.0)  # limits of the observed order
 
 
@@ -64,14 +72,14 @@ def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool
     keys = [f"{key}={value}" for key, value in values.items() if "." in key]
     options = {name: value for name, value in values.items() if "." not in name}
     fields = ("pressure", "film_thickness", *(("shear_stress_1", "shear_stress_2") if damage else ()))
-    time = load(case, overrides).time
-    every = max(round(time.travel * values[MESH] / values[STEP]), 1) if time and not damage else 1
+    whole = load(case, overrides).time
+    every = max(round(whole.travel * values[MESH] / values[STEP]), 1) if whole and not damage else 1
     stored = [f"output.every={every}", f"output.fields={list(fields)}".replace("'", '"')]
     output, given = folder / "run.h5", load(case, [*overrides, *keys, *stored])
     result = ehlpetsc.solve(given, output, options, overwrite=True, progress=False)
     steps, x = result.steps, result.x / result.attrs["a"]
     h, dt = result.frame("film_thickness", -1), steps("dt")
-    cost = {"wall_s": float(steps("wall").sum()), "newton": int(steps("newton").sum()), "steps": len(dt) - 1}
+    cost = {"cpu_s": float(steps("wall").sum()), "newton": int(steps("newton").sum()), "steps": len(dt) - 1}
     return Measured(
         cost,
         x,
@@ -160,12 +168,11 @@ def text(row: dict) -> str:
 
 
 def draw(rows: list[dict], path: Path, title: str) -> Figure:
-    """Picture of the errors over wall time and over Newton iterations, a column for each measure."""
+    """Picture of the errors over processor time and over Newton iterations, a column for each measure."""
     reference, base, *others = rows
     shown = [name for name in MEASURES if any(row[name] > 0.0 for row in rows[1:])]
-    figure = Figure(figsize=(3.4 * len(shown), 6.6), layout="constrained")
-    axes = figure.subplots(2, len(shown), sharey="col", squeeze=False)
-    costs = {"wall_s": "wall time [s]", "newton": "Newton iterations"}
+    figure, axes = style.new_figure(2, len(shown), (2.8 * len(shown), 6.0), sharey="col", squeeze=False)
+    costs = {"cpu_s": "processor time [s]", "newton": "Newton iterations"}
     for column, name in zip(axes.T, shown, strict=True):
         for panel, (cost, label) in zip(column, costs.items(), strict=True):
             for marker, varied in zip("osD^v", dict.fromkeys(row["varied"] for row in others), strict=False):
@@ -180,10 +187,11 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
         column[0].set_title(MEASURES[name], fontsize="medium")
     for panel in axes[:, 0]:
         panel.set_ylabel("relative error")
-    figure.suptitle(title, fontsize="medium")
+    style.set_title(figure, title)
     figure.get_layout_engine().set(rect=(0.0, 0.1, 1.0, 0.9))
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower center", ncols=4, frameon=False)
-    figure.savefig(path, dpi=110)
+    handles, names = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="lower center", ncols=4, frameon=False, fontsize="small")
+    style.save(figure, path)
     return figure
 
 

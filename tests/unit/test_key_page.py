@@ -34,6 +34,7 @@ def test_every_key_of_the_cases_is_listed():
         ("fluid.viscosity", "required without grade"),
         ("asperity_height", 'contact.asperity_height: rms .* needs contact.model = "mixed"'),
         ("density", "fluid.grade.density: .*\n *heat.density: "),
+        ("alpha", "^fluid.pressure_viscosity: alpha; "),
     ],
 )
 def test_a_key_is_found_by_its_name(name, words):
