@@ -22,7 +22,6 @@ from ehlpetsc.results.post_result import PostResult, WeibullFit
 FORMATS = ("png", "svg")
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
 SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, as in the paper
-LAYER_DEPTH = 0.2  # half-widths in a comparison of results: damage below asperities is shallower
 MIN_TICK_DISTANCE = 0.09  # of the depth axis
 CRITERIA = {
     "fatemi-socie": "Fatemi-Socie",
@@ -47,13 +46,9 @@ def draw(inputs: Sequence[str], outputs: Sequence[str], folder: str) -> list[str
     names = []
     if folder:
         Path(folder).mkdir(parents=True, exist_ok=True)
-    results = [PostResult(output) for output in outputs]
-    for path, output, result in zip(inputs, outputs, results, strict=True):
+    for path, output in zip(inputs, outputs, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
-        names += _of_one(path, result, stem)
-    common = Path(folder or Path(outputs[0]).parent)
-    if len(results) > 1:
-        names += _compared(sorted(results, key=lambda r: r.ratio), common)
+        names += _of_one(path, PostResult(output), stem)
     return names
 
 
@@ -79,34 +74,16 @@ def _of_one(path: str, result: PostResult, stem: Path) -> list[str]:
     return names + _save(history_picture(path, result), f"{stem}.history")
 
 
-def _compared(results: list[PostResult], folder: Path) -> list[str]:
-    names = []
-    for surface in ("2", "1"):
-        if all(surface in result.surfaces and result.complete[surface].any() for result in results):
-            names += _save(ratios_picture(results, surface), folder / f"compared.damage_{surface}")
-    if all(result.height.size for result in results) and len({result.main for result in results}) == 1:
-        for z in (z for z in results[0].z if all(np.isclose(result.z, z).any() for result in results)):
-            names += _save(ratio_distributions(results, z), folder / f"compared.exceedance_z{z:g}")
-    return names
-
-
 def damage_picture(result: PostResult, surface: str) -> Figure:
     """Damage under the whole profile (figure 8 of Holmes et al. 2005), with [heat] the temperatures."""
     s, z = result.worst_point(surface)
     place = f"{along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})"
     maximum = np.nanmax(result.damage[surface])
     title = [
-        f"surface {surface}, {_ratio(result)}, {_strain_rule(result)}",
+        f"surface {surface}, {_ratio(result)}, {rule_name(result)}",
         f"maximum damage {maximum:.2g} at {place}",
     ]
     return draw_maps([Map("", result, result.damage[surface])], surface, title)
-
-
-def ratios_picture(results: list[PostResult], surface: str) -> Figure:
-    """Damage of several results near the surface on one scale (figure 9)."""
-    maps = [Map(_ratio(result), result, result.damage[surface]) for result in results]
-    title = [f"surface {surface}, {_strain_rule(results[0])}"]
-    return draw_maps(maps, surface, title, SECTION_LENGTH, LAYER_DEPTH)
 
 
 def criteria_picture(result: PostResult, surface: str) -> Figure:
@@ -241,16 +218,7 @@ def depth_picture(result: PostResult) -> Figure:
     """Distributions of damage at the asperities of one surface, by depth (figure 10)."""
     curves = [(f"z/a = {z:g}", result.under[k], result.fits[k]) for k, z in enumerate(result.z)]
     counted = f"{result.height.size} asperities, surface {result.main}, {_ratio(result)}"
-    return draw_distributions(curves, f"{counted}, {_strain_rule(result)}")
-
-
-def ratio_distributions(results: list[PostResult], z: float) -> Figure:
-    """Distributions of damage at one depth, by slide/roll ratio (figures 11 and 12)."""
-    at = [int(np.argmin(np.abs(result.z - z))) for result in results]
-    curves = [
-        (_ratio(result), result.under[k], result.fits[k]) for k, result in zip(at, results, strict=True)
-    ]
-    return draw_distributions(curves, f"z/a = {z:g}, surface {results[0].main}, {_strain_rule(results[0])}")
+    return draw_distributions(curves, f"{counted}, {rule_name(result)}")
 
 
 def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: str) -> Figure:
@@ -274,5 +242,6 @@ def _ratio(result: PostResult) -> str:
     return f"slide/roll ratio {result.ratio:.3g}"
 
 
-def _strain_rule(result: PostResult) -> str:
+def rule_name(result: PostResult) -> str:
+    """Rule by which the elastic range enters the cyclic stress-strain curve."""
     return f'strain = "{result.attrs.get("strain", "direct")}"'

@@ -29,10 +29,7 @@ DESCRIPTION = (
 def _parser() -> CommandParser:
     parser = CommandParser("post", DESCRIPTION)
     add = parser.add_argument
-    several = (
-        "several, as of one slide/roll ratio each: also compared; OUTPUT.series.json: its members; "
-        "OUTPUT.passes.json: its passes"
-    )
+    several = "several; OUTPUT.series.json: its members; OUTPUT.passes.json: its passes"
     add("results", nargs="+", metavar="RESULT.h5", help=several)
     output = "result, of a single input (default: RESULT.post.h5 beside it)"
     add("-o", "--output", metavar="FILE", help=output)

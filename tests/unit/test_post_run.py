@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from scipy.stats import spearmanr
-from support import is_line_with, refused
+from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.pictures import damage as gallery
@@ -21,6 +21,9 @@ from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
 from ehlpetsc.results.post_result import PostResult
+
+sys.path.append(str(ROOT / "cases" / "paper"))
+import damage as figures
 
 pytestmark = pytest.mark.usefixtures("coarse_pictures")
 FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.run", "ehlpetsc.life")
@@ -133,21 +136,18 @@ def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_pictures_for_two_slide_roll_ratios(tmp_path, capsys, monkeypatch):
-    """Of the second result those beside the first alone."""
+def test_pictures_of_one_result_and_of_two_slide_roll_ratios(tmp_path, monkeypatch):
     paths = [
         write(tmp_path / f"{r}.h5", Scene(per_width=30, ratio=r, travel=11.0), depths=(0.0, 0.1))
         for r in (0.5, 0.7)
     ]
-    one = gallery._of_one
     monkeypatch.setattr(gallery, "FORMATS", ("svg",))
-    monkeypatch.setattr(gallery, "_of_one", lambda p, *rest: one(p, *rest) if p == str(paths[0]) else [])
-    assert main([*map(str, paths), "--pictures", str(tmp_path / "out")]) == 0
-    drawn = {path.name for path in (tmp_path / "out").iterdir()}
-    of_one = [f"0.5.{kind}" for kind in ("damage_2", "damage_1", "exceedance", "stress", "history")]
-    compared = ("damage_2", "damage_1", "exceedance_z0", "exceedance_z0.1")
-    for stem in (*of_one, *(f"compared.{kind}" for kind in compared)):
-        assert f"{stem}.svg" in drawn
+    assert main([str(paths[0]), "--pictures", str(tmp_path / "out")]) == main([str(paths[1])]) == 0
+    kinds = ("damage_2", "damage_1", "exceedance", "stress", "history")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {f"0.5.{kind}.svg" for kind in kinds}
+    figures.main([*map(str, tmp_path.glob("*.post.h5")), "-o", str(tmp_path / "paper")])
+    drawn = {path.name for path in (tmp_path / "paper").iterdir()}
+    assert drawn == {"damage_ratios.png", "exceedance_z0.png", "exceedance_z0.1.png"}
 
 
 @pytest.fixture(scope="module")
