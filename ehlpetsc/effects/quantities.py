@@ -173,16 +173,6 @@ OTHERS = {
 }
 """Coordinates and what else is neither a field nor a scalar of the step."""
 
-GROUPS = {
-    "/": "Result of ehlpetsc, in SI units. Attributes: the case as run, Hertz half-width a [m] and pressure "
-    "p0 [Pa], h_scale = a^2/R [m], speeds u1, u2 [m/s], provenance, how the run ended (status)",
-    "steps": "a row for every accepted time step, also where no frame is stored",
-    "surface": "profiles as used, fixed in the bodies",
-    "surface/1": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
-    "surface/2": "attributes: speed [m/s], ra, rq [m], rsk [1] of the whole profile",
-}
-"""Purpose of each group."""
-
 
 def add_quantities(kind: type[Effect]) -> None:
     """Add the quantities of an effect of the user to the tables."""

@@ -94,7 +94,7 @@ def run_life(
     comm = comm or MPI.COMM_SELF
     path = Path(f"{Path(case.path).stem}.life.h5" if output is None else output)
     on_root(comm, check_files, path, case)
-    lock = Lock(path, "wait for it, or give another -o")
+    lock = Lock(path)
     on_root(comm, lock.acquire)
     try:
         history = comm.bcast(on_root(comm, stored_or_new, case, path, overwrite, after))

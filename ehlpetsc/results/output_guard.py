@@ -44,13 +44,11 @@ def check_derived(path: Path, inputs: Iterable[Path], endings: tuple[str, ...], 
 class Lock:
     """Lock on an output, a context manager, or by :meth:`acquire` and :meth:`release`.
 
-    The lock is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process. If
-    another process has it, the message ends in `advice`.
+    The lock is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process.
     """
 
-    def __init__(self, path: Path, advice: str = WAIT_ADVICE) -> None:
+    def __init__(self, path: Path) -> None:
         self._output, self._path = path, path.with_name(path.name + ".lock")
-        self._advice = advice
         self._file: TextIO | None = None
 
     def __enter__(self) -> Lock:
@@ -82,7 +80,7 @@ class Lock:
             file.seek(0)
             process = file.read().strip() or "another process"
             file.close()
-            raise OutputError(f"{self._output}: is being written by {process}; {self._advice}") from None
+            raise OutputError(f"{self._output}: is being written by {process}; {WAIT_ADVICE}") from None
         except OSError:
             pass  # a file system without locks
         return file

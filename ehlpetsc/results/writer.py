@@ -20,7 +20,7 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Field
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.effects.quantities import FIELDS, GROUPS, OTHERS, STEP_SCALARS, of_every_case
+from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, of_every_case
 from ehlpetsc.results.hdf5_file import change, check_space, create, extend, put_fixed
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import os_reason, replacing
@@ -72,9 +72,6 @@ class Layout:
         for surface, profile in self.profiles.items():
             if profile is not None:
                 _surface(file, f"surface/{surface}", *profile)
-        for name, text in GROUPS.items():
-            if name in file:
-                _comment(file[name], text)
 
 
 def _surface(
@@ -110,18 +107,12 @@ def _growing(
 
 def _describe(dataset: h5py.Dataset, quantity: Field) -> None:
     dataset.attrs.update({"units": quantity.units, "long_name": quantity.long_name})
-    _comment(dataset, f"{quantity.long_name} [{quantity.units}] ({', '.join(quantity.dims)})")
     own_name = dataset.name.rsplit("/", 1)[1]
     if quantity.dims == (own_name,):
         dataset.make_scale(own_name)
         return
     for axis, dim in enumerate(quantity.dims):
         dataset.dims[axis].attach_scale(dataset.parent[dim])
-
-
-def _comment(item: h5py.HLObject, text: str) -> None:
-    """Set the description for `h5dump -H` and `h5ls -v`, which do not print values of attributes."""
-    h5py.h5o.set_comment(item.id, text.encode())
 
 
 class ResultWriter:
