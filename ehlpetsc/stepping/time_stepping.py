@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
+from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrored
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Effect, Scene, Step
@@ -91,16 +92,14 @@ class TimeStepping:
         return state
 
     def _steady(self, inputs: StepInputs, records: dict, watch: Watch) -> State:
-        solution: Any
-        *solution, newton = self._inlet_first(
+        solved, newton = self._inlet_first(
             inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
         )
-        state = self._state(solution[0], solution[1], inputs, self._step_end(), records, newton=newton)
+        state = self._state(solved, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
 
     def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
         """Steady solution consistent with the records of the effects, by repeated solves."""
-        solution: Any
         end, newton = self._step_end(), state.newton
         for _ in range(MAX_STEADY_SOLUTIONS):
             if all(e.is_settled(before[e.name], state.records[e.name]) for e in self.effects):
@@ -108,16 +107,14 @@ class TimeStepping:
             before = state.records
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
-                *solution, iterations = self._solve_step(again, state.unknowns, watch)
+                solved, iterations = self._solve_step(again, state.unknowns, watch)
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
             newton += iterations
-            state = self._state(solution[0], solution[1], again, end, before, newton=newton)
+            state = self._state(solved, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
-    def _solve_step(
-        self, inputs: StepInputs, guess: Unknowns, watch: Watch
-    ) -> tuple[Unknowns, np.ndarray, int]:
+    def _solve_step(self, inputs: StepInputs, guess: Unknowns, watch: Watch) -> tuple[Solution, int]:
         return self._inlet_first(inputs, guess, lambda i, begin: solve_step(self.solver, begin, i, watch))
 
     def _inlet_first(
@@ -125,16 +122,15 @@ class TimeStepping:
         inputs: StepInputs,
         guess: Unknowns | None,
         solve: Callable[[StepInputs, Unknowns | None], tuple[Unknowns, int]],
-    ) -> tuple[Unknowns, np.ndarray, int]:
-        """Solve with the inlet at the first node: mirrored where the entrainment speed is negative.
-
-        Returns the solution, the rows of its Reynolds equation and the number of iterations.
-        """
+    ) -> tuple[Solution, int]:
+        """Solution and iterations with the inlet at the first node: mirrored if entrainment is negative."""
         if inputs.conditions.entrainment >= 0.0:
-            solution, iterations = solve(inputs, guess)
-            return solution, self.solver.residual().reynolds, iterations
-        solution, iterations = solve(mirrored(inputs), mirrored(guess))
-        return mirrored(solution), mirrored(self.solver.residual().reynolds), iterations
+            unknowns, iterations = solve(inputs, guess)
+            residual = self.solver.residual().reynolds
+        else:
+            unknowns, iterations = solve(mirrored(inputs), mirrored(guess))
+            unknowns, residual = mirrored(unknowns), mirrored(self.solver.residual().reynolds)
+        return self.problem.solution(unknowns, residual, inputs), iterations
 
     def _start_by_time_stepping(self, records: dict, watch: Watch) -> State:
         """State at time 0 after time steps during which roughness at rest is ramped up.
@@ -194,17 +190,9 @@ class TimeStepping:
             inputs = replace(inputs, phi=self._roughness_ramp(step.time) * inputs.phi)
         return step, inputs
 
-    def _state(
-        self,
-        unknowns: Unknowns,
-        residual: np.ndarray,
-        inputs: StepInputs,
-        end: Step,
-        records: dict,
-        **entries: Any,
-    ) -> State:
-        solution = self.problem.solution(unknowns, residual, inputs)
+    def _state(self, solution: Solution, end: Step, records: dict, **entries: Any) -> State:
         accepted = {e.name: e.accept(records[e.name], solution, end) for e in self.effects}
+        unknowns = solution.unknowns
         q, w = self.problem.model.reset_yielding(unknowns.q, unknowns.w)
         return State(
             Unknowns(q, w, unknowns.h00),
@@ -231,13 +219,12 @@ class TimeStepping:
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
         dt = dt or next_step(state.dt, state.retries, nominal, left)
-        solution: Any
         retries = newton = 0
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
                 step, inputs = self.inputs(state, dt)
-                *solution, iterations = self._solve_step(inputs, Unknowns(*guess, state.h00), watch)
+                solved, iterations = self._solve_step(inputs, Unknowns(*guess, state.h00), watch)
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1
@@ -248,9 +235,7 @@ class TimeStepping:
                         f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
                     ) from error
         return self._state(
-            solution[0],
-            solution[1],
-            inputs,
+            solved,
             step,
             state.records,
             m_older=state.m,
