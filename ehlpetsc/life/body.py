@@ -115,8 +115,8 @@ class LifeBody(NamedTuple):
         """Depth of the present surface for the solver; beyond the stretch its mean.
 
         The contact begins and ends on parts of the bodies that are not followed: they wear as the mean of
-        the stretch, or of the part of it that is next to them. Edges of pits are rounded as the profile is:
-        sharp ones would be as sharp as the mesh.
+        the stretch, or of the part of it that is next to them, with its median depth of pits. Edges of pits
+        are rounded as the profile is: sharp ones would be as sharp as the mesh.
 
         `stretch`: abscissas that pass the whole contact [m]. `reach`: abscissas that the mesh meets [m].
         `averaged`: length at either end of the stretch of which the mean is taken [m]; by default all of it.
@@ -126,13 +126,14 @@ class LifeBody(NamedTuple):
         pit = self.pit
         if short_cutoff and pit.any() and short_cutoff > MIN_SPACINGS * width:
             pit = np.maximum(low_pass(self.s, pit, short_cutoff), 0.0)
-        depth = (self.wear + pit)[met]
+        wear, pit = self.wear[met], pit[met]
         first, last = self.s[met][[0, -1]]
         before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)
         after = max(int(np.ceil((reach[1] - last) / width)) + 1, 0)
-        count = int(min(max(averaged / width, 1.0), len(depth)))
-        means = depth[:count].mean(), depth[-count:].mean()
-        depth = np.pad(depth, (before, after), constant_values=means)
+        count = int(min(max(averaged / width, 1.0), len(wear)))
+        # a mean of pits would be a step at the ends, which no surface has
+        beyond = [wear[part].mean() + np.median(pit[part]) for part in (slice(count), slice(-count, None))]
+        depth = np.pad(wear + pit, (before, after), constant_values=beyond)
         faces = first + width * (np.arange(len(depth) + 1) - before - 0.5)
         return BodyField.zero(width).add(faces, depth)
 

@@ -212,6 +212,8 @@ def test_surfaces_outside_the_computed_length_have_mean_wear():
     field = one.gap_field((2.0, 5.0), (-3.0, 12.0))
     faces = np.array([-3.0, 1.5, 2.5, 3.5, 4.5, 5.5, 12.0])
     assert field.means(faces) == pytest.approx([3.5, 2.0, 3.0, 4.0, 5.0, 3.5])
+    pitted = one._replace(pit=np.where(np.arange(8) == 4, 9.0, 0.0)).gap_field((2.0, 5.0), (-3.0, 12.0))
+    assert pitted.means(faces) == pytest.approx([3.5, 2.0, 3.0, 13.0, 5.0, 3.5]), "a pit makes no step there"
 
 
 def test_body_field_grows_by_added_cells_only():
