@@ -1,1 +1,1 @@
-"""All pictures: of results, cases, gears, damage, lives; the HTML report."""
+"""All pictures: of results, cases, gears, damage, lives; movies; the HTML report."""

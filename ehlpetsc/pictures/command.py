@@ -15,6 +15,7 @@ import argparse
 import contextlib
 import re
 from pathlib import Path
+from subprocess import CalledProcessError
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.case_profiles import draw_case
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
-from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures
+from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures, save_movie
 from ehlpetsc.pictures.report import save_report
 from ehlpetsc.pictures.series import draw_running_in
 from ehlpetsc.results.index import in_order, open_all
@@ -38,7 +39,10 @@ FIGURES = {
     "temperatures": (draw_temperatures, "of film and surfaces, of one with [heat]"),
     "running_in": (draw_running_in, "surfaces and pressure pass by pass"),
 }
-REPORT = "report"
+OTHERS = {  # that are no pictures: ending, allowed files, help
+    "report": (".html", PAGES, "all of one result as one HTML page"),
+    "movie": (".gif", (".gif",), "pressure and film over time, as a GIF"),
+}
 WITHOUT_FRAMES = ("stribeck", "traction")  # kinds that need the scalars of the steps alone
 
 
@@ -55,40 +59,41 @@ def arguments() -> CommandParser:
     parser.add_argument("--width", type=float, help=f"width of the view [{frames.AROUND_WIDTH}]")
     style.add_options(parser)
     kind = parser.add_mutually_exclusive_group()
-    for name, (_, text) in FIGURES.items():
+    for name, (*_, text) in (FIGURES | OTHERS).items():
         kind.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
-    kind.add_argument("--report", action="store_true", help="all of one result as one HTML page")
     return parser
 
 
 def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     options = arguments().parse_args(words)
-    kind = next((name for name in (*FIGURES, REPORT) if getattr(options, name)), None)
-    ending = ".html" if kind == REPORT else f".{kind}.png" if kind else ".png"
+    kind = next((name for name in (*FIGURES, *OTHERS) if getattr(options, name)), None)
+    ending = OTHERS[kind][0] if kind in OTHERS else f".{kind}.png" if kind else ".png"
     output = options.output or Path(_stem(options.results) + ending)
-    return exit_status("plot", lambda: _run(options, kind, output), (ValueError,), output)
+    return exit_status("plot", lambda: _run(options, kind, output), (ValueError, CalledProcessError), output)
 
 
 def _run(options: argparse.Namespace, kind: str | None, output: Path) -> None:
-    endings, inputs = PAGES if kind == REPORT else PICTURES, list(map(Path, options.results))
+    signatures, inputs = OTHERS[kind][1] if kind in OTHERS else PICTURES, list(map(Path, options.results))
     if any(path.suffix == ".toml" for path in inputs):
         if len(inputs) > 1 or kind:
             raise OutputError(f"{inputs[0]}: a case is drawn alone, without results and kinds of pictures")
-        check_derived(output, inputs, endings)
+        check_derived(output, inputs, signatures)
         style.save(draw_case(inputs[0], options.set), output, chosen=options)
     else:
         with contextlib.ExitStack() as stack:
             results = in_order(open_all(options.results, stack))
-            check_derived(output, [*inputs, *(result.path for result in results)], endings)
+            check_derived(output, [*inputs, *(result.path for result in results)], signatures)
             draw(results, kind, options, output)
     print(output)
 
 
 def draw(results: list[Result], kind: str | None, options: argparse.Namespace, output: Path) -> None:
-    """Draw one picture into a file."""
+    """Draw one picture or movie into a file."""
     _check(results, kind, options)
-    if kind == REPORT:
+    if kind == "movie":
+        save_movie(results, options, output)
+    elif kind == "report":
         if len(results) > 1:
             raise OutputError(f"{len(results)} results; allowed: --report of one")
         save_report(results[0], output)

@@ -1,10 +1,12 @@
-"""Results over time: maps over x and time, temperatures, the course of all steps."""
+"""Results over time: maps over x and time, temperatures, the course of all steps; movies."""
 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 import numpy as np
+from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
@@ -15,6 +17,7 @@ from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import filled_from
+from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
 MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
@@ -167,3 +170,41 @@ def _only(results: list[Result], option: str) -> Result:
     if len(results) > 1:
         raise OutputError(f"{len(results)} results; allowed: {option} of one")
     return results[0]
+
+
+MAX_FRAMES = 150
+RATE = 15  # frames per second
+DPI = 80
+
+
+def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
+    """Write at most `MAX_FRAMES` frames with common axes."""
+    last = len(results[0].time) - 1
+    chosen = np.unique(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int))
+    figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
+    window, limits = frames.window(results, options), _limits(results, chosen)
+    writer = PillowWriter(fps=RATE)
+    with replacing(path, keep_ending=True) as temporary, writer.saving(figure, temporary, DPI):
+        for index in chosen:
+            for panel in axes:
+                panel.clear()
+            indices = frames.choose_frames(results, time=results[0].time[index])
+            frames.fill_frame(axes, results, indices, window)
+            style.set_title(figure, *frames.panel_title(results, indices))
+            for panel, limit in zip(axes, limits, strict=True):
+                panel.set_ylim(0.0, limit)
+            if index == 0:  # one layout for all frames
+                figure.draw_without_rendering()
+                figure.set_layout_engine("none")
+            writer.grab_frame()
+
+
+def _limits(results: list[Result], chosen: np.ndarray) -> tuple[float, float]:
+    """Upper limits of the axes [GPa, µm] for all pressures and for the film inside the contact."""
+    film = 1e-9
+    for result in results:
+        inside = np.abs(result.x) <= result.attrs["a"]
+        shown = [index for index in chosen if index < len(result.time)]
+        film = max(film, *(result.frame("film_thickness", index)[inside].max() for index in shown))
+    pressure = max(np.nanmax(result.steps("p_max")) for result in results)
+    return 1.05e-9 * pressure, 1.15e6 * film

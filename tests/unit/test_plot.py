@@ -182,6 +182,26 @@ def test_contact_is_outlined_in_a_map_without_hiding_the_pressure(result):
     np.testing.assert_allclose(np.abs(outline[:, 0]), 0.5, atol=0.03)
 
 
+def test_movie_has_every_frame_on_fixed_axes(tmp_path, monkeypatch):
+    seen = []
+
+    class Writer(over_time.PillowWriter):
+        def grab_frame(self, **keys):
+            bounds = [(*axes.get_position().bounds, *axes.get_ylim()) for axes in self.fig.axes]
+            seen.append((bounds, self.fig._suptitle.get_text()))
+            super().grab_frame(**keys)
+
+    monkeypatch.setattr(over_time, "PillowWriter", Writer)
+    monkeypatch.setattr(over_time, "MAX_FRAMES", 4)
+    monkeypatch.setattr(over_time, "DPI", 40)
+    assert draw(reversing(tmp_path / "one.h5"), "--movie") == 0
+    with image.open(tmp_path / "one.gif") as movie:
+        assert movie.n_frames == 4
+    assert all(bounds == seen[0][0] for bounds, _ in seen)
+    steps = [title.partition("step ")[2].partition(",")[0] for _, title in seen]
+    assert steps == ["0", "13", "27", "40"]
+
+
 def test_default_instant_has_the_maximum_load_on_the_solids_or_pressure(tmp_path, result):
     """Not the maximum share, which is at the ends of a gear's path under next to no load."""
     with read_result(reversing(tmp_path / "g.h5", np.linspace(1e3, 527e3, 41))) as r:
@@ -255,6 +275,7 @@ def test_pressure_of_the_solids_is_drawn_under_the_total(tmp_path, share):
         (["--around", 40], [" 39.75 a to 40.25 a"]),
         (["--step", 99999], ["--step 99999; allowed: 0 to 40"]),
         (["--time", 1], ["--time 1; allowed: 0 to 4e-05 s"]),
+        (["--movie", "-o", "movie.avi"], ["movie.avi: ", " .gif"]),
         (["--report", "-o", "page.csv"], ["page.csv: ", " .html, .htm"]),
         (["--stribeck"], [" motion.entrainment_speed"]),
         (["-o", "picture.xyz"], ["picture.xyz: "]),
