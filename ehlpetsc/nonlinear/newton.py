@@ -19,7 +19,7 @@ from petsc4py import PETSc
 from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
-from ehlpetsc.nonlinear.options import RunOptions, refusal
+from ehlpetsc.nonlinear.options import RunOptions, raise_refusal
 from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 
@@ -251,14 +251,6 @@ def release_frames(error: BaseException) -> None:
     Kept alive by a traceback until Python ends, such an object would be destroyed by PetscFinalize, too late.
     """
     traceback.clear_frames(error.__traceback__)
-
-
-def raise_refusal(error: PETSc.Error, user_options: dict) -> None:
-    """Raise an error of PETSc, as a `UsageError` where an option of the user can be its cause."""
-    message = refusal(error, user_options)
-    if message is None:
-        raise error
-    raise UsageError(message) from None
 
 
 def set_function_domain_error(snes: PETSc.SNES) -> None:

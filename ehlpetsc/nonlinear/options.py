@@ -129,13 +129,8 @@ class RunOptions:
         self._saved = {name: table.getString(name, "") for name in changed}
         for name in self.deferred_views:
             table.delValue(name)
-        for number, name in enumerate(self._entered):
-            try:
-                table[name] = wanted[name]
-            except PETSc.Error as error:
-                for earlier in self._entered[:number]:
-                    table.delValue(earlier)
-                raise UsageError(f"PETSc refuses -{name} {wanted[name]}: {petsc_message(error)}") from None
+        for name in self._entered:
+            table[name] = wanted[name]
 
     def _leave(self, table: PETSc.Options) -> None:
         self.unused = {name for name in self.unused if not was_read(name)} - set(self.deferred_views)
@@ -174,9 +169,9 @@ REFUSED = {"snes_mf": NO_FINITE_DIFFERENCES, "snes_mf_operator": NO_FINITE_DIFFE
 NUMERIC_PREFIXES, NOT_FINITE = ("snes_", "ksp_", "pc_"), ("nan", "inf", "infinity")
 
 
-def refusal(error: PETSc.Error, user_options: dict) -> str | None:
-    """Message of an error of PETSc with the options of the user that can cause it; None if none can."""
-    reason = petsc_message(error)
+def raise_refusal(error: PETSc.Error, user_options: dict) -> None:
+    """Raise an error of PETSc, as a `UsageError` where options of the user can be its cause."""
+    reason = str(error).splitlines()[-1].split("] ")[-1]
     possible = {name: value for name, value in user_options.items() if not name.startswith("ehl_")}
     named = {  # a viewer is type:file:format, of which PETSc names one
         name: value
@@ -186,13 +181,9 @@ def refusal(error: PETSc.Error, user_options: dict) -> str | None:
     causes = named if len(named) == 1 else possible
     names = [f"-{name} {value or ''}".strip() for name, value in causes.items()]
     if not names:
-        return None
-    return f"PETSc refuses {'one of ' if len(names) > 1 else ''}{', '.join(names)}: {reason}"
-
-
-def petsc_message(error: PETSc.Error) -> str:
-    """Last line of PETSc's error message."""
-    return str(error).splitlines()[-1].split("] ")[-1]
+        raise error
+    one_of = "one of " if len(names) > 1 else ""
+    raise UsageError(f"PETSc refuses {one_of}{', '.join(names)}: {reason}") from None
 
 
 def check_options(options: dict) -> None:
