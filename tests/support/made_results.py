@@ -89,32 +89,22 @@ def made(
     path = Path(tempfile.mkdtemp(dir=FOLDER.name), "made.h5")
     x = np.linspace(-2.5, 1.5, nodes)
     s = np.linspace(-3.5, -2.5, 50) * A
-    attrs = dict(
-        title=title,
-        case=TABLE_1.format(viscosity=viscosity, speed=speed),
-        a=A,
-        p0=p0,
-        h_scale=A**2 / RADIUS,
-        u1=1.12 * speed,
-        u2=0.88 * speed,
-        ranks=1,
-        petsc_options="",
-    )
+    attrs = {"title": title, "case": TABLE_1.format(viscosity=viscosity, speed=speed), "a": A, "p0": p0}
+    attrs |= {
+        "h_scale": A**2 / RADIUS,
+        "u1": 1.12 * speed,
+        "u2": 0.88 * speed,
+        "ranks": 1,
+        "petsc_options": "",
+    }
     profiles = {side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("1", "2") if rough}
     writer = ResultWriter(path, Layout(x * A, list(fields), profiles=profiles), attrs, every)
     for step, time in enumerate(np.linspace(0, 40e-6, steps)):
         values, contact = fields_at(x, time, viscosity)
         values["pressure"] = factor * values["pressure"]
-        scalars = dict(
-            dt=0.0 if steps == 1 else 40e-6 / (steps - 1),
-            newton=5,
-            h_min=values["film_thickness"].min(),
-            p_max=values["pressure"].max(),
-            contacts=contact.sum(),
-            load=527e3,
-            approach=-1e-6,
-            wall=0.02,
-        )
+        scalars = {"dt": 40e-6 / (steps - 1) if steps > 1 else 0.0, "contacts": contact.sum()}
+        scalars |= {"h_min": values["film_thickness"].min(), "p_max": values["pressure"].max()}
+        scalars |= {"newton": 5, "load": 527e3, "approach": -1e-6, "wall": 0.02}
         writer.append(step, time, values, scalars, contact)
     writer.close(status)
     return path

@@ -26,14 +26,8 @@ def make(
     path, viscosity, dips, *, step=0.5e-6, steps=80, bumps=(), bound=0.0, fields=FIELDS, precision="float64"
 ):
     """A result whose film has moving dips (x/a, time, width [s], depth [um]) below 0.3 um."""
-    attributes = {
-        "title": "dips",
-        "case": TABLE_1.format(viscosity=viscosity, speed=SPEED),
-        "a": A,
-        "p0": 1e9,
-        "u1": SPEED,
-        "u2": SPEED,
-    }
+    case = TABLE_1.format(viscosity=viscosity, speed=SPEED)
+    attributes = {"title": "dips", "case": case, "a": A, "p0": 1e9, "u1": SPEED, "u2": SPEED}
     writer = ResultWriter(path, Layout(X * A, fields, precision=precision), attributes)
     for number in range(steps + 1):
         time = number * step

@@ -72,17 +72,9 @@ def test_shear_stress_of_a_film_without_transport(law):
     eta = ln_eta + slope * (wall - REFERENCE)
     rise = law.conductivity_pressure * 0.8e9 / (1.0 + law.conductivity_saturation * 0.8e9)
     grown = (1.0 + law.stress_pressure * 0.8e9) * (1.0 + law.stress_temperature * (REFERENCE - 363.0))
-    film = film_stress(
-        3e-7,
-        0.02 * np.exp(eta - SPREAD),
-        -slope,
-        wall,
-        wall,
-        0.14 * (1.0 + rise),
-        12.5,
-        FlowLaw(law.flow[0], law.flow[1] * grown, *law.flow[2:]),
-        law.limit * 0.8e9,
-    )
+    flow = FlowLaw(law.flow[0], law.flow[1] * grown, *law.flow[2:])
+    state = 3e-7, 0.02 * np.exp(eta - SPREAD), -slope, wall, wall
+    film = film_stress(*state, 0.14 * (1.0 + rise), 12.5, flow, law.limit * 0.8e9)
     assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)
     assert t - wall == pytest.approx(film.mean, rel=1e-8)
     assert q1 == pytest.approx(0.5 * shear, rel=1e-8) and q2 == pytest.approx(q1)

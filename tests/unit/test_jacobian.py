@@ -25,48 +25,20 @@ from ehlpetsc.physics.scales import Scales
 MESH = ["mesh.points_per_half_width=24", "mesh.inlet=-1.5", "mesh.outlet=1.3"]
 ALONE, BESIDE = [20, 30, 47], 31  # nodes that touch; one beside another of them
 H00 = -0.3
+MIXED, YIELDING = "contact.model='mixed'", "contact.yield_pressure=1.05e9"
+LAYER = [MIXED, "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"]
+HARD = ["contact.asperity_hardness=2e11", "contact.adsorbed_film=1e-9"]
 SCENES = {
     "direct": ("table1_smooth.toml", []),
     "direct over 1 nm": ("table1_smooth.toml", ["contact.minimum_film=1e-9"]),
-    "mixed": ("table1_smooth.toml", ["contact.model='mixed'"]),
-    "yielding": ("table1_smooth.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
-    "dry, yielding": ("dry_hertz.toml", ["contact.model='mixed'", "contact.yield_pressure=1.05e9"]),
-    "compliant": (
-        "table1_smooth.toml",
-        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"],
-    ),
-    "compliant, hard, adsorbed film": (
-        "table1_smooth.toml",
-        [
-            "contact.model='mixed'",
-            "contact.asperity_height=2e-9",
-            "contact.asperity_stiffness=1.0",
-            "contact.asperity_hardness=2e11",
-            "contact.adsorbed_film=1e-9",
-        ],
-    ),
-    "dry, compliant": (
-        "dry_hertz.toml",
-        ["contact.model='mixed'", "contact.asperity_height=2e-9", "contact.asperity_stiffness=1.0"],
-    ),
-    "compliant, yielding": (
-        "table1_smooth.toml",
-        [
-            "contact.model='mixed'",
-            "contact.asperity_height=2e-9",
-            "contact.asperity_stiffness=1.0",
-            "contact.yield_pressure=1.05e9",
-        ],
-    ),
-    "dry, compliant, yielding": (
-        "dry_hertz.toml",
-        [
-            "contact.model='mixed'",
-            "contact.asperity_height=2e-9",
-            "contact.asperity_stiffness=1.0",
-            "contact.yield_pressure=1.05e9",
-        ],
-    ),
+    "mixed": ("table1_smooth.toml", [MIXED]),
+    "yielding": ("table1_smooth.toml", [MIXED, YIELDING]),
+    "dry, yielding": ("dry_hertz.toml", [MIXED, YIELDING]),
+    "compliant": ("table1_smooth.toml", LAYER),
+    "compliant, hard, adsorbed film": ("table1_smooth.toml", [*LAYER, *HARD]),
+    "dry, compliant": ("dry_hertz.toml", LAYER),
+    "compliant, yielding": ("table1_smooth.toml", [*LAYER, YIELDING]),
+    "dry, compliant, yielding": ("dry_hertz.toml", [*LAYER, YIELDING]),
     "starved": ("table1_smooth.toml", ["fluid.inlet_film=1e-7"]),
     "dry": ("dry_hertz.toml", []),
 }

@@ -14,18 +14,9 @@ GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
 
 
 def oil(**changes):
-    keys = dict(
-        viscosity=0.005,
-        temperature=None,
-        law="roelands",
-        pressure_viscosity=11.1e-9,
-        reference_viscosity=63.2e-6,
-        roelands_z=None,
-        roelands_pressure=1.0 / 5.1e-9,
-        density="dowson-higginson",
-        gamma=2.27e-9,
-        lambda_=1.68e-9,
-    )
+    keys = {"viscosity": 0.005, "temperature": None, "law": "roelands", "pressure_viscosity": 11.1e-9}
+    keys |= {"reference_viscosity": 63.2e-6, "roelands_z": None, "roelands_pressure": 1.0 / 5.1e-9}
+    keys |= {"density": "dowson-higginson", "gamma": 2.27e-9, "lambda_": 1.68e-9}
     return SimpleNamespace(**laws.completed({**keys, **changes}))
 
 

@@ -1,26 +1,19 @@
 """Newton's method around SNES: interruptions, films that reach their bound, options, failures."""
 
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from support import CASES
+from support.running import PYTHON, called
 
 import ehlpetsc
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.nonlinear.jacobian import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
-TOUCHING = {
-    "mesh.inlet": -1.2,
-    "mesh.outlet": 1.3,
-    "mesh.points_per_half_width": 40,
-    "time.travel": 1.0,
-    "time.courant": 1.0,
-    "fluid.viscosity": 0.001,
-}
+TOUCHING = {"mesh.inlet": -1.2, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
+TOUCHING |= {"time.travel": 1.0, "time.courant": 1.0, "fluid.viscosity": 0.001}
 
 
 class Interruption(Exception):
@@ -105,7 +98,7 @@ ehlpetsc.Simulation(ehlpetsc.load(CASE, {"mesh.points_per_half_width": 20})).adv
 def test_process_ends_after_an_error_inside_petsc():
     """The traceback keeps PETSc's objects alive, which PetscFinalize would destroy after Python's end."""
     script = FAULTY.replace("CASE", repr(str(CASES / "table1_smooth.toml")))
-    process = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    process = called([PYTHON, "-c", script], CASES)
     assert process.returncode == 1 and "ValueError: of a callback" in process.stderr
 
 

@@ -10,15 +10,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.life import run_life
 from ehlpetsc.life.checks import check_case
 
-OIL = {
-    "viscosity": 0.0002,
-    "law": "roelands",
-    "pressure_viscosity": 11.1e-9,
-    "roelands_z": 0.568,
-    "roelands_pressure": 0.1962e9,
-    "density": "incompressible",
-    "eyring_stress": 10e6,
-}
+OIL = {"viscosity": 0.0002, "law": "roelands", "pressure_viscosity": 11.1e-9, "roelands_z": 0.568}
+OIL |= {"roelands_pressure": 0.1962e9, "density": "incompressible", "eyring_stress": 10e6}
 SHORT = {
     "time.travel": 3.6,
     "fluid": OIL,

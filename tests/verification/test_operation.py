@@ -52,16 +52,8 @@ def test_constant_conditions_in_a_table_are_the_plain_case(name):
         np.testing.assert_allclose(one.h, other.h, atol=1e-12)
 
 
-FZG = {
-    "module": 4.5e-3,
-    "teeth": [16, 24],
-    "centre_distance": 91.5e-3,
-    "tip_diameter": [82.5e-3, 118.4e-3],
-    "face_width": 14e-3,
-    "torque": 302.0,
-    "speed": 2250.0,
-    "tip_relief": 20e-6,
-}
+FZG = {"module": 4.5e-3, "teeth": [16, 24], "centre_distance": 91.5e-3, "tip_diameter": [82.5e-3, 118.4e-3]}
+FZG |= {"face_width": 14e-3, "torque": 302.0, "speed": 2250.0, "tip_relief": 20e-6}
 WAVE = {"synthetic": {"kind": "sine", "amplitude": 1e-7, "wavelength": 3e-4}}
 BOTH_WAVY = {"surface.1": WAVE, "surface.2": WAVE, "time": None}
 
@@ -173,15 +165,8 @@ def test_half_strokes_of_oscillating_entrainment_mirror_each_other():
 
 def harmonic(quantity, steps):
     """Film and pressure in the window after three quarters of a period of a changing quantity."""
-    base = {
-        "mesh.points_per_half_width": 32,
-        "mesh.inlet": -1.75,
-        "mesh.outlet": 1.5,
-        "contact.load": 130e3,
-        "motion.entrainment_speed": 25.0,
-        "surface": None,
-        "time": None,
-    }
+    base = {"mesh.points_per_half_width": 32, "mesh.inlet": -1.75, "mesh.outlet": 1.5, "surface": None}
+    base |= {"contact.load": 130e3, "motion.entrainment_speed": 25.0, "time": None}
     case = load(CASES / "ridge.toml", base | {"time.travel": 1.0})
     s = Scales.of(case)
     period = 4.0 * s.a / s.u
