@@ -101,7 +101,7 @@ class LifeBody(NamedTuple):
         return float(np.max(self.damage, initial=0.0, where=self.is_there))
 
     def columns_within(self, stretch: tuple[float, float]) -> np.ndarray:
-        """Columns within a stretch of the abscissa [m], with half a column either side."""
+        """Columns within a stretch of the abscissa [m], with a quarter of a column either side."""
         slack = 0.25 * (self.s[1] - self.s[0])
         return (self.s >= stretch[0] - slack) & (self.s <= stretch[1] + slack)
 

@@ -216,6 +216,12 @@ def test_surfaces_outside_the_computed_length_have_mean_wear():
     assert pitted.means(faces) == pytest.approx([3.5, 2.0, 3.0, 13.0, 5.0, 3.5]), "a pit makes no step there"
 
 
+def test_columns_within_a_stretch_reach_a_quarter_of_a_column_further():
+    one = body()._replace(s=1e-5 * np.arange(8.0))
+    assert np.flatnonzero(one.columns_within((2.2e-5, 4.8e-5))).tolist() == [2, 3, 4, 5]
+    assert np.flatnonzero(one.columns_within((2.3e-5, 4.7e-5))).tolist() == [3, 4]
+
+
 def test_body_field_grows_by_added_cells_only():
     field = BodyField.zero(1.0).add(np.array([0.0, 1.0, 2.0]), np.ones(2))
     assert (field.spacing, field.first, len(field.depth)) == (0.25, -1, 10)

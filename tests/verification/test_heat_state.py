@@ -86,3 +86,24 @@ def test_next_to_no_heat_does_not_divide_its_imbalance():
     state = np.array([inlet, zero, inlet])
     found = Temperatures(state, [inlet] * 2, [flux] * 2, np.full(5, 1e-20), zero, [], [])
     assert HeatStep.balance(steps, found, film, zero)[1] < 1e-5
+
+
+def test_oil_and_pressure_flow_of_an_accepted_state(monkeypatch):
+    """Oil in the cavity, stresses of Eyring's law spread by the pressure gradient, mean over the contact."""
+    found, solve = [], HeatStep.solve
+    monkeypatch.setattr(HeatStep, "solve", lambda *given: found.append(solve(*given)) or found[-1])
+    case = load(
+        CASES / "table1_heat.toml", {"mesh.points_per_half_width": 40, "mesh.inlet": -1.6, "time": None}
+    )
+    simulation = Simulation(case)
+    accepted, scales = simulation.advance(), simulation.scales
+    _, film, _, spread, _ = found[-1]
+    assert accepted.void_fraction.max() > 0.1
+    np.testing.assert_allclose(film.left, 1.0 - accepted.void_fraction, atol=1e-12)
+    gradient = np.gradient(film.pressure, scales.dx)[1:-1]
+    sigma = 0.5 * accepted.film_thickness[1:-1] * np.abs(gradient) / case.fluid.eyring_stress
+    expected = np.log(np.sinh(sigma + 1e-9) / (sigma + 1e-9))
+    assert expected.max() > 0.1
+    np.testing.assert_allclose(spread[1:-1], expected, rtol=1e-6, atol=1e-9)
+    mean = accepted.film_temperature[np.abs(scales.x) <= 1.0].mean()
+    assert accepted.scalars["film_temperature_mean"] == pytest.approx(mean, rel=1e-12)
