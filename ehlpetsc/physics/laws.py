@@ -327,14 +327,6 @@ def _doolittle(fluid: Any, heat: Any) -> tuple[float, ...]:
     return *constants[:-1], ambient / fluid.doolittle_b
 
 
-def _complete_doolittle(fluid: Any) -> dict[str, float]:
-    for name in DOOLITTLE:
-        if getattr(fluid, name) is None:
-            raise Refused("", name)
-    slope = doolittle(0.0, reference_temperature(fluid), *_doolittle(fluid, None))[1]
-    return {"pressure_viscosity": fluid.pressure_viscosity or float(slope)}
-
-
 def yasutomi(
     p: np.ndarray,
     T: np.ndarray,
@@ -391,11 +383,13 @@ def _yasutomi(fluid: Any, heat: Any) -> tuple[float, ...]:
     return c1, c2, glass, *others, above / (c2 + above)
 
 
-def _complete_yasutomi(fluid: Any) -> dict[str, float]:
-    for name in YASUTOMI:
+def _complete_with_slope(fluid: Any) -> dict[str, float]:
+    """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure."""
+    law = LAWS[fluid.law]
+    for name in law.keys:
         if getattr(fluid, name) is None:
             raise Refused("", name)
-    slope = yasutomi(0.0, reference_temperature(fluid), *_yasutomi(fluid, None))[1]
+    slope = law(0.0, reference_temperature(fluid), law.constants(fluid, None))[1]
     return {"pressure_viscosity": fluid.pressure_viscosity or float(slope)}
 
 
@@ -424,7 +418,7 @@ LAWS = {
         _doolittle,
         "`ln(eta/eta0) = B (v_inf/(v - v_inf) - v_inf0/(v0 - v_inf0))`, `v` of Tait",
         DOOLITTLE,
-        _complete_doolittle,
+        _complete_with_slope,
         of_temperature=True,
     ),
     "yasutomi": Law(
@@ -432,7 +426,7 @@ LAWS = {
         _yasutomi,
         "`lg(eta/eta0) = C1 (x0/(C2 + x0) - x/(C2 + x))`, `x = (T - T_g) (1 + b1 p)^b2`",
         YASUTOMI,
-        _complete_yasutomi,
+        _complete_with_slope,
         of_temperature=True,
     ),
 }
