@@ -23,8 +23,8 @@ from ehlpetsc.base.errors import (
 class CommandParser(argparse.ArgumentParser):
     """Parser of ``ehlpetsc NAME``; errors are one line, exit status 2.
 
-    Of ``-o``, ``--set`` and ``--overwrite`` it has those named in `options`, which a command may define anew
-    with a help of its own.
+    It has those of ``-o`` and ``--set`` that `options` names, which a command may define anew with a help of
+    its own, and ``--overwrite``, also where pictures and tables are replaced without it.
     """
 
     def __init__(self, name: str, description: str, options: str = "output set overwrite") -> None:
@@ -41,8 +41,8 @@ class CommandParser(argparse.ArgumentParser):
         if "set" in options:
             key = "key of the case; may be repeated"
             self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
-        if "overwrite" in options:
-            self.add_argument("--overwrite", action="store_true", help="replace an existing file")
+        overwrites = "replace an existing file" if "overwrite" in options else argparse.SUPPRESS
+        self.add_argument("--overwrite", action="store_true", help=overwrites)
         self.add_argument("--version", action="version", version=f"ehlpetsc {__version__}")
 
     def error(self, message: str) -> NoReturn:

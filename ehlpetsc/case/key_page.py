@@ -138,9 +138,11 @@ def page() -> str:
         texts.append(f"{table.text[:1].upper()}{table.text[1:]}.\n\n" if place else "")
         texts.append("| key | meaning | value | default |\n|---|---|---|---|\n")
         for name, key in _keys(table).items():
-            meaning = f"{key.text}. {key.equation}" if key.equation else key.text
-            cells = [_typeset(meaning), *(_escaped(cell) for cell in (_value(key), _default(key)))]
+            cells = [_typeset(key.text), *(_escaped(cell) for cell in (_value(key), _default(key)))]
             texts.append(f"| `{name}` | {' | '.join(cells)} |\n")
+        equations = {name: key.equation for name, key in _keys(table).items() if key.equation}
+        texts += ["\n"] * bool(equations)
+        texts += [f"- `{name}`: {_typeset(equation)}.\n" for name, equation in equations.items()]
     return "".join(texts)
 
 

@@ -156,7 +156,7 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
     case, texts = result.case, []
     varies = "speed_1" in result.scalars
     if varies and frame is None:
-        texts.append("conditions over time, at most")
+        texts.append("conditions over time; at the widest contact")
     elif varies or case.motion:
         u1, u2 = speeds_at(result, frame or 0)
         u = 0.5 * (u1 + u2)

@@ -24,6 +24,7 @@ sys.path.insert(0, str(ROOT))
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
@@ -183,6 +184,9 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
             panel.loglog(base[cost], max(base[name], 1e-8), "k*", ms=11, label="the case as it is")
             panel.axhline(reference[name], color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
             panel.set_xlabel(label)
+            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 3, 5)))
+            panel.xaxis.set_major_formatter("{x:g}")
+            panel.xaxis.set_minor_locator(NullLocator())
             panel.grid(True, lw=0.3)
         column[0].set_title(MEASURES[name], fontsize="medium")
     for panel in axes[:, 0]:

@@ -37,6 +37,7 @@ def test_help_lists_all_commands(capsys):
         ([""], ": "),
         (["explain", "/dev/zero"], "/dev/zero: "),
         (["roller.toml", "--explain"], "--explain: unknown option; "),
+        (["summary", "gone.h5", "--overwrite"], "gone.h5: "),
     ],
 )
 def test_mistyped_command_is_one_sentence(tmp_path, monkeypatch, capfd, words, message):
