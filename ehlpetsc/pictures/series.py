@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
-from ehlpetsc.results.post_result import damage_beside
+from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
 
@@ -28,7 +28,7 @@ def draw_running_in(results: list[Result], _options: argparse.Namespace | None) 
         raise OutputError("solids that do not yield: no plastic deformation; needs contact.yield_pressure")
     rows = [pass_summary(result) for result in results]
     posts = [damage_beside(result) for result in results]
-    damages = [post.summary() for post in posts] if all(posts) else []
+    damages = posts if all(posts) else []
     size = SIZE_WITH_DAMAGE if damages else RUNNING_IN_SIZE
     figure, axes = style.new_figure(2, 3 if damages else 2, size)
     draw_surface(axes[0, 0], results)
@@ -105,14 +105,17 @@ def draw_contact(axes: Axes, rows: list[dict]) -> None:
         axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
 
 
-def draw_fatigue(axes: Axes, damages: list[dict], side: str) -> None:
+def draw_fatigue(axes: Axes, damages: list[PostResult], side: str) -> None:
     """Draw the maximum damage of a surface at each depth over the passes."""
-    depths = damages[0]["z_over_a"]
-    if any(side not in damage or damage["z_over_a"] != depths for damage in damages):
+    depths = damages[0].z
+    if not all(
+        side in post.damage and post.complete[side].any() and np.array_equal(post.z, depths)
+        for post in damages
+    ):
         axes.set_axis_off()
         return
-    for k, (depth, colour) in enumerate(zip(depths, style.shades(len(depths)), strict=True)):
-        maximum = np.array([damage[side]["largest"][k] for damage in damages])
+    maxima = np.transpose([post.passed(side).max(axis=1) for post in damages])
+    for maximum, depth, colour in zip(maxima, depths, style.shades(len(depths)), strict=True):
         axes.semilogy(*_over_passes(axes, maximum), ".-", color=colour, label=f"{depth:g} a")
     axes.set_ylabel(f"maximum damage D of surface {side}")
     style.legend_beside(axes, title="depth")

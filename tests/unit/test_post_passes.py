@@ -5,10 +5,12 @@ import json
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from support.made_loads import Scene, write
 from support.made_results import make_result
 
 from ehlpetsc.base.errors import ExitStatus
+from ehlpetsc.pictures.series import draw_fatigue
 from ehlpetsc.post.command import main
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
@@ -32,8 +34,13 @@ def index(tmp_path):
 def test_every_pass_of_an_index_is_processed(index, capsys):
     assert main([str(index)]) == ExitStatus.DONE
     assert capsys.readouterr().out.count("ehlpetsc post: done ") == 2
-    first, second = (PostResult(index.with_name(f"run.pass{k}.post.h5")).passed("2")[0].max() for k in (1, 2))
-    assert second < first
+    posts = [PostResult(index.with_name(f"run.pass{k}.post.h5")) for k in (1, 2)]
+    axes = Figure().add_subplot()
+    draw_fatigue(axes, posts, "2")
+    for depth, line in enumerate(axes.lines):
+        maxima = [post.passed("2")[depth].max() for post in posts]
+        np.testing.assert_array_equal(line.get_xydata(), [[1, maxima[0]], [2, maxima[1]]])
+    assert len(axes.lines) == 2 and maxima[1] < maxima[0]
 
 
 def test_damage_of_another_case_is_not_that_of_a_pass(index):
