@@ -146,7 +146,7 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
     scene = [*CASE, *settings("mesh.points_per_half_width=70")]
     # stored before the disk is full, however quick
     often = settings("time.travel=100", "output.checkpoint=0.002")
-    full = called(["prlimit", "--fsize=5000000", *command(*scene, *often)], tmp_path)
+    full = called(["prlimit", "--fsize=9000000", *command(*scene, *often)], tmp_path)
     assert full.returncode == 2
     step, time = re.search(r" step (\d+) \((\S+) us\)", full.stderr).groups()
     same = "the same command continues from table1_rough.restart.h5"
