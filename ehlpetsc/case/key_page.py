@@ -167,7 +167,7 @@ def tex(equation: str) -> str:
     for pattern, by in TEX:
         equation = re.sub(pattern, by, equation)
     equation = re.sub(r"(?<!\\)\b[A-Za-z]+(_[a-z_A-Z]+)?\d*", _symbol, equation)
-    return re.sub(r"(texttt{[^}]*}) (?=[a-zA-Z\\])", r"\1\\,", equation)
+    return re.sub(r"(mathtt{[^}]*}) (?=[a-zA-Z\\])", r"\1\\,", equation)
 
 
 def _symbol(match: re.Match) -> str:
@@ -177,7 +177,7 @@ def _symbol(match: re.Match) -> str:
     if name in FUNCTIONS:
         return rf"\{name}"
     if name not in NAMES and len(name) > 1 and not re.fullmatch("d[a-z]", name):
-        return rf"\texttt{{{word.replace('_', chr(92) + '_')}}}"
+        return rf"\mathtt{{{word.replace('_', chr(92) + '_')}}}"
     index = INDICES.get(index, index if len(index) < 3 else rf"\mathrm{{{index}}}")
     return NAMES.get(name, name) + (f"_{{{index}}}" if len(index) > 1 else f"_{index}" if index else "")
 
