@@ -22,7 +22,6 @@ from scipy.ndimage import binary_dilation, label
 
 from ehlpetsc.api import Result
 from ehlpetsc.pictures import style
-from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.index import in_order, open_all, series_values
 
 THINNING = ("fluid.viscosity", "motion.entrainment_speed")  # keys of which a smaller value is a thinner film
@@ -63,7 +62,7 @@ def open_series(paths: list[Path], stack: contextlib.ExitStack) -> tuple[list[Re
 
 def contact_nodes(result: Result) -> tuple[np.ndarray, np.ndarray]:
     """Stored frames and nodes in contact, shape (n,) each."""
-    return np.nonzero(in_contact(result, slice(0, len(result.time))))
+    return np.nonzero(result.contacts_at(slice(0, len(result.time))))
 
 
 def find(results: list[Result]) -> list[Collision]:
@@ -109,7 +108,7 @@ def _values(results: list[Result], time: float, x: float) -> tuple[tuple, tuple,
     places = [(result.nearest_frame(time=time), int(np.argmin(np.abs(result.x - x)))) for result in results]
     pairs = list(zip(results, places, strict=True))
     film, pressure = (tuple(float(r[name][at]) for r, at in pairs) for name in ("film_thickness", "pressure"))
-    return film, tuple(bool(in_contact(r, *at)) for r, at in pairs), pressure
+    return film, tuple(bool(r.contacts_at(*at)) for r, at in pairs), pressure
 
 
 def breakdowns(collisions: list[Collision]) -> list[Collision]:
@@ -166,7 +165,7 @@ def draw_collisions(results: list[Result], values: list[float], key: str, chosen
         for result, value, colour in zip(results, values, style.shades(len(results)), strict=True):
             frame = result.nearest_frame(time=c.time)
             view = np.abs(result.x - c.x) <= 0.5 * VIEW * a
-            marked = np.flatnonzero(in_contact(result, frame)[view]).tolist()
+            marked = np.flatnonzero(result.contacts_at(frame)[view]).tolist()
             look = dict(color=colour, lw=1.1, label=f"{value:g}", marker="v", ms=4, markevery=marked)
             upper.plot(result.x[view] / a, 1e-9 * result.frame("pressure", frame)[view], **look)
             lower.plot(result.x[view] / a, 1e6 * result.frame("film_thickness", frame)[view], **look)

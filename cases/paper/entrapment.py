@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result, read_result
 from ehlpetsc.pictures import frames, style
-from ehlpetsc.results.contacts import in_contact
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
 MAX_GAP = 0.05  # half-widths between the contacts
@@ -35,7 +34,7 @@ class Entrapment:
 
 def find(result: Result) -> list[Entrapment]:
     """Entrapments of all stored frames, in the order of falling excess pressure."""
-    frames, nodes = np.nonzero(in_contact(result, slice(0, len(result.time))))
+    frames, nodes = np.nonzero(result.contacts_at(slice(0, len(result.time))))
     widest = MAX_GAP * result.attrs["a"] / float(np.diff(result.x).min())
     gaps = np.diff(nodes)
     pairs = np.flatnonzero((np.diff(frames) == 0) & (gaps >= MIN_GAP_NODES) & (gaps <= widest))
@@ -67,7 +66,7 @@ def draw(result: Result, event: Entrapment) -> Figure:
     heights = []
     for (upper, lower), (frame, centre) in zip(axes.T, instants(result, event), strict=True):
         view = np.abs(x - centre / a) <= 0.5 * VIEW
-        touching = in_contact(result, frame) & view
+        touching = result.contacts_at(frame) & view
         pressure, (below, _) = 1e-9 * result.frame("pressure", frame), frames.deformed_heights(result, frame)
         frames.deformed_surfaces(lower, result, frame, (x[view][0], x[view][-1]))
         lower.get_legend().remove()

@@ -13,7 +13,6 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.scales import hertz_pressure
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.style import ACROSS
-from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import Result
 
@@ -154,7 +153,8 @@ def fill_frame(
         film = 1e6 * result.frame("film_thickness", index)
         if single:
             names = ["total pressure" if draw_solids(upper, result, index, shown) else "pressure"]
-            if (touching := shown & in_contact(result, index)).any():
+            touching = shown & ("in_contact" in result and result.contacts_at(index))
+            if touching.any():
                 marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3)
                 lower.plot(x[touching], film[touching], "v", label="in contact", **marks)
         upper.plot(x, 1e-9 * result.frame("pressure", index), label=names[number], **line)

@@ -15,7 +15,6 @@ from matplotlib.lines import Line2D
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.style import ACROSS
-from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
@@ -86,7 +85,7 @@ def space_time_map(
 
 def outline_contacts(axes: Axes, result: Result, columns: slice, stride: int) -> None:
     """Outline nodes in contact, also of the frames between the drawn ones."""
-    touching = contacts_of_blocks(result, columns, stride)
+    touching = contacts_of_blocks(result, columns, stride) if "in_contact" in result else np.zeros(0)
     if touching.any():
         x, rows = result.x[columns] / result.attrs["a"], 1e6 * result.time[::stride]
         axes.contour(x, rows, touching, [0.5], colors=style.CONTACT, linewidths=0.7)
@@ -96,7 +95,7 @@ def contacts_of_blocks(result: Result, columns: slice, stride: int) -> np.ndarra
     """1 where a node is in contact in any of `stride` frames, one row for every `stride` frames."""
     last = len(result.time)
     blocks = (slice(begin, min(begin + stride, last)) for begin in range(0, last, stride))
-    return np.array([in_contact(result, block, columns).any(axis=0) for block in blocks], dtype=int)
+    return np.array([result.contacts_at(block, columns).any(axis=0) for block in blocks], dtype=int)
 
 
 def draw_temperatures(results: list[Result], options: argparse.Namespace) -> Figure:

@@ -18,7 +18,6 @@ from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import default_window, frame_to_show, travel_of
 from ehlpetsc.pictures.style import hertz_at
-from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import damage_beside
@@ -112,7 +111,8 @@ def frames(result: Result) -> dict:
         if name in result
     }
     hertz = [hertz_at(result, k) for k in chosen]
-    touching = [binned(in_contact(result, k, columns), width, np.max) for k in chosen]
+    rows = (result.contacts_at(k, columns) if "in_contact" in result else 0.0 * x[columns] for k in chosen)
+    touching = [binned(row, width, np.max) for row in rows]
     return {
         "x": _packed(binned(x[columns], width, np.mean)),
         "time": _packed(1e6 * result.time[chosen]),

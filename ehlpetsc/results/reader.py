@@ -194,6 +194,10 @@ class Result:
         """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""
         return self[name][range(len(self.time))[index]].astype(float)
 
+    def contacts_at(self, frames: int | slice, nodes: slice = slice(None)) -> np.ndarray:
+        """Whether nodes are in contact; an OutputError if the result does not store it."""
+        return self["in_contact"][frames, nodes].astype(bool)
+
     def nearest_frame(self, *, time: float | None = None, step: int | None = None) -> int:
         """Index of the stored frame nearest to a time [s] or to a step number."""
         if (time is None) == (step is None):

@@ -9,7 +9,6 @@ from support import ROOT
 from support.running import run, settings
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.results.contacts import in_contact
 from ehlpetsc.results.reader import read_result
 
 QUICK = ("mesh.inlet=-1.4", "mesh.points_per_half_width=50", "time.travel=0.6", "output.every=1")
@@ -45,16 +44,6 @@ def test_restart_gives_the_same_run(case, tmp_path):
         assert share.max() > 0.1
         stored = np.asarray(one["in_contact"][:], dtype=bool)
         np.testing.assert_array_equal(stored, one["contact_pressure"][:] > 10e6)
-
-
-def test_contacts_follow_from_stored_films_alone(case, tmp_path):
-    fields = 'output.fields=["film_thickness", "contact_pressure"]'
-    words = settings(*QUICK[:2], "time.travel=0.1", "output.every=1", fields)
-    assert run(case, *words, cwd=tmp_path).returncode == 0
-    with read_result(tmp_path / "layer.h5") as result:
-        found = in_contact(result, slice(0, len(result.time)))
-        np.testing.assert_array_equal(found, result["contact_pressure"][:] > 10e6)
-        assert found.any() and not found.all()
 
 
 def test_passes_add_plastic_deformation(case, tmp_path):

@@ -1,15 +1,14 @@
 """Programs of the paper's figures: collisions, entrapment and contacts are found where they were put."""
 
 import sys
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from support import ROOT
 from support.made_results import TABLE_1, A
 
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures.over_time import contacts_of_blocks
-from ehlpetsc.results.contacts import film_at_contact, in_contact, layer_film
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter
 
@@ -78,28 +77,15 @@ def test_printed_film_in_contact_is_that_of_the_file(tmp_path):
     assert " 0.0221,3.00" in collisions.report([found], [0.01], "fluid.viscosity", A)[2]
 
 
-@pytest.mark.parametrize("bound", [0.0, 1e-2])
-@pytest.mark.parametrize("precision", ["float64", "float32"])
-def test_contacts_from_flags_equal_contacts_from_the_bound(tmp_path, bound, precision):
-    """Also in maps, and also at a bound [um] above zero, which is no number of single precision."""
-    dips = [(-0.2, 20e-6, 6e-6, 0.35)]
-    whole = make(tmp_path / "whole.h5", 0.01, dips, bound=bound)
-    films = make(tmp_path / "film.h5", 0.01, dips, bound=bound, precision=precision, fields=FIELDS[:2])
+def test_contacts_of_a_map_are_those_of_the_frames(tmp_path):
+    whole = make(tmp_path / "whole.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)])
     assert whole.in_contact.any() and not whole.in_contact.all()
-    np.testing.assert_array_equal(in_contact(films, slice(0, len(films.time))), whole.in_contact)
-    np.testing.assert_array_equal(in_contact(films, 40, slice(100, 200)), whole.in_contact[40, 100:200])
-    np.testing.assert_array_equal(collisions.contact_nodes(films), np.nonzero(whole.in_contact))
-    assert film_at_contact(films) == pytest.approx(1e-6 * bound, rel=1e-12)
+    np.testing.assert_array_equal(whole.contacts_at(40, slice(100, 200)), whole.in_contact[40, 100:200])
     shown = slice(100, 200)
-    np.testing.assert_array_equal(contacts_of_blocks(films, shown, 1), whole.in_contact[:, shown])
-
-
-def test_contacts_of_a_layer_begin_at_ten_megapascals():
-    layer = dict(asperity_height=50e-9, asperity_stiffness=0.1, asperity_hardness=None, adsorbed_film=0.0)
-    contact = SimpleNamespace(youngs_modulus=(200e9, 100e9), poisson_ratio=(0.3, 0.2), **layer)
-    modulus = 1.0 / (0.91 / 200e9 + 0.96 / 100e9)
-    pressure = 0.1 * modulus * np.exp(-2.0 * layer_film(contact) / 50e-9)
-    assert pressure == pytest.approx(10e6, rel=1e-9)
+    np.testing.assert_array_equal(contacts_of_blocks(whole, shown, 1), whole.in_contact[:, shown])
+    films = make(tmp_path / "film.h5", 0.01, [], fields=FIELDS[:2])
+    with pytest.raises(OutputError, match="film.h5: does not store in_contact"):
+        films.contacts_at(40)
 
 
 def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
