@@ -112,9 +112,8 @@ class NearFieldMatrix:
     def __init__(self, problem: EHLProblem, near_field: int, matrix: PETSc.Mat):
         self.problem, self.matrix, self.near_field = problem, matrix, min(near_field, problem.n - 1)
         self._deflection_columns()
-        rows, columns = self._pattern()
-        matrix.setPreallocationCSR((rows, columns, np.zeros(len(columns))))
-        matrix.setOption(matrix.Option.NEW_NONZERO_LOCATION_ERR, True)
+        matrix.setUp()
+        matrix.setOption(matrix.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         matrix.setOption(matrix.Option.NO_OFF_PROC_ENTRIES, True)  # nothing to exchange at assembly
 
     def _deflection_columns(self) -> None:
@@ -129,14 +128,6 @@ class NearFieldMatrix:
         for end in p.deflection.ends:
             approach[end - p.first] = n_dofs(n)
         self.columns = np.hstack([by_q, by_w, approach]).astype(np.int32)
-
-    def _pattern(self) -> tuple[np.ndarray, np.ndarray]:
-        p, rows = self.problem, []
-        for deflection, reynolds in zip(self.columns, p.reynolds_columns, strict=True):
-            rows += [deflection[deflection >= 0], reynolds[reynolds >= 0]]
-        if p.load_is_local:
-            rows.append(np.arange(n_dofs(p.n) + 1))
-        return np.cumsum([0] + [len(r) for r in rows]).astype(np.int32), np.concatenate(rows).astype(np.int32)
 
     def fill(self, state: NodeState, derivatives: np.ndarray) -> None:
         """Assemble the matrix at a state of the whole mesh, which every rank passes."""
@@ -158,9 +149,9 @@ class NearFieldMatrix:
         set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
         set_rows(self.matrix, w_index(nodes), p.reynolds_columns, self._by_unknowns(state, derivatives))
         if p.load_is_local:
-            load = np.zeros(n_dofs(p.n))
+            load = np.zeros(n_dofs(p.n) + 1)  # with the zero on the diagonal, which LU needs
             q_of(load, p.n)[:], w_of(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
-            self.matrix.setValues([n_dofs(p.n)], np.arange(n_dofs(p.n), dtype=np.int32), load)
+            self.matrix.setValues([n_dofs(p.n)], np.arange(len(load), dtype=np.int32), load)
         self.matrix.assemble()
 
     def _by_unknowns(self, state: NodeState, derivatives: np.ndarray) -> np.ndarray:
