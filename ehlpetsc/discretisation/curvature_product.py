@@ -46,11 +46,8 @@ def exponentials(
     `nearest`: first distance represented, at least 3.
     `tolerance`: relative error, at least 1e-11: the kernel itself is rounded.
 
-    Returns
-    -------
-    rates, weights : ndarray, shape (terms,)
-        ``kernel[nearest + d]`` is ``weights @ exp(-rates * d)``, with as few terms as give the tolerance; no
-        terms for a kernel that ends before `nearest`.
+    Returns rates and weights, shape (terms,): ``kernel[nearest + d]`` is ``weights @ exp(-rates * d)``, with
+    as few terms as give the tolerance; no terms for a kernel that ends before `nearest`.
     """
     far = kernel[nearest:]
     if len(far) == 0:

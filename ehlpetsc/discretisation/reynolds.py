@@ -115,11 +115,8 @@ class Reynolds:
         `q`, `h`: unknowns from the node `start` on.
         `temperatures`: see :meth:`properties`.
 
-        Returns
-        -------
-        residual : ndarray, shape (local nodes,)
-        derivatives : ndarray, shape (local nodes, 8)
-            With respect to q and h of the nodes of `columns`.
+        Returns the residual, shape (local nodes,), and its derivatives with respect to q and h of the nodes
+        of `columns`, shape (local nodes, 8).
         """
         rows, history, law = self.rows, inputs.history, self.face_law(inputs)
         at, first = self.properties(q, h, inputs, temperatures), self.row_in_input

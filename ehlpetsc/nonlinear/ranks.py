@@ -65,15 +65,9 @@ def exchange_unknowns(place: tuple, buffers: tuple, matrices: tuple, room: tuple
     `place`, `buffers`, `matrices`, `room`: of a `Halo`.
     `local`: local unknowns, interleaved, h00 last on the last rank; pressures of the local nodes; flag.
 
-    Returns
-    -------
-    nodes : ndarray, shape (window, 2)
-        Until the next exchange.
-    h00 : float
-    curvature : ndarray
-        As of `deflection.PressureSums`; on the last rank some more.
-    load : ndarray, shape (4,)
-        As of `deflection.PressureSums`, and the number of ranks with the flag.
+    Returns the unknowns, shape (window, 2), valid until the next exchange, h00, and curvature and load of
+    `deflection.PressureSums`: on the last rank some more of the first; of the second the number of ranks with
+    the flag, too, shape (4,).
     """
     (collective, rank), (load_weights, messages, window), (vector, pressure, flag) = place, buffers, local
     mine, last, local_unknowns = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)]

@@ -80,12 +80,9 @@ def needed_points(profile: Profile, scales: Scales, unresolved: float) -> int:
 def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
     """Travel of the faster surface [half-widths] when a profile reaches and fills the contact.
 
-    Returns
-    -------
-    reaches, fills
-        Its first point at the near edge of the Hertz contact; its full heights, ramp included, at the far
-        one. Of a lone ridge or dent `fills` is for its middle at x = 0. None where the profile lies
-        under the domain from the start.
+    Its first point is then at the near edge of the Hertz contact; its full heights, ramp included, at the far
+    one or, of a lone ridge or dent, its middle at x = 0. None where the profile lies under the domain from
+    the start.
     """
     if not profile.enters:
         return None

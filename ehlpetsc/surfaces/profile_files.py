@@ -53,12 +53,8 @@ def read_profile(
     header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
     format through the package SurfaceTopography if it is installed.
 
-    Returns
-    -------
-    X, z
-        Both in m, X increasing; heights positive out of the metal, shape (n,).
-    notes
-        Notes on the processing of the numbers.
+    Returns X and z [m], X increasing, heights positive out of the metal, shape (n,), and notes on the
+    processing of the numbers.
     """
     path = Path(path)
     try:

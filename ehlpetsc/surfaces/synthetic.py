@@ -18,13 +18,8 @@ SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     """Samples of a synthetic profile.
 
-    Returns
-    -------
-    X, z
-        m; heights positive out of the metal. The profile of a wave is half a wavelength, continued by
-        reflection, shape (n,).
-    repeats
-        Whether the profile is continued by reflection at its ends, otherwise by height 0.
+    Returns X and z [m], heights positive out of the metal, shape (n,), and whether the profile is continued
+    by reflection at its ends, otherwise by height 0. That of a wave is half a wavelength.
     """
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True

@@ -125,12 +125,7 @@ class ContactModel:
     ) -> tuple[str | None, np.ndarray]:
         """Violation of the contact conditions by a solution.
 
-        Returns
-        -------
-        str or None
-            The violation; None: there is none.
-        residual : ndarray
-            Reynolds rows that must vanish.
+        Returns the violation, None without one, and the Reynolds rows that must vanish.
         """
         return None, reynolds_residual
 

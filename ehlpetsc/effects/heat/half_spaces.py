@@ -141,13 +141,8 @@ def advance_terms(
     `ratio`: of :func:`diffuse`.
     `weights`: of the terms in the temperature, shape (terms,).
 
-    Returns
-    -------
-    new : ndarray, shape (cells, terms)
-    flux : ndarray, shape (cells,)
-        That of the begin on the cells of the end.
-    rise : ndarray, shape (cells,)
-        Weighted sum of the terms.
+    Returns the terms, shape (cells, terms), the flux of the begin on the cells of the end, and the weighted
+    sum of the terms, both of shape (cells,).
     """
     cells, count = terms.shape
     undiffused, moved = np.zeros((cells, count)), np.zeros(cells)

@@ -112,12 +112,7 @@ class HeatStep:
     ) -> tuple[Temperatures, Film, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures and heat of an accepted solution.
 
-        Returns
-        -------
-        Temperatures
-        Film
-        source, spread, solved : ndarray, shape (nx,)
-            See :class:`.record.HeatRecord`.
+        Returns both, and `source`, `spread`, `solved` of :class:`.record.HeatRecord`, shape (nx,).
         """
         s, loads = self.scales, solution.loads
         heat = solution.inputs.heat or self.film_heat(record, solution.inputs, step)

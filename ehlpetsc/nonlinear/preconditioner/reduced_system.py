@@ -44,10 +44,8 @@ class ReducedSystem:
         `values`: of every rank, by each unknown taken of others: the rank's own unknowns at its cuts, and its
             sums; the last two rows are not used, shape (ranks, left + right + 2, left + right + BORDER).
 
-        Returns
-        -------
-        ndarray, shape (taken + BORDER, ranks (left + right + BORDER))
-            Of the values at the cuts and the sums that every rank has without the others.
+        They apply to the values at the cuts and the sums that every rank has without the others; shape
+        (taken + BORDER, ranks (left + right + BORDER)).
         """
         numbers = np.concatenate((values.ravel(), CONSTANTS))
         band, solution = numbers[self._band], numbers[self._wanted]
