@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-POINTS = ("A", "B", "C", "D", "E")
 TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
 EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
 

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from ehlpetsc.pictures import style
-from ehlpetsc.post.fatigue.accumulate import CHANNELS, damage
+from ehlpetsc.post.fatigue.accumulate import damage
 from ehlpetsc.post.fatigue.cycles import rainflow
-from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
@@ -90,7 +89,8 @@ def history_picture(path: str, result: PostResult) -> Figure:
         material = read_settings(loads.case).materials[surface]
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
         heat = temperature_history(loads, surface, s) if loads.is_heated(surface) else None
-    channel = counted_channel(result.attrs["count"], values, material)
+    of_each = [damage(*values, material, count=name).damage for name in ("sx", "sz", "txz")]
+    channel = int(np.argmax(of_each))  # of the maximum damage, which is counted
     cycles = rainflow(1e-9 * values[channel])
     rows = 1 if heat is None else 2
     figure, axes = style.new_figure(rows, 1, (8.0, 1.0 + 2.2 * rows), sharex=True, squeeze=False)
@@ -105,15 +105,6 @@ def history_picture(path: str, result: PostResult) -> Figure:
     counted = f"{len(cycles)} cycles of {COMPONENTS[channel]}, damage {np.nanmax(result.damage[surface]):.3g}"
     style.set_title(figure, f"surface {surface}, {where}: {counted}")
     return figure
-
-
-def counted_channel(count: str, values: np.ndarray, material: Material) -> int:
-    """Component whose cycles are drawn: the counted one, or that of the maximum damage."""
-    if len(CHANNELS[count]) == 1:
-        return min(CHANNELS[count][0], 2)
-    sx, sz, txz = values
-    names = ("sx", "sz", "txz")
-    return int(np.argmax([damage(sx, sz, txz, material, count=name).damage for name in names]))
 
 
 def draw_history(axes: Axes, time: np.ndarray, values: np.ndarray, channel: int, cycles: np.ndarray) -> None:
