@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -259,7 +259,6 @@ class Body:
         longest = min(length / speed + LONGEST * chi / speed**2, slow) if speed > 0.0 else slow
         self.rates, self.weights = map(np.array, exponentials(dt, max(longest, 2.0 * dt)))
         self.dt = dt
-        self._weights_of: Any = None, None, None  # rates and step, and the weights of the step
         reach = PADDING * chi / speed / self.dx if speed > 0.0 else self.n
         self.padding = int(min(np.ceil(reach), self.n)) + 2
 
@@ -303,7 +302,7 @@ class Body:
         moved = -speed * dt / self.dx
         if abs(shift - moved) > RENUMBERED:  # the distance is counted from another place now
             shift = int(np.floor(moved))
-        step = self._step_weights(body, dt)
+        step = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
         ratio = self.solid.diffusivity * dt / self.dx**2
         terms, flux, rise = advance_terms(
             body.terms, body.flux, shift, step.decay, step.begin, ratio, body.weights / self.solid.effusivity
@@ -312,13 +311,6 @@ class Body:
         here, next_one = rise[padding : padding + self.n], rise[padding + 1 : padding + self.n + 1]
         history = (1.0 - fraction) * here + fraction * next_one
         return BodyStep(body, history, step.response, step.end, fraction)
-
-    def _step_weights(self, body: BodyHeat, dt: float) -> StepWeights:
-        rates, step, _ = self._weights_of
-        if rates is not body.rates or step != dt:
-            weights = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
-            self._weights_of = body.rates, dt, weights
-        return self._weights_of[2]
 
     def accept(self, step: BodyStep, flux: np.ndarray) -> BodyHeat:
         """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""
