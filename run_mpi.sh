@@ -22,9 +22,9 @@ END
 declare -A package_of=([h5py]="python3-h5py python3-h5py-mpi" [petsc4py]=python3-petsc4py-real [mpirun]=openmpi-bin
     [xdist]=python3-pytest-xdist [myst_parser]=python3-myst-parser [furo]="furo libjs-mathjax" [python]=python3)
 run_modules="numpy scipy numba mpi4py h5py petsc4py"
-drawing="matplotlib xarray h5netcdf" # pictures, reading of results
+drawing="matplotlib plotly xarray h5netcdf" # pictures, reading of results
 site="sphinx myst_parser furo" # the pages as one site
-testing="$drawing plotly pytest xdist hypothesis pip hatchling"
+testing="$drawing pytest xdist hypothesis pip hatchling"
 
 here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 check="$here/ehlpetsc/base/environment.py"

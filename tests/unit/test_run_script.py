@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -164,6 +165,12 @@ def test_user_without_root_gets_the_install_command(machine, system):
     assert done.returncode == 2
     assert done.stdout == f"sudo apt-get update && sudo {install}\n"
     assert typed == []
+
+
+def test_install_brings_what_pictures_and_reports_import():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
+    lists = re.findall(r'^(?:run_modules|drawing)="(.*?)"', (ROOT / "run_mpi.sh").read_text(), re.MULTILINE)
+    assert {re.match(r"\w+", name)[0] for name in extras["post"]} <= set(" ".join(lists).split())
 
 
 def test_root_installs_and_waits_for_the_apt_lock(machine):
