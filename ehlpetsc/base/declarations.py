@@ -184,8 +184,6 @@ class Field:
         Type on disk; fields may be stored as float32 on request.
     only : str
         Cases with the quantity, a key of `SCENES`; "": all.
-    on_request : bool
-        Whether it is stored only on request of the case.
     """
 
     units: str
@@ -193,7 +191,6 @@ class Field:
     dims: tuple = _FRAME
     dtype: str = "f8"
     only: str = ""
-    on_request: bool = False
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ehlpetsc.effects.effect import Effect
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
-    from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
+    from ehlpetsc.discretisation.ehl_problem import StepInputs
     from ehlpetsc.effects.effect import Step
     from ehlpetsc.surfaces.profile import Profile
 
@@ -42,10 +42,6 @@ class BodyDepth(Effect):
         depths = self.scene.mesh_on_bodies.means(record.depth, step.travelled)
         hidden = self.scene.mesh_on_bodies.means(record.hidden, step.travelled)
         return [depth - hidden_depth for depth, hidden_depth in zip(depths, hidden, strict=True)]
-
-    def observe(self, record: Any, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Depths in the gap at the nodes."""
-        return dict(zip(self.fields, self.in_gap(record, step), strict=True)), {}
 
     def on_surfaces(
         self, record: Any, points: Sequence[np.ndarray | None]

@@ -32,10 +32,6 @@ class PlasticDeformation(BodyDepth):
 
     name = "plastic_deformation"
     record = PlasticRecord
-    fields = {
-        "set_1": Field("m", "depth by which surface 1 has yielded", on_request=True),
-        "set_2": Field("m", "depth by which surface 2 has yielded", on_request=True),
-    }
     scalars = {
         "yielding": StepScalar(
             "1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True
@@ -76,6 +72,5 @@ class PlasticDeformation(BodyDepth):
         return PlasticRecord(depth, total, record.hidden)
 
     def observe(self, record: PlasticRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Indentations at the nodes, number of yielding nodes, volume."""
-        fields, _ = super().observe(record, solution, step)
-        return fields, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}
+        """Number of yielding nodes, volume."""
+        return {}, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}

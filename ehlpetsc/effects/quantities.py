@@ -47,7 +47,7 @@ FIELDS = {
 }
 """Fields over (stored frame, node), in the order in which files list them."""
 
-STORED = [name for name, field in FIELDS.items() if not field.on_request]
+STORED = list(FIELDS)
 """Fields that a case stores unless it names its own."""
 
 STEP_SCALARS = {
@@ -178,7 +178,7 @@ def add_quantities(kind: type[Effect]) -> None:
     """Add the quantities of an effect of the user to the tables."""
     SCENES[kind.name] = kind.is_in
     FIELDS.update({name: replace(field, only=kind.name) for name, field in kind.fields.items()})
-    STORED.extend(name for name in kind.fields if name not in STORED and not FIELDS[name].on_request)
+    STORED.extend(name for name in kind.fields if name not in STORED)
     STEP_SCALARS.update({name: replace(scalar, only=kind.name) for name, scalar in kind.scalars.items()})
     OTHERS.update({f"surface/{name}": field for name, field in kind.surface.items()})
 

@@ -56,10 +56,6 @@ class Wear(BodyDepth):
     name = "wear"
     table = WEAR
     record = WearRecord
-    fields = {
-        "wear_1": Field("m", "wear depth of surface 1", on_request=True),
-        "wear_2": Field("m", "wear depth of surface 2", on_request=True),
-    }
     scalars = {
         "wear_volume": StepScalar(
             "m^2",
@@ -80,6 +76,5 @@ class Wear(BodyDepth):
         return record._replace(depth=self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
 
     def observe(self, record: WearRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Wear depths at the nodes and worn volume."""
-        fields, _ = super().observe(record, solution, step)
-        return fields, {"wear_volume": record.depth.volume}
+        """Worn volume."""
+        return {}, {"wear_volume": record.depth.volume}

@@ -89,7 +89,8 @@ def history_picture(path: str, result: PostResult) -> Figure:
         material = read_settings(loads.case).materials[surface]
         time, values = history_at(loads, surface, s, z * loads.a, QUANTUM * loads.p0)
         heat = temperature_history(loads, surface, s) if loads.is_heated(surface) else None
-    of_each = [damage(*values, material, count=name).damage for name in ("sx", "sz", "txz")]
+    sx, sz, txz = values
+    of_each = [damage(sx, sz, txz, material, count=name).damage for name in ("sx", "sz", "txz")]
     channel = int(np.argmax(of_each))  # of the maximum damage, which is counted
     cycles = rainflow(1e-9 * values[channel])
     rows = 1 if heat is None else 2
