@@ -68,6 +68,10 @@ class Index:
         content = read_index(self.path) if self.path.exists() else {}
         return content.get(self.kind, []) if of_any_case or content.get("case") == self.case.text else []
 
+    def replace(self, rows: list[dict]) -> None:
+        """Take other rows, which the next :meth:`write` stores."""
+        self.rows = rows
+
     def write(self) -> None:
         """Write the file."""
         content = {"title": self.case.title, **self.more, self.kind: self.rows, "case": self.case.text}

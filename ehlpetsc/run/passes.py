@@ -60,7 +60,7 @@ class Passes:
             restart = restart or self.comm.bcast(on_root(self.comm, self._unfinished))
         first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
         if first > 1:
-            self.index.rows = self.comm.bcast(on_root(self.comm, self._rows_before, first))
+            self.index.replace(self.comm.bcast(on_root(self.comm, self._rows_before, first)))
         simulation, status = None, ExitStatus.DONE
         for number in range(first, self.case.time.passes + 1):
             simulation = Simulation(self.case, self.comm, after=simulation, pass_number=number)

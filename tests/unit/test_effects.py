@@ -1,6 +1,5 @@
 """An effect with a scalar of state and a key is one file and one line; effects on oil and friction."""
 
-import importlib.util
 import re
 import shutil
 from dataclasses import replace
@@ -12,7 +11,6 @@ from support import CASES
 from support.driving import Scene
 from support.running import PYTHON, SCRIPT, called
 
-import ehlpetsc
 from ehlpetsc.effects.effect import Effect
 
 PAGE = CASES / "own_laws.md"
@@ -47,17 +45,20 @@ def test_law_and_effect_of_the_page_work_as_they_are(folder):
     assert "loss: in a half-width" in listed
 
 
+SATURATING = """
+import ehlpetsc, numpy, my_oil
+coarse = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}
+films = []
+for law in ({"fluid.law": "barus"}, {"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}):
+    case = ehlpetsc.load("table1_smooth.toml", coarse | law, laws=my_oil.LAWS)
+    films.append(ehlpetsc.solve(case).film_thickness)
+print(abs(films[1] / films[0] - 1.0).max())
+"""
+
+
 def test_law_of_the_page_that_saturates_far_above_p0_is_that_of_barus(folder):
-    spec = importlib.util.spec_from_file_location("my_oil", folder / "my_oil.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    coarse = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}
-    smooth = CASES / "table1_smooth.toml"
-    barus = ehlpetsc.solve(ehlpetsc.load(smooth, coarse | {"fluid.law": "barus"}))
-    law = coarse | {"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}
-    found = ehlpetsc.solve(ehlpetsc.load(smooth, law, laws=module.LAWS))
-    np.testing.assert_allclose(found.film_thickness, barus.film_thickness, rtol=0.01)
-    assert (found.film_thickness != barus.film_thickness).any()
+    """In a process of its own, as laws stay in the tables."""
+    assert 0.0 < float(call(folder, "-c", SATURATING)) < 0.01
 
 
 class Additive(Effect):
