@@ -176,12 +176,13 @@ class _Life:
     def _solve_pass(
         self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: Callable | None
     ) -> Pass:
-        from ehlpetsc.life.one_pass import run_pass, start
+        from ehlpetsc.life.one_pass import run_pass
+        from ehlpetsc.run.simulation import Simulation
 
         records = {}
         if self.history.rows:
             records = self.positions.records(self.history.bodies[-1], position, plastic)
-        simulation = start(self.case, comm, position, records)
+        simulation = Simulation(self.case, comm, pass_number=position + 1, records=records)
         return run_pass(simulation, records, pass_file(self.path, position, self.positions.count), stop)
 
     def _plastic(self) -> PlasticRecord | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,11 +17,6 @@ from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
-
-if TYPE_CHECKING:
-    from mpi4py import MPI
-
-    from ehlpetsc.case.tables import Case
 
 
 class OfBody(NamedTuple):
@@ -61,20 +56,11 @@ SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
-def start(case: Case, comm: MPI.Comm, position: int, records: dict[str, tuple]) -> Simulation:
-    """The simulation of a pass.
-
-    `position`: of surface 2, from 0, in units of `time.pass_shift`. `records`: of the bodies, after the
-    previous pass.
-    """
-    return Simulation(case, comm, pass_number=position + 1, records=records)
-
-
 def run_pass(simulation: Simulation, before: dict[str, tuple], file: Path, stop: Any = None) -> Pass:
     """Solve a pass to its end and evaluate it.
 
-    `before`: records as of :func:`start`. `file`: result file, replaced. Raises `NotConverged`, `Stopped`,
-    `OutputError`, `PostError`.
+    `before`: records of the bodies, after the previous pass. `file`: result file, replaced. Raises
+    `NotConverged`, `Stopped`, `OutputError`, `PostError`.
     """
     recorder = Recorder(simulation, file)
     with simulation.options, recorder:

@@ -38,8 +38,6 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
             if BEING_WRITTEN not in str(fault):
                 raise
             return h5py.File(path, "r", swmr=True, **options)
-    except PermissionError as fault:
-        raise OutputError(f"{path}: not read, {fault.strerror}") from fault
     except (OSError, ValueError, RuntimeError) as fault:
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import tomllib
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,6 @@ from ehlpetsc.run.forecast import (
     START_SECONDS,
     file_size,
     lambda_line,
-    run_time,
     steps,
     surface_lines,
     work_time,
@@ -134,13 +132,13 @@ def _variable(case: Case, s: Scales) -> list[str]:
 
 
 def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
-    seconds, passes = run_time(case, s, rough), case.time.passes if case.time else 1
+    seconds, passes = START_SECONDS + work_time(case, s, rough), case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
     return [
         f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
         f"{2 * s.nx + 1} unknowns",
         f"Expected run time on one rank: about {duration(seconds)}; "
-        f"result file: {_bytes(file_size(case, s))}{each}",
+        f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}",
     ]
 
 
@@ -158,12 +156,5 @@ def _series(case: Case) -> list[str]:
         size += file_size(member, scales)
     return [
         f"A series: {values}; below, the base case.",
-        f"All members on one rank: about {duration(seconds)}, result files: {_bytes(size)}",
+        f"All members on one rank: about {duration(seconds)}, result files: about {1e-6 * size:.1f} MB",
     ]
-
-
-def _bytes(count: float) -> str:
-    for unit, size in (("GB", 1e9), ("MB", 1e6)):
-        if count >= size:
-            return f"about {count / size:.1f} {unit}"
-    return f"about {math.ceil(count / 1e3)} kB"

@@ -31,11 +31,6 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
     return film / rq if rq > 0 else math.inf
 
 
-def run_time(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Expected wall clock time of all passes on one rank [s]."""
-    return START_SECONDS + work_time(case, s, rough)
-
-
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the iterations [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
