@@ -3,17 +3,8 @@
 >>> from ehlpetsc.life import run_life, read_life, run_regimes
 """
 
-from __future__ import annotations
+from ehlpetsc.life.driver import run_life
+from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.life.regimes import run_regimes
 
-from collections.abc import Callable
-from importlib import import_module
-
-_HOMES = {"LifeHistory": "history", "read_life": "history", "run_life": "driver", "run_regimes": "regimes"}
-__all__ = list(_HOMES)
-
-
-def __getattr__(name: str) -> Callable | None:
-    """Import at first use: reading a life needs no solver."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+__all__ = ["LifeHistory", "read_life", "run_life", "run_regimes"]
