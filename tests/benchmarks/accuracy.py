@@ -184,7 +184,7 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
             panel.loglog(base[cost], max(base[name], 1e-8), "k*", ms=11, label="the case as it is")
             panel.axhline(reference[name], color="0.5", ls="--", lw=0.8, label="uncertainty of the reference")
             panel.set_xlabel(label)
-            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 3, 5)))
+            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
             panel.xaxis.set_major_formatter("{x:g}")
             panel.xaxis.set_minor_locator(NullLocator())
             panel.grid(True, lw=0.3)
