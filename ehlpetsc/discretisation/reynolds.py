@@ -35,7 +35,7 @@ from ehlpetsc.discretisation.finite_volumes import (
 )
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
-from ehlpetsc.physics.laws import density, density_law, ln_viscosity, viscosity_law
+from ehlpetsc.physics.laws import density, ln_viscosity
 from ehlpetsc.physics.rheology import NEWTON, flow_law, flow_table, stress_pressure
 from ehlpetsc.physics.scales import Scales
 
@@ -84,14 +84,13 @@ class Reynolds:
 
         `temperatures` of the whole mesh [K], with heat: those to start from, and then the solved ones.
         """
-        q, h, fluid = q[self.input_nodes], h[self.input_nodes], inputs.fluid
-        s, of_density = self.scales, tuple(density_law(fluid))
+        q, h, s = q[self.input_nodes], h[self.input_nodes], self.scales
         rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
         at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
         if inputs.heat is not None:
-            inputs.heat.fill_properties(q, h, of_density, units, self.nodes, temperatures, at)
+            inputs.heat.fill_properties(q, h, inputs.density, units, self.nodes, temperatures, at)
             return at
-        nodal(q, h, tuple(viscosity_law(fluid)), of_density, (*units, 1.0 / fluid.viscosity), at)
+        nodal(q, h, inputs.viscosity, inputs.density, (*units, 1.0 / inputs.fluid.viscosity), at)
         return at
 
     def face_law(self, inputs: StepInputs) -> tuple:

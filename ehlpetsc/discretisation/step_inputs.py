@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import extrapolated
+from ehlpetsc.physics.laws import density_law, viscosity_law
 from ehlpetsc.physics.operation import Conditions
 
 Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
@@ -59,6 +61,16 @@ class StepInputs:
     contact: ContactModel | None = None
     heat: Any = None
     boundary_friction: float | np.ndarray = 0.0
+
+    @cached_property
+    def viscosity(self) -> tuple:
+        """Isothermal law of the viscosity, as compiled loops take it."""
+        return tuple(viscosity_law(self.fluid))
+
+    @cached_property
+    def density(self) -> tuple:
+        """Law of the density, as compiled loops take it."""
+        return tuple(density_law(self.fluid))
 
 
 def mirrored(value: Any) -> Any:

@@ -91,7 +91,7 @@ def expected_friction(fluid: Any, boundary_friction: float, scales: Scales, film
         return boundary_friction
     p = np.array([scales.load / (2.0 * scales.a)])
     with np.errstate(over="ignore"):
-        stress, _ = wall_shear(film, 0.0, viscosity(p, fluid)[0], fluid, scales.u1 - scales.u2, p)
+        stress, _ = wall_shear(np.array([film]), 0.0, viscosity(p, fluid)[0], fluid, scales.u1 - scales.u2, p)
     return float(min(abs(stress[0]) / p[0], MAX_FRICTION))
 
 

@@ -66,7 +66,7 @@ def shear_stresses(
 
 
 def wall_shear(
-    h: Any, gradient: Any, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray | float = np.inf
+    h: np.ndarray, gradient: np.ndarray | float, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`, isothermal.
 
@@ -81,16 +81,12 @@ def wall_shear(
         Shear stress [Pa] in the film at the walls of surface 2 (lower) and 1 (upper), at h > 0.
     """
     flow, limit = flow_law(fluid), getattr(fluid, "limiting_shear", None)
-    half = np.asarray(h * gradient / 2.0)
-    rise = stress_pressure(fluid)
-    arrays = np.broadcast_arrays(h, half, ln_eta, 1.0 + rise * p if rise else 1.0, p)
-    columns = [np.ravel(array).astype(float) for array in arrays]
-    viscous = np.full(len(columns[0]), fluid.viscosity * abs(sliding))
-    mean = np.zeros(len(columns[0]))
+    half, mean = 0.5 * h * gradient, np.zeros_like(h)
     if sliding:
-        table = flow_table(flow.kind, flow.n, flow.a)
-        _mean_stress(*columns, viscous, flow, np.inf if limit is None else float(limit), table, mean)
-    mean = np.sign(sliding) * mean.reshape(arrays[0].shape)
+        table, viscous = flow_table(flow.kind, flow.n, flow.a), fluid.viscosity * abs(sliding)
+        constants = stress_pressure(fluid), viscous, flow, np.inf if limit is None else float(limit), table
+        _mean_stress(h, half, ln_eta, p, *constants, mean)
+    mean *= np.sign(sliding)
     return mean - half, mean + half
 
 
@@ -99,17 +95,17 @@ def _mean_stress(
     h: np.ndarray,
     half: np.ndarray,
     ln_eta: np.ndarray,
-    grown: np.ndarray,
     p: np.ndarray,
-    viscous: np.ndarray,
+    rise: float,
+    viscous: float,
     law: FlowLaw,
     limit: float,
     table: np.ndarray,
     out: np.ndarray,
 ) -> None:
     for i in range(len(h)):
-        flow = FlowLaw(law.kind, law.stress * grown[i], law.n, law.a)
-        x = np.log(viscous[i] / (h[i] * flow.stress)) + ln_eta[i]
+        flow = FlowLaw(law.kind, law.stress * (1.0 + rise * p[i]), law.n, law.a)
+        x = np.log(viscous / (h[i] * flow.stress)) + ln_eta[i]
         if flow.kind != NEWTON:
             x -= stress_spread(abs(half[i]) / flow.stress, x, table)
         out[i] = flow_stress(x, flow, limit * p[i] if limit < np.inf else limit)[0]

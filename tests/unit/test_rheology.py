@@ -33,9 +33,9 @@ def test_eyring_factor(sigma, zeta, factor):
 
 def test_wall_shear():
     fluid = OIL
-    ln_eta = np.array(np.log(0.5 / fluid.viscosity))
-    walls = traction.wall_shear(np.array(0.2e-6), np.array(2e14), ln_eta, fluid, 1.25)
-    np.testing.assert_allclose(walls, [-18.285163e6, 21.714837e6], rtol=1e-7)
+    ln_eta = np.log([0.5 / fluid.viscosity])
+    (lower,), (upper,) = traction.wall_shear(np.array([0.2e-6]), 2e14, ln_eta, fluid, 1.25, np.array([1e9]))
+    np.testing.assert_allclose((lower, upper), [-18.285163e6, 21.714837e6], rtol=1e-7)
 
 
 @pytest.mark.parametrize("stress, limit", [(1e6, 5e7), (5e7, 5e7), (9e8, 5e7), (1e6, 2e6)])
@@ -106,7 +106,8 @@ def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
     state = FILM, gradient, 1.0 / ETA, 1.0, STRESS, sliding / STRESS
     (mobility, *_), _ = rheology.tabulated_mobilities(*state, table)
     fluid = SimpleNamespace(viscosity=ETA, carreau_stress=STRESS, carreau_exponent=n, carreau_width=a)
-    lower, upper = traction.wall_shear(FILM, gradient, np.array(0.0), fluid, sliding)
+    zero = np.zeros(1)
+    (lower,), (upper,) = traction.wall_shear(np.full(1, FILM), gradient, zero, fluid, sliding, zero)
     z = (np.arange(2000) + 0.5) / 2000 - 0.5
     gamma = ETA * sliding / FILM / STRESS
     stress = 0.5 * (lower + upper) / STRESS
