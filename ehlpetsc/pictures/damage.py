@@ -1,8 +1,8 @@
-"""Pictures of post-processing as PNG and SVG: maps of damage, its distribution over asperities."""
+"""Pictures of post-processing as PNG and SVG: maps of damage, its distribution over asperities, stresses."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,18 +10,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import FuncFormatter
 
-from ehlpetsc.base.errors import PostError
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.stresses import along_body, field_picture, history_picture
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
-from ehlpetsc.results.output_guard import PICTURES, check_derived
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.prepare import read_settings
+from ehlpetsc.post.stresses.half_plane import stress, von_mises
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 
 FORMATS = ("png", "svg")
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
 SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, as in the paper
+FIELD_DEPTH = 1.5  # half-widths
+STRESSES = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$", r"$\sigma_{vM}$")
 MIN_TICK_DISTANCE = 0.09  # of the depth axis
 CRITERIA = {
     "fatemi-socie": "Fatemi-Socie",
@@ -48,42 +50,32 @@ def draw(inputs: Sequence[str], outputs: Sequence[str], folder: str) -> list[str
         Path(folder).mkdir(parents=True, exist_ok=True)
     for path, output in zip(inputs, outputs, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
-        names += _of_one(path, PostResult(output), stem)
+        for kind, figure in pictures(path, PostResult(output)):
+            files = [f"{stem}.{kind}.{ending}" for ending in FORMATS]
+            style.save(figure, *files)
+            names += files
     return names
 
 
-def _save(figure: Figure, stem: str | Path) -> list[str]:
-    """Write all formats; returns their names."""
-    names = [f"{stem}.{kind}" for kind in FORMATS]
-    for name in names:
-        check_derived(Path(name), (), PICTURES, "--pictures")
-    style.save(figure, *names)
-    return names
-
-
-def _of_one(path: str, result: PostResult, stem: Path) -> list[str]:
-    names = []
+def pictures(path: str, result: PostResult) -> Iterator[tuple[str, Figure]]:
+    """Names and pictures of a result file and its post-processing result."""
     for surface in result.surfaces:
-        if result.complete[surface].any():
-            names += _save(damage_picture(result, surface), f"{stem}.damage_{surface}")
+        if result.complete[surface].any() and result.z.size > 1:
+            yield f"damage_{surface}", damage_picture(result, surface)
             if result.criteria:
-                names += _save(criteria_picture(result, surface), f"{stem}.criteria_{surface}")
+                yield f"criteria_{surface}", criteria_picture(result, surface)
     if result.height.size:
-        names += _save(depth_picture(result), f"{stem}.exceedance")
-    names += _save(field_picture(path, result), f"{stem}.stress")
-    return names + _save(history_picture(path, result), f"{stem}.history")
+        yield "exceedance", depth_picture(result)
+    yield "stress", field_picture(path, result)
 
 
 def damage_picture(result: PostResult, surface: str) -> Figure:
     """Damage under the whole profile (figure 8 of Holmes et al. 2005), with [heat] the temperatures."""
-    s, z = result.worst_point(surface)
+    (s, z), damage = result.worst_point(surface), result.damage[surface]
     place = f"{along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})"
-    maximum = np.nanmax(result.damage[surface])
-    title = [
-        f"surface {surface}, {_ratio(result)}, {rule_name(result)}",
-        f"maximum damage {maximum:.2g} at {place}",
-    ]
-    return draw_maps([Map("", result, result.damage[surface])], surface, title)
+    title = f"surface {surface}, {_ratio(result)}, {rule_name(result)}"
+    worst = f"maximum damage {np.nanmax(damage):.2g} at {place}"
+    return draw_maps([Map("", result, damage)], surface, [title, worst])
 
 
 def criteria_picture(result: PostResult, surface: str) -> Figure:
@@ -109,18 +101,19 @@ def draw_maps(
     if heated:
         temperatures(panels[1], first, surface)
     used = [one.values[:, one.result.complete[surface]] for one in maps if one.is_damage]
-    levels, contours = decades(max(np.nanmax(values) for values in used)), []
+    highest = max(np.nanmax(values) for values in used)
+    top = int(np.ceil(np.log10(highest))) if highest > 0.0 else 0
+    decades, damaged = np.arange(top - DECADES, top + 1), []
     for row, one in zip(rows, maps, strict=True):
         row.set_title(one.label, fontsize="small", loc="left")
+        drawn = draw_map(row, one, surface, decades, deepest)
         if one.is_damage:
-            drawn = damage_map(row, one, surface, levels, deepest)
-            contours += [drawn] if drawn else []
-        elif drawn := utilisation_map(row, one, surface):
+            damaged.append(row)
+            contours = drawn
+        else:
             figure.colorbar(drawn, ax=row, pad=0.02)
-    if contours:
-        shown = [row for row, one in zip(rows, maps, strict=True) if one.is_damage]
-        powers = FuncFormatter(lambda power, _: f"$10^{{{power:.0f}}}$")
-        figure.colorbar(contours[0], ax=shown, label="damage D of one pass", pad=0.02, format=powers)
+    powers = FuncFormatter(lambda power, _: f"$10^{{{power:.0f}}}$")
+    figure.colorbar(contours, ax=damaged, label="damage D of one pass", pad=0.02, format=powers)
     rows[-1].set_xlim(*stretch([one.result for one in maps], surface, longest))
     rows[-1].set_xlabel(f"along surface {surface} [mm]")
     figure.align_ylabels(list(axes[:, 0]))
@@ -128,23 +121,26 @@ def draw_maps(
     return figure
 
 
+def along_body(result: PostResult, surface: str, s: np.ndarray) -> np.ndarray:
+    """Abscissa [mm] of the profile at body points s [m]: distance from the point at the inlet at time 0."""
+    attrs = result.attrs
+    return 1e3 * (s - attrs["outlet"] if attrs[f"speed_{surface}"] < 0.0 else attrs["inlet"] - s)
+
+
 def stretch(results: list[PostResult], surface: str, longest: float = np.inf) -> tuple[float, float]:
     """Ends [mm] of the points that passed in all results, or of the first `longest` half-widths of them."""
     ends = [np.sort(along_body(one, surface, one.s[one.complete[surface]][[0, -1]])) for one in results]
     low, high = max(low for low, _ in ends), min(high for _, high in ends)
-    if high <= low:
-        raise PostError(f"no point of surface {surface} passed the whole contact in all of the results")
     return low, min(high, low + 1e3 * results[0].a * longest)
 
 
 def profile(axes: Axes, result: PostResult, surface: str) -> None:
-    """Draw the profile in view, heights in µm over mm."""
+    """Draw the profile, heights in µm over mm."""
     axes.set_ylabel("z [µm]")
     axes.axhline(0.0, color="0.8", lw=0.6)
     if surface in result.profiles:
         s, z = result.profiles[surface]
-        shown = (s >= result.s[result.complete[surface]][0]) & (s <= result.s[result.complete[surface]][-1])
-        axes.plot(along_body(result, surface, s[shown]), 1e6 * z[shown], color=style.DARK, lw=0.8)
+        axes.plot(along_body(result, surface, s), 1e6 * z, color=style.DARK, lw=0.8)
 
 
 def temperatures(axes: Axes, result: PostResult, surface: str) -> None:
@@ -153,65 +149,68 @@ def temperatures(axes: Axes, result: PostResult, surface: str) -> None:
     x = along_body(result, surface, result.s[passed])
     bulk = temperature.highest - temperature.flash
     axes.plot(x, temperature.flash[passed], color=style.SECOND, lw=0.8, label="flash")
-    axes.plot(
-        x, (temperature.mean - bulk)[passed], "--", color=style.DARK, lw=0.8, label="mean in\nthe contact"
-    )
+    mean = (temperature.mean - bulk)[passed]
+    axes.plot(x, mean, "--", color=style.DARK, lw=0.8, label="mean in\nthe contact")
     axes.set_ylabel("temperature\nover bulk [K]")
     axes.set_ylim(bottom=0.0)
     style.legend_beside(axes)
 
 
-def decades(maximum: float) -> np.ndarray | None:
-    """Integer powers of ten up to above the maximum damage; None without damage."""
-    if not (np.isfinite(maximum) and maximum > 0.0):
-        return None
-    top = int(np.ceil(np.log10(maximum)))
-    return np.arange(top - DECADES, top + 1)
+def draw_map(axes: Axes, one: Map, surface: str, decades: np.ndarray, deepest: float) -> ContourSet:
+    """Draw contours of log10 D or of the utilisation of a fatigue limit, with a line at 1.
 
-
-def damage_map(
-    axes: Axes, one: Map, surface: str, levels: np.ndarray | None, deepest: float = np.inf
-) -> ContourSet | None:
-    """Draw contours of log10 D; returns them."""
-    x, z, values = _under_surface(axes, one, surface, deepest)
-    if levels is None or len(z) < 2:
-        text = "no damage" if levels is None else "one depth"
-        axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center")
-        return None
-    shown = np.log10(np.maximum(values, 10.0 ** (levels[0] - 1.0)))
-    return axes.contourf(x, z, shown, levels=levels, cmap="inferno_r", extend="min")
-
-
-def utilisation_map(axes: Axes, one: Map, surface: str) -> ContourSet | None:
-    """Draw contours of the utilisation of a fatigue limit and a line at 1; returns them."""
-    x, z, values = _under_surface(axes, one, surface)
-    if len(z) < 2:
-        return None
-    levels = MaxNLocator(10).tick_values(0.0, np.quantile(values, 0.999))
-    if values.min() < 1.0 < values.max():
-        axes.contour(x, z, values, levels=[1.0], colors="white", linewidths=0.8)
-    return axes.contourf(x, z, values, levels=levels, cmap="viridis", extend="max", zorder=0)
-
-
-def _under_surface(
-    axes: Axes, one: Map, surface: str, deepest: float = np.inf
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Set a depth axis in z/a and µm that stretches the layer near the surface; returns abscissae, ordinates,
-    values of the points that passed."""
+    The axis of the depth, in z/a and µm, stretches the layer near the surface.
+    """
     result, passed = one.result, one.result.complete[surface]
-    count = np.count_nonzero(result.z <= max(deepest, result.z[:2].max()))
-    z, ticks = np.sqrt(result.z[:count]), [0]
+    x = along_body(result, surface, result.s[passed])
+    count = np.count_nonzero(result.z <= max(deepest, result.z[1]))
+    z, values, ticks = np.sqrt(result.z[:count]), one.values[:count, passed], [0]
     for k, root in enumerate(z):
-        if root - z[ticks[-1]] >= MIN_TICK_DISTANCE * np.ptp(z) > 0.0:
+        if root - z[ticks[-1]] >= MIN_TICK_DISTANCE * np.ptp(z):
             ticks.append(k)
     axes.set_yticks(z[ticks], [f"{depth:g}" for depth in result.z[ticks]])
-    axes.set_ylabel("z/a")
-    if count > 1:
-        axes.set_ylim(z[-1], z[0])
-        beside = axes.secondary_yaxis("right")
-        beside.set_yticks(z[ticks], [f"{1e6 * depth * result.a:.3g}" for depth in result.z[ticks]])
-        beside.set_ylabel("z [µm]")
-    return along_body(result, surface, result.s[passed]), z, one.values[:count, passed]
+    axes.set(ylabel="z/a", ylim=(z[-1], z[0]))
+    beside = axes.secondary_yaxis("right")
+    beside.set_yticks(z[ticks], [f"{1e6 * depth * result.a:.3g}" for depth in result.z[ticks]])
+    beside.set_ylabel("z [µm]")
+    if one.is_damage:
+        shown = np.log10(np.maximum(values, 10.0 ** (decades[0] - 1.0)))
+        return axes.contourf(x, z, shown, levels=decades, cmap="inferno_r", extend="min")
+    if values.min() < 1.0 < values.max():
+        axes.contour(x, z, values, levels=[1.0], colors="white", linewidths=0.8)
+    return axes.contourf(x, z, np.minimum(values, np.quantile(values, 0.999)), 10, zorder=0)
+
+
+def field_picture(path: str, result: PostResult) -> Figure:
+    """Pressure, and stresses in the solid of the result's main surface, at the middle stored frame.
+
+    The colours span all but the highest thousandth, because peaks below single asperities would leave all
+    other values in one colour.
+    """
+    surface = result.main
+    with Loads(path, result.attrs["settings"].splitlines()) as loads:
+        frame = loads.time.size // 2
+        p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
+        nu = read_settings(loads.case).materials[surface].poisson_ratio
+        z = FIELD_DEPTH * np.linspace(0.0, 1.0, 121) ** 2
+        stresses = stress(loads.x, z * loads.a, p, q, nu)
+        x, time, a = loads.x / loads.a, loads.time[frame], loads.a
+    figure, (top, *rows) = style.new_figure(5, 1, (8.0, 9.0), sharex=True, height_ratios=(0.7, 1, 1, 1, 1))
+    top.plot(x, 1e-9 * p, color=style.SINGLE, lw=0.9)
+    top.set_ylabel("p [GPa]")
+    for row, name, values in zip(rows, STRESSES, (*stresses, von_mises(*stresses, nu)), strict=True):
+        limit = 1e-9 * np.quantile(np.abs(values), 0.999)
+        clipped, colours = np.clip(1e-9 * values, -limit, limit), dict(cmap="RdBu_r", vmin=-limit, vmax=limit)
+        figure.colorbar(row.contourf(x, z, clipped, 25, **colours), ax=row, label="GPa", pad=0.01)
+        row.set(ylim=(z[-1], z[0]), ylabel="z/a")
+        row.set_title(name, fontsize="small", loc="left")
+    k, j = np.unravel_index(values.argmax(), values.shape)
+    row.plot(x[j], z[k], "x", color=style.DARK, ms=6)
+    depth = f"z/a = {z[k]:.3g}, {1e6 * z[k] * a:.3g} µm deep"
+    row.set_title(f"{name}, maximum {1e-9 * values[k, j]:.3g} GPa at {depth}", fontsize="small", loc="left")
+    row.set_xlabel(style.ACROSS)
+    style.set_title(figure, f"solid of surface {surface}, {1e6 * time:.4g} µs")
+    return figure
 
 
 def depth_picture(result: PostResult) -> Figure:
@@ -244,4 +243,4 @@ def _ratio(result: PostResult) -> str:
 
 def rule_name(result: PostResult) -> str:
     """Rule by which the elastic range enters the cyclic stress-strain curve."""
-    return f'strain = "{result.attrs.get("strain", "direct")}"'
+    return f'strain = "{result.attrs["strain"]}"'

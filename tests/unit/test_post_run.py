@@ -13,7 +13,6 @@ from support import ROOT, is_line_with, refused
 from support.made_loads import Scene, write
 
 from ehlpetsc.pictures import damage as gallery
-from ehlpetsc.pictures import stresses
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
@@ -143,7 +142,7 @@ def test_pictures_of_one_result_and_of_two_slide_roll_ratios(tmp_path, monkeypat
     ]
     monkeypatch.setattr(gallery, "FORMATS", ("svg",))
     assert main([str(paths[0]), "--pictures", str(tmp_path / "out")]) == main([str(paths[1])]) == 0
-    kinds = ("damage_2", "damage_1", "exceedance", "stress", "history")
+    kinds = ("damage_2", "damage_1", "exceedance", "stress")
     assert {path.name for path in (tmp_path / "out").iterdir()} == {f"0.5.{kind}.svg" for kind in kinds}
     figures.main([*map(str, tmp_path.glob("*.post.h5")), "-o", str(tmp_path / "paper")])
     drawn = {path.name for path in (tmp_path / "paper").iterdir()}
@@ -157,9 +156,9 @@ def judged(scene, tmp_path_factory):
     residual = "residual_stress = [[0.0, -4e8], [1.0, 0.0]]"
     path = write(folder / "a.h5", scene, depths=(0.0, 0.5), post=residual)
     argv = [str(path), "--criterion", "dang-van", "fatemi-socie"]
-    save = gallery._save
+    pictures = gallery.pictures
     with pytest.MonkeyPatch.context() as patch:  # of the pictures that of the criteria alone
-        patch.setattr(gallery, "_save", lambda *one: save(*one) if "criteria" in one[1] else [])
+        patch.setattr(gallery, "pictures", lambda *one: (p for p in pictures(*one) if "criteria" in p[0]))
         assert main([*argv, "--surface", "2", "--pictures", str(folder)]) == 0
     assert (folder / "a.criteria_2.png").is_file()
     return folder / "a.post.h5"
@@ -220,16 +219,14 @@ def test_pictures_use_the_body_abscissa(result, capsys):
     np.testing.assert_allclose(line[:, 1], 1e6 * np.interp(inlet - 1e-3 * line[:, 0], profile_s, profile_z))
     found.attrs["speed_2"] = -1.0
     outlet = found.attrs["outlet"]
-    assert stresses.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
+    assert gallery.along_body(found, "2", outlet + 2e-3) == pytest.approx(2.0)
 
 
 def test_depth_of_the_largest_von_mises_stress_is_marked(result):
     """Under Hertz's pressure with friction 0.05 and a small ripple: at 0.79 a in a smooth contact."""
     assert main([str(result)]) == 0
     found = PostResult(result.with_name("run.post.h5"))
-    axes = next(
-        a for a in stresses.field_picture(str(result), found).axes if "maximum" in a.get_title("left")
-    )
+    axes = next(a for a in gallery.field_picture(str(result), found).axes if "maximum" in a.get_title("left"))
     (mark,) = axes.lines
     (x,), (z,) = mark.get_data()
     assert 0 < z < 1.0 and abs(x) < 1.0 and f"{1e6 * z * found.a:.3g} µm deep" in axes.get_title("left")
