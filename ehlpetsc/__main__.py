@@ -18,8 +18,8 @@ from typing import NamedTuple, NoReturn
 import ehlpetsc.base.environment as packages
 from ehlpetsc import __version__
 from ehlpetsc.base.environment import NUMERICS, READING
-from ehlpetsc.base.errors import ExitStatus, UsageError
-from ehlpetsc.run.stop import EarlyStop
+from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.run.stop import StopRequest
 
 DRAWING = (*NUMERICS, "matplotlib")
 
@@ -57,7 +57,6 @@ def main(words: list[str] | None = None) -> int:
     words = sys.argv[1:] if words is None else words
     if not sys.warnoptions:  # warnings of numpy are for developers: python3 -W default shows them
         warnings.simplefilter("ignore")
-    stop = EarlyStop()
     try:
         status = _start(words)
         sys.stdout.flush()
@@ -67,7 +66,7 @@ def main(words: list[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = ExitStatus.STOPPED
     except BaseException as error:  # otherwise the other ranks would wait for ever
-        status = _after_error(error, stop)
+        status = _after_error(error)
         mpi = sys.modules.get("mpi4py.MPI")
         if mpi and mpi.COMM_WORLD.size > 1:
             mpi.COMM_WORLD.Abort(status)
@@ -114,20 +113,23 @@ def _run_script(words: list[str]) -> NoReturn:
 
 def _run(words: list[str]) -> int:
     """Run a case with PETSc on all ranks."""
-    missing = packages.prepare()
-    if missing:
-        return refuse(packages.advice(missing, words))
     from ehlpetsc.run.cli import parse, run
 
     try:
         chosen = parse(words)
-    except UsageError as error:
+        stop = StopRequest(chosen.time_limit)  # before the imports, which take a second
+        missing = packages.prepare()
+        if missing:
+            return refuse(packages.advice(missing, words))
+        if "-help" in [*chosen.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
+            _print(help_text())
+            if chosen.case is None:
+                return ExitStatus.DONE
+        return run(chosen, stop)
+    except CaseError as error:
+        return refuse(str(error))
+    except (OutputError, UsageError) as error:
         return refuse(f"ehlpetsc: {error}")
-    if "-help" in [*chosen.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
-        _print(help_text())
-        if chosen.case is None:
-            return ExitStatus.DONE
-    return run(chosen)
 
 
 def help_text() -> str:
@@ -162,15 +164,13 @@ def refuse(text: str) -> int:
     return ExitStatus.BAD_INPUT
 
 
-def _after_error(error: BaseException, stop: EarlyStop) -> int:
-    """Report an error, or the stop that caused it; returns the exit status."""
-    if stop.is_requested or isinstance(error, KeyboardInterrupt):  # an import may have raised another error
-        if packages.first_rank():
-            print("ehlpetsc: stopped; files written before are complete", file=sys.stderr)
+def _after_error(error: BaseException) -> int:
+    """Report an error, or Ctrl-C in a command; returns the exit status."""
+    if isinstance(error, KeyboardInterrupt):
+        refuse("ehlpetsc: stopped; files written before are complete")
         return ExitStatus.STOPPED
     traceback.print_exception(error)
     sys.stdout.flush()
-    sys.stderr.flush()
     return ExitStatus.BUG
 
 

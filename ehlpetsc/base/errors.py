@@ -34,8 +34,11 @@ class CaseError(Exception):
     """The case cannot be run; `faults` are all faults, one message each."""
 
     def __init__(self, faults: list[str]) -> None:
-        super().__init__("\n".join(faults))
-        self.faults = list(faults)
+        super().__init__(list(faults))
+        self.faults: list[str] = self.args[0]
+
+    def __str__(self) -> str:
+        return "\n".join(self.faults)
 
 
 class ProfileError(Exception):

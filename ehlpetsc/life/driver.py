@@ -97,7 +97,7 @@ def run_life(
     lock = Lock(path)
     on_root(comm, lock.acquire)
     try:
-        history = comm.bcast(on_root(comm, stored_or_new, case, path, overwrite, after))
+        history = on_root(comm, stored_or_new, case, path, overwrite, after)
         life = _Life(case, path, comm, history, show or (lambda text: None), unresolved)
         return life.run(stop, most)
     finally:

@@ -13,7 +13,6 @@ import itertools
 import math
 import os
 import re
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -108,9 +107,7 @@ def _long(word: str) -> str:
 
 
 def _without_case(words: list[str]) -> tuple[str | None, list[str]]:
-    cases = [
-        k for k, word in enumerate(words) if word.endswith(".toml") and words[k - 1 : k] != ["-options_file"]
-    ]
+    cases = [k for k, word in enumerate(words) if word.endswith(".toml")]
     if not cases and words and not words[0].startswith("-"):
         cases = [0]
     if len(cases) > 1:
@@ -131,56 +128,43 @@ def _check(word: str, value: str, before: str, case: str | None) -> None:
     if re.match(r"[^-]|-\d", word) and not before.startswith("-"):
         reason = "neither an option nor a value; a command comes first"
         raise UsageError(f"{word}: {reason}: ehlpetsc {word} {case}")
-    is_long = word.startswith("--") and name[:1].isalpha()
-    cutoff = 0.6 if is_long else 0.9
-    close = difflib.get_close_matches(f"--{name}", map(_long_name, OPTIONS), n=1, cutoff=cutoff)
+    close = difflib.get_close_matches(f"--{name}", map(_long_name, OPTIONS), cutoff=0.8)
     if close and word.startswith("-"):
         raise UsageError(f"{word}: unknown option; did you mean {close[0]}?")
-    if is_long:
+    if word.startswith("--") and name[:1].isalpha():
         raise UsageError(f"{word}: unknown option; PETSc's have one dash, ehlpetsc -h lists the program's")
     if word == "-options_file" and not os.path.isfile(value):
         raise UsageError(f"-options_file {value}: no such file")
 
 
-def run(chosen: argparse.Namespace) -> int:
-    """Start PETSc, run the case on all ranks; returns the exit status."""
+def run(chosen: argparse.Namespace, stop: StopRequest) -> int:
+    """Start PETSc, run the case on all ranks; returns the exit status. CaseError, OutputError, UsageError."""
     import petsc4py
 
     try:
         petsc4py.init(["ehlpetsc", NO_SIGNAL_HANDLER, *chosen.petsc])
     except RuntimeError as error:  # PETSc.Error, which cannot be imported before initialisation
-        return _refuse(0, [f"ehlpetsc: PETSc cannot begin with {' '.join(chosen.petsc)}: {error}"])
+        raise UsageError(f"PETSc cannot begin with {' '.join(chosen.petsc)}: {error}") from None
     from mpi4py import MPI
     from petsc4py import PETSc
 
     options = PETSc.Options()
     options.delValue(NO_SIGNAL_HANDLER)  # not an option of the run
     try:
-        return _run(chosen, MPI.COMM_WORLD, options)
-    except CaseError as error:
-        faults = error.faults
-    except (OutputError, UsageError) as error:
-        faults = [f"ehlpetsc: {error}"]
-    for name in options.getAll():
-        options.hasName(name)  # newer releases of PETSc would list unused options as well
-    return _refuse(MPI.COMM_WORLD.rank, faults)
+        return _run(chosen, MPI.COMM_WORLD, options, stop)
+    except (CaseError, OutputError, UsageError):
+        for name in options.getAll():
+            options.hasName(name)  # newer releases of PETSc would list unused options as well
+        raise
 
 
-def _refuse(rank: int, lines: list[str]) -> int:
-    if rank == 0:
-        print("\n".join(lines), file=sys.stderr, flush=True)
-    return ExitStatus.BAD_INPUT
-
-
-def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options) -> int:
+def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, stop: StopRequest) -> int:
     """Run a case file on all ranks; with -help print PETSc's options."""
+    from ehlpetsc.case.loading import load
+    from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.simulation import Simulation
-    from ehlpetsc.run.stop import StopRequest
 
-    stop = StopRequest(chosen.time_limit)
-    if chosen.case is None:
-        return ExitStatus.DONE
-    case = _read_case(comm, chosen)
+    case = on_root(comm, load, chosen.case, chosen.set)
     if options.hasName("help"):
         Simulation(case, comm)  # PETSc's objects print their options when they are created
         return ExitStatus.DONE
@@ -201,22 +185,6 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options) -> 
 
         return Passes(comm, case, output, stop).run(restart, overwrite)
     return _run_single(comm, case, stop, output, restart, overwrite)
-
-
-def _read_case(comm: MPI.Comm, chosen: argparse.Namespace) -> Case:
-    """Case on every rank, read on rank 0."""
-    from ehlpetsc.case.loading import load
-
-    case = faulty = None
-    if comm.rank == 0:
-        try:
-            case = load(chosen.case, chosen.set)
-        except CaseError as error:
-            faulty = error.faults
-    case, faulty = comm.bcast((case, faulty))
-    if faulty:
-        raise CaseError(faulty)
-    return case
 
 
 def _run_single(

@@ -57,10 +57,10 @@ class Passes:
 
     def _run(self, restart: Path | None, overwrite: bool) -> ExitStatus:
         if not overwrite:
-            restart = restart or self.comm.bcast(on_root(self.comm, self._unfinished))
-        first = self.comm.bcast(on_root(self.comm, pass_of, restart)) if restart else 1
+            restart = restart or on_root(self.comm, self._unfinished)
+        first = on_root(self.comm, pass_of, restart) if restart else 1
         if first > 1:
-            self.index.replace(self.comm.bcast(on_root(self.comm, self._rows_before, first)))
+            self.index.replace(on_root(self.comm, self._rows_before, first))
         simulation, status = None, ExitStatus.DONE
         for number in range(first, self.case.time.passes + 1):
             simulation = Simulation(self.case, self.comm, after=simulation, pass_number=number)

@@ -10,7 +10,7 @@ import time as clock
 from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.run.stop import StopRequest
 
 if TYPE_CHECKING:
@@ -21,16 +21,16 @@ POLL_SECONDS = 0.01  # between two polls of a waiting rank
 
 
 def on_root(comm: MPI.Comm, action: Callable, *arguments: Any) -> Any:
-    """Result of `action` on rank 0, None on the others; its OutputError is raised on every rank."""
+    """Result of `action` on rank 0, on every rank; so is its CaseError or OutputError."""
     answer = fault = None
     if comm.rank == 0:
         try:
             answer = action(*arguments)
-        except OutputError as error:
-            fault = str(error)
-    fault = comm.bcast(fault)
+        except (CaseError, OutputError) as error:
+            fault = error
+    answer, fault = comm.bcast((answer, fault))
     if fault:
-        raise OutputError(fault)
+        raise fault
     return answer
 
 

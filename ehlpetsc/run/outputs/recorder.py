@@ -69,7 +69,7 @@ class Recorder:
         if self.output is None:
             return restart
         files = self.output, self.restart
-        return self.comm.bcast(on_root(self.comm, self._lock_files, *files, restart, overwrite))
+        return on_root(self.comm, self._lock_files, *files, restart, overwrite)
 
     def _lock_files(self, output: Path, own: Path, restart: Path | None, overwrite: bool) -> Path | None:
         """Lock the result and its `own` restart file; the restart file to resume from."""
