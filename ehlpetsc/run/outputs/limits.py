@@ -5,6 +5,7 @@ The messages follow from the totals over all steps and are also stored in the re
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -32,108 +33,80 @@ def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str
     """
     if "p_max" not in totals:  # no step was taken
         return []
-    messages = [_yield(case, totals), _mesh(rough, scales), _heat(case, scales, totals)]
-    messages += [_layer(case.contact, totals)]
-    if case.fluid:
-        messages += [_friction(case, totals), _viscosity(case.fluid, totals)]
-        messages += [_balance(case, totals), _molecules(totals)]
-    return [message for message in messages if message]
+    of_oil = _of_oil(case, totals) if case.fluid else []
+    return [*_of_solids(case.contact, totals), *_mesh(rough, scales), *_heat(case, scales, totals), *of_oil]
 
 
-def _yield(case: Case, totals: dict[str, float]) -> str | None:
-    if case.contact.yield_pressure is not None or totals["p_max"] <= ASPERITY_YIELD_PRESSURE:
-        return None
-    return (
-        f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
-        f"{1e-9 * ASPERITY_YIELD_PRESSURE:g} to 8 GPa, and these solids are elastic; "
-        "in mixed contact yield_pressure lets them flow"
-    )
-
-
-def _layer(contact: Any, totals: dict[str, float]) -> str | None:
+def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
+    if contact.yield_pressure is None and totals["p_max"] > ASPERITY_YIELD_PRESSURE:
+        yield (
+            f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "
+            f"{1e-9 * ASPERITY_YIELD_PRESSURE:g} to 8 GPa, and these solids are elastic; "
+            "in mixed contact yield_pressure lets them flow"
+        )
     height = contact.asperity_height
-    if height is None or totals["h_min"] - contact.adsorbed_film >= FLATTENED * height:
-        return None
-    return (
-        f"layer: flattened from {1e9 * height:.3g} nm to a film of {1e9 * totals['h_min']:.2g} nm: "
-        "friction and load on the solids depend on the mesh there; a longer short_cutoff with "
-        'asperity_height = "measured" gives a thicker layer'
-    )
+    if height is not None and totals["h_min"] - contact.adsorbed_film < FLATTENED * height:
+        yield (
+            f"layer: flattened from {1e9 * height:.3g} nm to a film of {1e9 * totals['h_min']:.2g} nm: "
+            "friction and load on the solids depend on the mesh there; a longer short_cutoff with "
+            'asperity_height = "measured" gives a thicker layer'
+        )
 
 
-def _heat(case: Case, scales: Scales, totals: dict[str, float]) -> str | None:
+def _heat(case: Case, scales: Scales, totals: dict[str, float]) -> Iterator[str]:
     if "friction_coefficient" not in totals or case.heat is not None or case.motion is None:
-        return None
+        return
     from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
 
     flash = flash_temperature(abs(totals["friction_coefficient"]), scales)
-    if flash <= MAX_ISOTHERMAL_FLASH:
-        return None
-    return (
-        f"heat: the run is isothermal, but the flash temperature of its friction is about {flash:.0f} K by "
-        "Blok's formula for steel; [heat] computes with temperatures"
-    )
+    if flash > MAX_ISOTHERMAL_FLASH:
+        yield (
+            f"heat: the run is isothermal, but the flash temperature of its friction is about {flash:.0f} K "
+            "by Blok's formula for steel; [heat] computes with temperatures"
+        )
 
 
-def _friction(case: Case, totals: dict[str, float]) -> str | None:
+def _of_oil(case: Case, totals: dict[str, float]) -> Iterator[str]:
     coefficient = abs(totals.get("friction_coefficient", 0.0))
-    if coefficient <= max(MAX_OIL_FRICTION, case.contact.boundary_friction):
-        return None
-    return (
-        f"friction: a coefficient of {coefficient:.3g}, but oils bear a shear stress of about 0.1 of their "
-        "pressure; eyring_stress, carreau_stress or limiting_shear in [fluid] bounds it"
-    )
-
-
-def _viscosity(fluid: Any, totals: dict[str, float]) -> str | None:
-    pressure = totals["oil_pressure"]
+    if coefficient > max(MAX_OIL_FRICTION, case.contact.boundary_friction):
+        yield (
+            f"friction: a coefficient of {coefficient:.3g}, but oils bear a shear stress of about 0.1 of "
+            "their pressure; eyring_stress, carreau_stress or limiting_shear in [fluid] bounds it"
+        )
+    pressure, fluid = totals["oil_pressure"], case.fluid
     decades = (float(viscosity(np.array([pressure]), fluid)[0][0]) + np.log(fluid.viscosity)) / np.log(10.0)
-    if decades <= np.log10(MAX_MEASURED_VISCOSITY):
-        return None
-    value = f"{10.0**decades:.1e}" if decades < MAX_DECADES else f"1e{decades:.0f}"
-    return (
-        f"viscosity: {value} Pa s by the law at the oil's maximum pressure, {1e-9 * pressure:.2f} GPa; "
-        "oils are measured up to about 1e7 Pa s"
-    )
+    if decades > np.log10(MAX_MEASURED_VISCOSITY):
+        value = f"{10.0**decades:.1e}" if decades < MAX_DECADES else f"1e{decades:.0f}"
+        yield (
+            f"viscosity: {value} Pa s by the law at the oil's maximum pressure, {1e-9 * pressure:.2f} GPa; "
+            "oils are measured up to about 1e7 Pa s"
+        )
+    if totals["mass_error"] > MAX_MASS_ERROR:
+        cure = "a finer mesh or smaller snes_atol reduces it"
+        if not case.contact.has_contact_pressure:
+            cure = 'nodes in direct contact do not conserve mass, contact.model = "mixed" does'
+        yield (
+            f"oil balance: the mass defect of one step is {100 * totals['mass_error']:.3g} % of the oil that "
+            f"the contact carries; {cure}"
+        )
+    if totals["nodes_below_1nm"]:
+        yield (
+            f"film: {totals['nodes_below_1nm']} times a node out of contact had less than "
+            f"{1e9 * MIN_CONTINUUM_FILM:g} nm of oil, a molecule or two, where oil is no continuum"
+        )
 
 
-def _balance(case: Case, totals: dict[str, float]) -> str | None:
-    error = totals["mass_error"]
-    if error <= MAX_MASS_ERROR:
-        return None
-    ratio = f"{100 * error:.0f} % of" if error < 1.0 else f"{error:.3g} times"
-    cure = "a finer mesh or smaller snes_atol reduces it"
-    if not case.contact.has_contact_pressure:
-        cure = 'nodes in direct contact do not conserve mass, contact.model = "mixed" does'
-    return f"oil balance: the mass defect of one step is {ratio} the oil that the contact carries; {cure}"
-
-
-def _molecules(totals: dict[str, float]) -> str | None:
-    count = totals["nodes_below_1nm"]
-    if not count:
-        return None
-    return (
-        f"film: {count} time{'s' * (count > 1)} a node out of contact had less than "
-        f"{1e9 * MIN_CONTINUUM_FILM:g} nm of oil, the size of a molecule or two, where oil is no continuum"
-    )
-
-
-def _mesh(rough: Roughness | None, scales: Scales) -> str | None:
+def _mesh(rough: Roughness | None, scales: Scales) -> Iterator[str]:
     if rough is None:
-        return None
+        return
     from ehlpetsc.surfaces.profile import WAVE_NODES
     from ehlpetsc.surfaces.profile_checks import MAX_UNRESOLVED
 
-    sides = [side for side in ("1", "2") if rough.side(side)]
-    unresolved = {side: rough.side(side).unresolved_variance(scales.dx) for side in sides}
-    coarse = [
-        f"{100 * value:.1f} % of surface.{side}"
-        for side, value in unresolved.items()
-        if value > MAX_UNRESOLVED
-    ]
-    if not coarse:
-        return None
-    return (
-        f"mesh: of the height variance, {' and '.join(coarse)} lie in waves of fewer than {WAVE_NODES} "
-        "nodes; asperities of so few nodes are the mesh's as much as the surface's"
-    )
+    profiles = {side: profile for side in ("1", "2") if (profile := rough.side(side))}
+    unresolved = {side: profile.unresolved_variance(scales.dx) for side, profile in profiles.items()}
+    coarse = [f"{100 * v:.1f} % of surface.{side}" for side, v in unresolved.items() if v > MAX_UNRESOLVED]
+    if coarse:
+        yield (
+            f"mesh: of the height variance, {' and '.join(coarse)} lie in waves of fewer than {WAVE_NODES} "
+            "nodes; asperities of so few nodes are the mesh's as much as the surface's"
+        )
