@@ -19,7 +19,7 @@ from ehlpetsc.analysis.summary import put_table, table_parser
 from ehlpetsc.base.command_parser import exit_status
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.effects.quantities import STEP_SCALARS
-from ehlpetsc.results.index import differences
+from ehlpetsc.results.index import groups
 from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
@@ -77,15 +77,12 @@ def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
 
     The conditions are keys and values in which ensembles differ, "" for a single ensemble.
     """
-    columns = [(key.rpartition(".")[2], values) for key, values in differences(results).items()]
-    groups: dict[str, list[dict[str, float]]] = {}
-    for number, result in enumerate(results):
-        name = ", ".join(f"{key} = {values[number]}" for key, values in columns if key != "seed")
-        groups.setdefault(name, []).append(run_scalars(result))
-    return {
-        name: {n: np.array([run[n] for run in runs]) for n in runs[0] if all(n in run for run in runs)}
-        for name, runs in groups.items()
-    }
+    found = {}
+    for name, members in groups(results, "seed").items():
+        runs = [run_scalars(result) for result in members]
+        common = [scalar for scalar in runs[0] if all(scalar in run for run in runs)]
+        found[name] = {scalar: np.array([run[scalar] for run in runs]) for scalar in common}
+    return found
 
 
 def deviation(values: np.ndarray) -> float:

@@ -21,7 +21,7 @@ import numpy as np
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.effects.quantities import STEP_SCALARS
-from ehlpetsc.results.index import distinguishing_names, in_order, open_all, series_values
+from ehlpetsc.results.index import distinguishing_names, in_order, open_all
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import atomic_write, check_derived
 from ehlpetsc.results.reader import Result
@@ -51,9 +51,7 @@ def statistics(result: Result) -> list[tuple]:
 
 def table(results: list[Result]) -> list[tuple]:
     """Names of the columns, then the rows of all results."""
-    key, values = series_values(results)
-    cases = [f"{key} = {v:g}" for v in values] if key else distinguishing_names(results)
-    cases = cases or [str(result.attrs["title"]) for result in results]
+    cases = distinguishing_names(results) or [str(result.attrs["title"]) for result in results]
     rows = [COLUMNS]
     for result, case in zip(results, cases, strict=True):
         rows += [(result.path.name, case, *row) for row in statistics(result)]

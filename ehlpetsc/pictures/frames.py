@@ -213,12 +213,8 @@ def mark_flow(axes: Axes, results: list[Result], indices: Sequence[int]) -> None
 
 def x_in_mm(axes: Axes, results: list[Result]) -> None:
     """Add an axis in mm if all results have the same a."""
-    a = {float(result.attrs["a"]) for result in results}
-    if len(a) == 1:
-        scale = 1e3 * a.pop()
-        above = axes.secondary_xaxis("top", functions=(lambda x: x * scale, lambda x: x / scale))
-        above.tick_params(labelsize="small")
-        above.set_xlabel("x [mm]", fontsize="small")
+    if len({float(result.attrs["a"]) for result in results}) == 1:
+        style.scale_above(axes, 1e3 * results[0].attrs["a"], "x [mm]")
 
 
 def deformed_heights(result: Result, index: int) -> tuple[np.ndarray, np.ndarray]:

@@ -6,25 +6,22 @@ Means over the time in which both surfaces fill the contact, with the scatter ov
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from matplotlib.ticker import LogLocator
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.friction_correlations import benedict_kelley, xu_kahraman
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
-from ehlpetsc.results.index import distinguishing_names, series_values
+from ehlpetsc.results.index import groups
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.reader import Result
 
 SPEED, RATIO = "motion.entrainment_speed", "motion.slide_roll_ratio"
-STRIBECK_SIZE, TRACTION_SIZE = (8.5, 7.5), (8.5, 4.6)  # inches
+STRIBECK_SIZE, TRACTION_SIZE = (9.5, 7.5), (8.5, 4.6)  # inches
 BAND = (5.0, 95.0)  # percentiles over time
 QUANTITIES = {
     "friction_coefficient": "friction coefficient",
@@ -35,111 +32,73 @@ MIN_LOAD_FRACTION = 1e-5  # of the solids, lower end of the axis
 MIN_LOGARITHMIC_RATIO = 100.0  # of slide/roll ratios: a larger span is drawn on a logarithmic axis
 
 
-@dataclass(frozen=True)
-class OperatingPoint:
-    """One member of a series: mean and percentiles `BAND` over time by `QUANTITIES`, nan where unknown."""
-
-    at: float  # value of the abscissa
-    scalars: dict[str, tuple[float, float, float]]
-    smooth: float  # friction coefficient of the smooth contact, before roughness enters
-    boundary: float  # friction coefficient of the solids
-
-
-def operating_point(result: Result, at: float) -> OperatingPoint | None:
-    """Means of one member; None if it ends before both surfaces fill the contact."""
-    weights = filled_weights(result)
-    if not weights.any():
-        return None
-    scalars = {name: time_statistics(result, name, weights) for name in QUANTITIES}
-    smooth = float(result.steps("friction_coefficient")[0])
-    return OperatingPoint(at, scalars, smooth, result.case.contact.boundary_friction)
+def time_statistics(results: list[Result], name: str) -> np.ndarray:
+    """Means and percentiles `BAND` of a scalar over time, shape (3, n); nan where unknown."""
+    rows = np.full((len(results), 3), np.nan)
+    for row, result in zip(rows, results, strict=True):
+        weights = filled_weights(result)
+        row[0] = mean(result, name, weights)
+        if np.isfinite(row[0]):
+            values = result.steps(name).astype(float)
+            used = np.isfinite(values) & (weights > 0.0)
+            row[1:] = weighted_percentiles(values[used], weights[used], BAND)
+    return rows.T
 
 
-def time_statistics(result: Result, name: str, weights: np.ndarray) -> tuple[float, float, float]:
-    """Weighted mean and percentiles `BAND` of the finite values of a scalar; nan without any."""
-    average = mean(result, name, weights)
-    if not np.isfinite(average):
-        return np.nan, np.nan, np.nan
-    values = result.steps(name).astype(float)
-    used = np.isfinite(values) & (weights > 0.0)
-    low, high = weighted_percentiles(values[used], weights[used], BAND)
-    return average, float(low), float(high)
+def curves(results: list[Result], key: str) -> dict[str, tuple[np.ndarray, list[Result]]]:
+    """Values of a key of [motion] and the results over it, by the other conditions; the longest curve first.
 
-
-def stribeck_points(results: list[Result]) -> tuple[list[OperatingPoint], list[str]]:
-    """Points of a series sorted by speed, and names of the members that end too early."""
-    if len(results) < 2:
-        raise OutputError(f"one result alone: a Stribeck curve needs a series over {SPEED}")
-    key, speeds = series_values(results)
-    if key != SPEED:
-        differs = key or "more than that"
-        raise OutputError(f"a Stribeck curve needs a series over {SPEED}, these differ in {differs}")
-    pairs = sorted(zip(speeds, results, strict=True), key=lambda pair: pair[0])
-    found = [(operating_point(result, speed), result.path.name) for speed, result in pairs]
-    points = [point for point, _ in found if point]
-    if not points:
-        raise OutputError(
-            "no member lasts until both surfaces fill the contact: a longer time.travel is needed"
-        )
-    return points, [name for point, name in found if not point]
-
-
-def curves_by_contact(results: list[Result]) -> dict[str, list[Result]]:
-    """Results by contact law, mesh and [heat], with their label; the longest curve first."""
-    groups: dict[tuple, list[Result]] = {}
-    for result in results:
-        case, contact = result.case, result.case.contact
-        if contact.asperity_height:
-            law = f"layer of {1e9 * contact.asperity_height:.3g} nm,\nbeta = {contact.asperity_stiffness:.2g}"
-        else:
-            film = contact.boundary_film
-            law = f"rigid, boundary film {1e9 * film:g} nm" if film else "direct contact"
-        heat = "isothermal" if case.heat is None else "with heat"
-        groups.setdefault((law, f"a/{case.mesh.points_per_half_width}", heat), []).append(result)
-    varied = [True, *(len({key[position] for key in groups}) > 1 for position in (1, 2))]
-    ordered = sorted(groups.items(), key=lambda item: -len(item[1]))
-    return {", ".join(np.array(key)[varied]): members for key, members in ordered}
+    Results that end before both surfaces fill the contact are left out.
+    """
+    found = {}
+    lasting = [result for result in results if filled_weights(result).any()]
+    for name, members in groups(lasting, key).items():
+        values = np.array([getattr(result.case.motion, key.partition(".")[2], 0.0) for result in members])
+        order = np.argsort(values)
+        found[name] = values[order], [members[k] for k in order]
+    longest_first = dict(sorted(found.items(), key=lambda item: -len(item[1][1])))
+    if all(len(values) < 2 for values, _ in found.values()):
+        raise OutputError(f"needs a series over {key}, runs that last until both surfaces fill the contact")
+    return longest_first
 
 
 def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) -> Figure:
     """Friction, load on the solids and mean gap ratio over the speed.
 
-    With several contact laws or meshes the longest curve is drawn with its scatter, the others as means.
+    If results also differ in other keys, the longest curve is drawn with its scatter, the others as means.
     """
-    (main, members), *others = curves_by_contact(results).items()
-    points, early = stribeck_points(members)
+    (main, (speeds, members)), *others = curves(results, SPEED).items()
     figure, axes = style.new_figure(3, 1, STRIBECK_SIZE, sharex=True)
-    speeds = np.array([abs(point.at) for point in points])
     for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
-        average, low, high = np.transpose([point.scalars[name] for point in points])
-        panel.fill_between(speeds, low, high, color=style.SINGLE, alpha=0.2, lw=0)
-        panel.plot(speeds, average, "o-", color=style.SINGLE, ms=3.5, lw=1.2)
+        average, low, high = time_statistics(members, name)
+        band = dict(color=style.SINGLE, alpha=0.2, lw=0, label=f"{BAND[0]:g} to {BAND[1]:g} % of the time")
+        panel.fill_between(np.abs(speeds), low, high, **band)
+        line = dict(color=style.SINGLE, ms=3.5, lw=1.2, label=_lines(f"mean over time, {main}"))
+        panel.plot(np.abs(speeds), average, "o-", **line)
+        for number, (other, (at, compared)) in enumerate(others, 1):
+            dashed = dict(color=f"C{number}", ms=3.0, lw=0.9, label=_lines(other))
+            panel.plot(np.abs(at), time_statistics(compared, name)[0], "s--", **dashed)
         panel.set(ylabel=label, xscale="log")
         panel.grid(lw=0.3)
-    for number, (label, compared) in enumerate(others, 1):
-        found = [operating_point(result, result.case.motion.entrainment_speed) for result in compared]
-        shown = sorted(filter(None, found), key=lambda point: point.at)
-        for panel, name in zip(axes, QUANTITIES, strict=True):
-            means = [point.scalars[name][0] for point in shown]
-            dashed = dict(color=f"C{number}", ms=3.0, lw=0.9, label=label)
-            panel.plot([abs(point.at) for point in shown], means, "s--", **dashed)
-    limits = dict(color="k", lw=0.9, ls="-.", label="solids alone\n(boundary_friction)")
-    axes[0].plot(speeds, [point.boundary for point in points], **limits)
-    smooth = [point.smooth for point in points]
-    axes[0].plot(speeds, smooth, color="0.35", lw=0.9, ls=":", label="smooth contact")
+    boundary = [result.case.contact.boundary_friction for result in members]
+    smooth = [result.steps("friction_coefficient")[0] for result in members]
+    axes[0].plot(np.abs(speeds), boundary, "k-.", lw=0.9, label="solids alone\n(boundary_friction)")
+    axes[0].plot(np.abs(speeds), smooth, ":", color="0.35", lw=0.9, label="smooth contact")
     axes[0].set_ylim(bottom=0.0)
-    style.legend_beside(axes[0])
-    _share_axis(axes[1], points)
-    _hersey_axis(axes[0], results)
-    if np.isfinite([point.scalars["mean_gap_ratio"][0] for point in points]).any():
-        axes[2].set_yscale("log")
-        axes[2].yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    style.legend_beside(axes[0], axes[0].get_legend_handles_labels()[0][2:])
+    style.legend_beside(axes[1], axes[1].get_legend_handles_labels()[0][:2])
+    for panel in axes[1:]:
+        panel.set_yscale("log" if panel.dataLim.y1 > 0.0 else "linear")
+    axes[2].yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axes[1].set_ylim(bottom=max(axes[1].get_ylim()[0], MIN_LOAD_FRACTION))
+    conditions = {(r.case.fluid and r.case.fluid.viscosity, r.case.contact.load) for r in results}
+    if len(conditions) == 1 and results[0].case.fluid:
+        [(viscosity, load)] = conditions
+        hersey = "Hersey number: viscosity × speed over load per length"
+        style.scale_above(axes[0], viscosity / load, hersey)
     axes[2].set_xlabel(style.UNITS[SPEED])
-    label = f"{main}:\nmean over time" if others else "mean over time"
-    band = Patch(color=style.SINGLE, alpha=0.2, lw=0, label=f"{BAND[0]:g} to {BAND[1]:g} % of the time")
-    line = Line2D([], [], color=style.SINGLE, marker="o", ms=3.5, lw=1.2, label=label)
-    style.legend_beside(axes[1], [line, band])
-    note = f"not shown, ended too early: {', '.join(early)}" if early else ""
+    early = ", ".join(result.path.name for result in results if not filled_weights(result).any())
+    note = f"not shown, ended too early: {early}" if early else ""
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results), note)
     for axis in (axes[2].xaxis, axes[1].yaxis, axes[2].yaxis):
         axis.set_major_formatter("{x:g}")
@@ -147,48 +106,16 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
     return figure
 
 
-def _share_axis(axes: Axes, points: list[OperatingPoint]) -> None:
-    """Set a logarithmic axis down to `MIN_LOAD_FRACTION` if solids carry load."""
-    means = np.array([point.scalars["contact_share"][0] for point in points])
-    if (positive := means[means > 0.0]).size:
-        axes.set(yscale="log", ylim=(max(MIN_LOAD_FRACTION, 0.5 * positive.min()), 1.3))
-    else:
-        axes.set_ylim(0.0, 1.02)
-
-
-def _hersey_axis(axes: Axes, results: list[Result]) -> None:
-    """Add an axis of the Hersey number eta0 u/w if all results have the same viscosity and load."""
-    cases = [result.case for result in results]
-    pairs = {(case.fluid and case.fluid.viscosity, case.contact.load) for case in cases}
-    if len(pairs) == 1 and None not in (pair := pairs.pop()):
-        ratio = pair[0] / pair[1]
-        above = axes.secondary_xaxis("top", functions=(lambda u: u * ratio, lambda hersey: hersey / ratio))
-        above.set_xlabel("Hersey number: viscosity × speed over load per length", fontsize="small")
-        above.tick_params(labelsize="small")
-
-
 def draw_traction(results: list[Result], _options: argparse.Namespace | None) -> Figure:
-    """Friction coefficient over the slide/roll ratio, maxima marked.
-
-    Results that differ in other keys form separate curves; isothermal ones are dashed if others have heat.
-    """
-    by_heat = {
-        heat: traction_curves([r for r in results if (r.case.heat is not None) == heat]) for heat in (0, 1)
-    }
-    if not any(len(curve[0]) > 1 for curves in by_heat.values() for curve in curves.values()):
-        raise OutputError(f"a traction curve needs a series over {RATIO}")
+    """Friction coefficient over the slide/roll ratio by the other conditions, maxima marked."""
+    found = curves(results, RATIO)
     figure, axes = style.new_figure(1, 1, TRACTION_SIZE)
-    names, compared = list(dict.fromkeys([*by_heat[0], *by_heat[1]])), all(by_heat.values())
-    for heat, curves in by_heat.items():
-        for name, (ratios, friction) in curves.items():
-            dashes, colour = "--" if compared and not heat else "-", f"C{names.index(name)}"
-            heating = ("with heat" if heat else "isothermal") if compared else ""
-            label = ", ".join(filter(None, [name.replace("_", " "), heating])) or "friction"
-            axes.plot(ratios, friction, dashes, color=colour, marker="o", ms=3, lw=1.2, label=label)
-            _mark_maximum(axes, ratios, friction, colour)
-    ratios = np.unique([result.case.motion.slide_roll_ratio for result in results if result.case.motion])
-    ratios = ratios[ratios > 0.0]
-    if len({name.partition(",")[0] for name in names}) == 1 and results[0].case.fluid and ratios.size:
+    for number, (name, (ratios, members)) in enumerate(found.items()):
+        friction, colour = time_statistics(members, "friction_coefficient")[0], f"C{number}"
+        axes.plot(ratios, friction, "o-", color=colour, ms=3, lw=1.2, label=_lines(name or "friction"))
+        _mark_maximum(axes, ratios, friction, colour)
+    ratios = np.unique(np.concatenate([ratios[ratios > 0.0] for ratios, _ in found.values()]))
+    if len(found) == 1 and results[0].case.fluid:
         axes.set_ylim(top=1.6 * axes.get_ylim()[1])  # a correlation without bound is cut
         for (label, friction), dashes in zip(
             correlations(results[0], ratios).items(), (":", "-."), strict=True
@@ -204,6 +131,11 @@ def draw_traction(results: list[Result], _options: argparse.Namespace | None) ->
     return figure
 
 
+def _lines(settings: str) -> str:
+    """Label of a curve, a line for each setting."""
+    return settings.replace("_", " ").removesuffix(", ").replace(", ", ",\n")
+
+
 def correlations(result: Result, ratios: np.ndarray) -> dict[str, np.ndarray]:
     """Friction coefficients of smooth surfaces by published correlations, by their names."""
     case, scales = result.case, Scales.of(result.case)
@@ -212,23 +144,6 @@ def correlations(result: Result, ratios: np.ndarray) -> dict[str, np.ndarray]:
         "Xu & Kahraman 2007": xu_kahraman(scales.p0, ratios, u, eta, case.contact.radius, 0.0),
         "Benedict & Kelley 1961": benedict_kelley(load, ratios * u, 2.0 * u, eta, 0.0),
     }
-
-
-def traction_curves(results: list[Result]) -> dict[str, np.ndarray]:
-    """Ratios and friction coefficients, shape (2, n), by the other conditions in which results differ."""
-    by_ratio: dict = {}
-    for result in results:
-        by_ratio.setdefault(result.case.motion.slide_roll_ratio if result.case.motion else 0.0, []).append(
-            result
-        )
-    rows: dict = {}
-    for ratio, same in sorted(by_ratio.items()):
-        names = (distinguishing_names(same) if len(same) > 1 else None) or [""]
-        for name, result in zip(names, same, strict=False):
-            curve, point = rows.setdefault(name, []), operating_point(result, ratio)
-            if point:
-                curve.append((ratio, point.scalars["friction_coefficient"][0]))
-    return {name: np.array(curve).reshape(-1, 2).T for name, curve in rows.items()}
 
 
 def _mark_maximum(axes: Axes, ratios: np.ndarray, friction: np.ndarray, colour: str) -> None:

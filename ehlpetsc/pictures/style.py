@@ -96,6 +96,13 @@ def legend_above(axes: Axes, *others: Axes, title: str | None = None) -> None:
     axes.legend(handles=handles, title=title, **SMALL, **position)
 
 
+def scale_above(axes: Axes, factor: float, label: str) -> None:
+    """Add an axis above of the abscissa times a factor."""
+    above = axes.secondary_xaxis("top", functions=(lambda x: x * factor, lambda x: x / factor))
+    above.tick_params(labelsize="small")
+    above.set_xlabel(label, fontsize="small")
+
+
 def digits(value: float) -> str:
     """Four significant digits without an exponent where it is avoidable: 355.0, 0.1234, 1e-08."""
     return f"{value:.4g}"

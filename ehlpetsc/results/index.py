@@ -130,18 +130,30 @@ def distinguishing_names(results: list[Result]) -> list[str] | None:
 
     For example ``viscosity = 0.002, entrainment_speed = 5``.
     """
-    differing = differences(results)
-    if not differing:
-        return None
-    last = [key.rpartition(".")[2] for key in differing]
-    labels = [key if last.count(name) > 1 else name for key, name in zip(differing, last, strict=True)]
-    names = [
-        ", ".join(_setting(result.case, *entry) for entry in zip(differing, labels, values, strict=True))
-        for result, *values in zip(results, *differing.values(), strict=True)
+    names = _settings(results)
+    is_unique = all(names) and len(set(names)) == len(results)
+    return names if is_unique and max(map(len, names)) <= MAX_NAME_LENGTH else None
+
+
+def groups(results: list[Result], varied: str) -> dict[str, list[Result]]:
+    """Results by the values in which their cases differ besides the keys that end in `varied`."""
+    found: dict[str, list[Result]] = {}
+    for name, result in zip(_settings(results, varied), results, strict=True):
+        found.setdefault(name, []).append(result)
+    return found
+
+
+def _settings(results: list[Result], varied: str | None = None) -> list[str]:
+    """Keys and values in which the case of each result differs from the others, without those `varied`."""
+    columns = differences(results)
+    keys = [key for key in columns if not (varied and key.endswith(varied))]
+    last = [key.rpartition(".")[2] for key in keys]
+    labels = [key if last.count(name) > 1 else name for key, name in zip(keys, last, strict=True)]
+    pairs = list(zip(keys, labels, strict=True))
+    return [
+        ", ".join(_setting(result.case, key, label, columns[key][number]) for key, label in pairs)
+        for number, result in enumerate(results)
     ]
-    if len(set(names)) < len(results) or max(map(len, names)) > MAX_NAME_LENGTH:
-        return None
-    return names
 
 
 def _setting(case: Case, key: str, label: str, value: Any) -> str:

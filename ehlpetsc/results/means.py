@@ -33,13 +33,6 @@ def filled_from(result: Result) -> float:
     return max(_filled_by(result, side) for side in ("1", "2"))
 
 
-def travelled(result: Result) -> np.ndarray:
-    """Distance that the faster surface has travelled by the end of each step [m], shape (nsteps,)."""
-    if "steps/displacement_1" in result:
-        return np.abs([result.steps("displacement_1"), result.steps("displacement_2")]).max(axis=0)
-    return max(abs(result.attrs["u1"]), abs(result.attrs["u2"])) * result.steps("time")
-
-
 def both_fill(result: Result, times: np.ndarray) -> np.ndarray:
     """Whether the roughness of both surfaces fills the contact at `times` [s], array of bool."""
     return np.asarray(times) >= filled_from(result) * (1.0 - 1e-12)

@@ -11,7 +11,6 @@ from support.made_results import change_case, make_result, with_solids
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import friction_curves
 from ehlpetsc.pictures.command import FIGURES, arguments, main
-from ehlpetsc.pictures.friction_curves import curves_by_contact
 from ehlpetsc.results.index import open_all
 from ehlpetsc.results.reader import read_result
 
@@ -49,13 +48,12 @@ def series(tmp_path):
 def test_traction_curves(series):
     [axes] = drawn("traction", series).axes
     lines = {line.get_label(): line for line in axes.get_lines() if not line.get_label().startswith("_")}
-    kinds = "isothermal", "with heat"
-    assert set(lines) == {f"entrainment speed = {u}, {how}" for u in (5, 25) for how in kinds}
-    cold, warm = (lines[f"entrainment speed = 5, {how}"] for how in kinds)
+    kinds = "no bulk temperature", "bulk temperature = 350"
+    assert set(lines) == {f"{how},\nentrainment speed = {u}" for u in (5, 25) for how in kinds}
+    cold, warm = (lines[f"{how},\nentrainment speed = 5"] for how in kinds)
     np.testing.assert_allclose(warm.get_xdata(), RATIOS)
     np.testing.assert_allclose(cold.get_ydata(), 0.01 * np.array(RATIOS))
     assert [text.get_text() for text in axes.texts] == 2 * ["0.0090 at 1"]  # none at the end of a curve
-    assert cold.get_linestyle() == "--"
 
 
 def test_published_correlations_beside_one_traction_curve(tmp_path):
@@ -89,10 +87,13 @@ def test_temperatures(steps, panels, tmp_path):
 
 
 def test_stribeck_curves_with_and_without_heat(tmp_path):
-    paths = [member(tmp_path / f"{k}.h5", 0.25, 0.01, HEAT if k % 2 else "") for k in range(4)]
+    paths = [member(tmp_path / f"{k}.h5", 0.25, 0.01, HEAT if k % 2 else "", 1.0 + k) for k in range(5)]
     with contextlib.ExitStack() as stack:
-        found = {label: len(members) for label, members in curves_by_contact(open_all(paths, stack)).items()}
-    assert found == {"direct contact, isothermal": 2, "direct contact, with heat": 2}
+        found = friction_curves.curves(open_all(paths, stack), friction_curves.SPEED)
+    assert {name: list(speeds) for name, (speeds, _) in found.items()} == {
+        "no bulk_temperature": [1.0, 3.0, 5.0],
+        "bulk_temperature = 350": [2.0, 4.0],
+    }
 
 
 def yielded(path, depth):
@@ -123,7 +124,7 @@ def test_every_kind_of_picture_is_written(tmp_path, kind):
     elif kind == "traction":
         paths = [member(tmp_path / f"{ratio}.h5", ratio, 0.1 * ratio) for ratio in (0.1, 0.5)]
     elif kind == "stribeck":
-        paths = [with_solids(make_result(tmp_path / f"{u}.h5", speed=u, rough=True)) for u in (20.0, 50.0)]
+        paths = [with_solids(make_result(tmp_path / f"{u}.h5", speed=u, rough=True)) for u in (40.0, 50.0)]
     else:
         paths = [heated(tmp_path / "a.h5", 21)]
     output = tmp_path / ("p.html" if kind == "report" else "p.png")
@@ -144,20 +145,18 @@ def stribeck_series(tmp_path):
 
 
 def test_stribeck_curve_has_means_and_scatter(stribeck_series):
-    points, short = friction_curves.stribeck_points([read_result(path) for path in stribeck_series])
-    assert [point.at for point in points] == list(SPEEDS) and short == []
-    for point in points:
-        share = 1.0 / (1.0 + 5.0 * point.at)
-        mean, low, high = point.scalars["friction_coefficient"]
-        assert mean == pytest.approx(0.03 + 0.09 * share, rel=0.02)
-        assert point.scalars["contact_share"][0] == pytest.approx(share, rel=0.02)
-        # of a cosine of amplitude 0.2 5 and 95 % lie at 0.2 cos(0.05 pi)
-        assert high / mean == pytest.approx(1 + 0.2 * np.cos(0.05 * np.pi), abs=0.02)
-        assert low / mean == pytest.approx(1 - 0.2 * np.cos(0.05 * np.pi), abs=0.02)
-        assert point.boundary == 0.12
+    found = friction_curves.curves([read_result(path) for path in stribeck_series], friction_curves.SPEED)
+    [(speeds, results)] = found.values()
+    assert list(speeds) == list(SPEEDS)
+    share = 1.0 / (1.0 + 5.0 * speeds)
+    mean, low, high = friction_curves.time_statistics(results, "friction_coefficient")
+    np.testing.assert_allclose(mean, 0.03 + 0.09 * share, rtol=0.02)
+    # of a cosine of amplitude 0.2 5 and 95 % lie at 0.2 cos(0.05 pi)
+    np.testing.assert_allclose(high / mean, 1 + 0.2 * np.cos(0.05 * np.pi), atol=0.02)
+    np.testing.assert_allclose(low / mean, 1 - 0.2 * np.cos(0.05 * np.pi), atol=0.02)
     figure = drawn("stribeck", stribeck_series)
     for axes, name in zip(figure.axes, friction_curves.QUANTITIES, strict=True):
-        means = [point.scalars[name][0] for point in points]
+        means = friction_curves.time_statistics(results, name)[0]
         np.testing.assert_allclose(axes.lines[0].get_xydata(), np.column_stack([SPEEDS, means]))
 
 
@@ -175,11 +174,13 @@ def test_stribeck_axes_are_hersey_number_and_logarithmic_fraction(tmp_path, shar
 
 
 def test_stribeck_means_start_when_the_contact_is_filled(tmp_path):
-    paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in (5.0, 40.0)]
-    slow, fast = (read_result(path) for path in paths)
-    # the slower surface, 0.88 u, from -2.5 a to a, and the ramp
-    points, short = friction_curves.stribeck_points([slow, fast])
-    assert ([p.at for p in points], short) == ([40.0], ["5.0.h5"])  # 40 us are too short for 5 m/s
-    assert np.isnan(points[0].scalars["contact_share"][0])
-    with pytest.raises(OutputError, match=r"one result .* motion\.entrainment_speed$"):
-        friction_curves.stribeck_points([slow])
+    """The slower surface, 0.88 u, from -2.5 a to a, and the ramp: 40 us are too short for 5 m/s."""
+    speeds = (5.0, 40.0, 50.0)
+    paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in speeds]
+    results = [read_result(path) for path in paths]
+    [(found, lasting)] = friction_curves.curves(results, friction_curves.SPEED).values()
+    assert list(found) == [40.0, 50.0]
+    assert np.isnan(friction_curves.time_statistics(lasting, "contact_share")).all()
+    assert "ended too early: 5.0.h5" in drawn("stribeck", paths)._suptitle.get_text()
+    with pytest.raises(OutputError, match=r"series over motion\.entrainment_speed"):
+        friction_curves.curves(results[:2], friction_curves.SPEED)
