@@ -44,8 +44,6 @@ def test_difference_has_size_and_position(tmp_path, result, capsys):
     assert status == 1
     assert text.splitlines()[-1].startswith("different: pressure; steps/p_max")
     assert run(capsys, result, other, "--rtol", 2e-4)[0] == 0
-    assert run(capsys, result, other, "--atol", 2e-4 * P0)[0] == 0
-    assert run(capsys, result, other, "--atol", 1e-5 * P0)[0] == 1
 
 
 def test_finer_mesh_and_time_step_are_compared_at_common_nodes(tmp_path):
@@ -55,10 +53,7 @@ def test_finer_mesh_and_time_step_are_compared_at_common_nodes(tmp_path):
     for name in ("pressure", "film_thickness", "shear_stress_2", "void_fraction"):
         assert found[name].relative(found[name].max) < 1e-12, name
     assert found["steps/load"].max == 0
-    assert found["in_contact"].units == "share"
-    assert found["in_contact"].max < 0.02
-    # twice the steps give twice the counts, but at a node about the same share
-    assert 0 < found["contact_count"].max < 0.03
+    assert "in_contact" not in found and "steps/contacts" not in found  # numbers of the mesh
 
 
 def test_nan_in_one_result_is_a_difference(tmp_path, result, capsys):
