@@ -195,12 +195,11 @@ class Field:
 
 @dataclass(frozen=True)
 class Column:
-    """Column of progress: heading, factor from SI units, format, text of the bar."""
+    """Column of progress: heading, factor from SI units, format."""
 
     heading: str
     factor: float
     form: str
-    bar: str = ""
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ STEP_SCALARS = {
         "minimum film thickness",
         over_run="min",
         summary=".9g",
-        progress=Column("h_min/um", 1e6, "{:>9.5f}", "h_min {:.4f} um"),
+        progress=Column("h_min/um", 1e6, "{:>9.5f}"),
         compared=True,
     ),
     "p_max": StepScalar(
@@ -85,7 +85,7 @@ STEP_SCALARS = {
         "maximum pressure",
         over_run="max",
         summary=".9g",
-        progress=Column("p_max/GPa", 1e-9, "{:>9.4f}", "p_max {:.3f} GPa"),
+        progress=Column("p_max/GPa", 1e-9, "{:>9.4f}"),
         compared=True,
     ),
     "contacts": StepScalar(
@@ -94,7 +94,7 @@ STEP_SCALARS = {
         dtype="i4",
         over_run="sum",
         summary="d",
-        progress=Column("contacts", 1, "{:>8d}", "contacts {:d}"),
+        progress=Column("contacts", 1, "{:>8d}"),
         compared=True,
     ),
     "load": StepScalar("N/m", "integral of the pressure", compared=True),

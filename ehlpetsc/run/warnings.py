@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,9 +39,10 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
     if case.fluid is None:
         return []
     notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
-    opening = inlet_opening(_smallest_expected_film(case, scales), case.mesh.points_per_half_width)
+    film = _smallest_expected_film(case, scales)
+    opening = inlet_opening(film, case.mesh.points_per_half_width)
     if MESH_MARGIN * MAX_FILM_SLOPE < opening:
-        notes.append(f"{_coarse(opening)}: the film comes out too thin; {_finer_mesh_hint(case, scales)}")
+        notes.append(_coarse(case, film, opening, ": the film comes out too thin"))
     return notes
 
 
@@ -48,17 +50,26 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
     """Faults of the domain that make the result meaningless, one message each; checked before a run."""
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
-    opening = inlet_opening(_smallest_expected_film(case, scales), case.mesh.points_per_half_width)
+    film, points = _smallest_expected_film(case, scales), case.mesh.points_per_half_width
+    opening = inlet_opening(film, points)
     if opening <= MAX_OPENING:
         return []
-    points = case.mesh.points_per_half_width
     where = f"{case.path}: mesh.points_per_half_width = {points}"
-    return [f"{where}: {_coarse(opening)}, which leaves no film; {_finer_mesh_hint(case, scales)}"]
+    return [f"{where}: {_coarse(case, film, opening, ', which leaves no film')}"]
 
 
 def _smallest_expected_film(case: Case, scales: Scales) -> float:
     """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
     return max(expected_film(case, scales), smallest_film(case.contact, scales))
+
+
+def _coarse(case: Case, film: float, opening: float, consequence: str) -> str:
+    other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
+    return (
+        f"the mesh is too coarse for the inlet: beside the contact the gap opens by {opening:.2g} films from "
+        f"one node to the next{consequence}; try mesh.points_per_half_width = "
+        f"{math.ceil(points_for_opening(film, MAX_FILM_SLOPE))}{other}"
+    )
 
 
 def _near_inlet(case: Case, scales: Scales) -> list[str]:
@@ -76,41 +87,44 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
     ]
 
 
-def _coarse(opening: float) -> str:
-    return (
-        f"the mesh is too coarse for the inlet: beside the contact the gap opens by {opening:.2g} films "
-        "from one node to the next"
-    )
-
-
-def _finer_mesh_hint(case: Case, scales: Scales) -> str:
-    points = math.ceil(points_for_opening(_smallest_expected_film(case, scales), MAX_FILM_SLOPE))
-    other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
-    return f"try mesh.points_per_half_width = {points}{other}"
-
-
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
-    rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
-    notes = []
-    if case.contact.yield_pressure and min(case.contact.yield_pressure) < MIN_YIELD_PRESSURE * scales.p0:
-        notes.append(
-            f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
-            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
-        )
-    if rough and case.time is None and case.motion is not None:
-        notes.append(
-            f"{' and '.join(rough)} with [motion] but without [time]: "
-            "the roughness is held still under the film; add [time] to let it move"
-        )
     profiles = Roughness.of(case, scales)
-    notes += magnitude_warnings(case, scales) + oil_warnings(case.fluid) + domain_warnings(case, scales)
+    notes = [*_scene_warnings(case, scales), *_oil_warnings(case.fluid), *domain_warnings(case, scales)]
     if profiles:
         from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
 
-        notes += tilt_warnings(case, profiles) + entry_warnings(case, scales, profiles)
+        notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
         notes += mesh_warnings(profiles, scales)
     return notes + heat_warnings(case, scales)
+
+
+def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
+    """Solids that yield, roughness at rest; magnitudes outside EHL contacts, most likely wrong units."""
+    if case.contact.yield_pressure and min(case.contact.yield_pressure) < MIN_YIELD_PRESSURE * scales.p0:
+        yield (
+            f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
+            f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
+        )
+    rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
+    if rough and case.time is None and case.motion is not None:
+        yield (
+            f"{' and '.join(rough)} with [motion] but without [time]: "
+            "the roughness is held still under the film; add [time] to let it move"
+        )
+    if not LOW_PRESSURE <= scales.p0 <= HIGH_PRESSURE:
+        yield (
+            f"Hertz' pressure p0 = {1e-9 * scales.p0:.3g} GPa: EHL contacts have "
+            f"{1e-9 * LOW_PRESSURE:g} to {1e-9 * HIGH_PRESSURE:g} GPa; "
+            f"radius = {scales.R:g} m, load = {scales.load:g} N/m?"
+        )
+    film = expected_film(case, scales) * scales.h if case.fluid else 0.0
+    if film > MAX_EHL_FILM * scales.a:
+        yield (
+            f"the expected film, {1e6 * film:.3g} um, is more than a tenth of the contact's half-width, "
+            f"{1e6 * scales.a:.3g} um: "
+            f"viscosity = {scales.eta0:g} Pa s, entrainment_speed = {scales.u:g} m/s?"
+        )
 
 
 def heat_warnings(case: Case, scales: Scales) -> list[str]:
@@ -130,48 +144,27 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
     ]
 
 
-def magnitude_warnings(case: Case, scales: Scales) -> list[str]:
-    """Warnings of magnitudes outside elastohydrodynamic contacts, most likely wrong units."""
-    notes = []
-    if not LOW_PRESSURE <= scales.p0 <= HIGH_PRESSURE:
-        notes.append(
-            f"Hertz' pressure p0 = {1e-9 * scales.p0:.3g} GPa: EHL contacts have "
-            f"{1e-9 * LOW_PRESSURE:g} to {1e-9 * HIGH_PRESSURE:g} GPa; "
-            f"radius = {scales.R:g} m, load = {scales.load:g} N/m?"
-        )
-    film = expected_film(case, scales) * scales.h if case.fluid else 0.0
-    if film > MAX_EHL_FILM * scales.a:
-        notes.append(
-            f"the expected film, {1e6 * film:.3g} um, is more than a tenth of the contact's half-width, "
-            f"{1e6 * scales.a:.3g} um: "
-            f"viscosity = {scales.eta0:g} Pa s, entrainment_speed = {scales.u:g} m/s?"
-        )
-    return notes
-
-
-def oil_warnings(fluid: Any) -> list[str]:
-    """Warning of oil constants that the viscosity law does not use."""
-    if fluid is None:
-        return []
-    others = {name for law in LAWS.values() for name in law.keys} - set(LAWS[fluid.law].keys)
+def _oil_warnings(fluid: Any) -> Iterator[str]:
+    """Oil constants that the viscosity law does not use."""
+    others = {name for law in LAWS.values() for name in law.keys}
+    others -= set(LAWS[fluid.law].keys) if fluid else others
     keys = sorted(f"fluid.{name}" for name in others if getattr(fluid, name) is not None)
-    return [f'{", ".join(keys)}: not used by law = "{fluid.law}"'] if keys else []
+    if keys:
+        yield f'{", ".join(keys)}: not used by law = "{fluid.law}"'
 
 
-def tilt_warnings(case: Case, profiles: Roughness | None) -> list[str]:
-    """Warnings of profiles whose heights are mostly a straight line, a tilt of the measurement."""
-    notes = []
+def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
+    """Profiles whose heights are mostly a straight line, a tilt of the measurement."""
     for side in ("1", "2"):
-        profile, spec = profiles and profiles.side(side), case.surface.side(side)
+        profile, spec = profiles.side(side), case.surface.side(side)
         if not profile or not profile.given.measured or spec.level:
             continue
         X, z = profile.X, profile.heights
         slope = np.polyfit(X - X.mean(), z, 1)[0]
         fraction = slope**2 * X.var() / z.var() if z.any() else 0.0
         if fraction > MAX_TILT_VARIANCE:
-            notes.append(
+            yield (
                 f"surface.{side}: {100 * fraction:.0f} % of the height variance is a straight line "
                 f"({1e6 * abs(slope) * (X[-1] - X[0]):.3g} um over {1e3 * (X[-1] - X[0]):.3g} mm); "
                 "level = true takes it off"
             )
-    return notes

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time as clock
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from ehlpetsc.effects.quantities import STEP_SCALARS
 
@@ -17,10 +15,8 @@ if TYPE_CHECKING:
     from ehlpetsc.run.simulation import AcceptedState, Simulation
 
 SECONDS_BETWEEN_LINES = 5.0
-SECONDS_BETWEEN_BARS = 0.2
+SECONDS_IN_PLACE = 0.2
 MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
-
-_REMAINING = "{:>9s}"
 
 
 def on_terminal(stream: TextIO | None) -> bool:
@@ -46,23 +42,23 @@ def in_notebook() -> bool:
 
 
 class Progress:
-    """Output that shows the steps of a simulation: lines in a file, a bar on a terminal or in a notebook."""
+    """Output that shows the steps of a simulation: a line every five seconds, on a terminal one in place."""
 
     def __init__(self, simulation: Simulation, stream: TextIO | None = None) -> None:
         self._simulation, self._stream = simulation, stream or sys.stdout
-        self._bar = on_terminal(self._stream) or in_notebook()
-        self._begin = None if simulation.solution is None else simulation.solution.time
+        self._in_place = on_terminal(self._stream) or in_notebook()
+        self._begun = simulation.solution is not None
         self._samples: list[tuple[float, float]] = []  # wall clock, time of the run, since the first step
         self._shown: float | None = None
         self._pending: dict[str, float] | None = None
 
     def write(self, state: AcceptedState) -> None:
         """Show a step, but not the steady start, if it is the first or enough time has passed."""
-        if self._begin is None:
-            self._begin = state.time
+        if not self._begun:
+            self._begun = True
             return
         now, self._pending = clock.monotonic(), state.scalars
-        wait = SECONDS_BETWEEN_BARS if self._bar else SECONDS_BETWEEN_LINES
+        wait = SECONDS_IN_PLACE if self._in_place else SECONDS_BETWEEN_LINES
         if self._shown is None or now - self._shown >= wait:
             self._show(now)
 
@@ -70,58 +66,31 @@ class Progress:
         """Show the last step if it has not been shown."""
         if self._pending:
             self._show(clock.monotonic())
-        if self._bar and self._shown is not None:
-            self._stream.write("\n")
-            self._stream.flush()
+        if self._in_place and self._shown is not None:
+            print(file=self._stream, flush=True)
 
     def _show(self, now: float) -> None:
         scalars, self._pending = self._pending, None
-        end, time = self._simulation.end, scalars["time"]
-        remaining = self._remaining(now, time, end)
-        if self._bar:
-            self._draw_bar((time - self._begin) / (end - self._begin), remaining, scalars)
-        else:
-            if self._shown is None:
-                self._stream.write(_heading(scalars))
-            self._stream.write(_line(scalars, remaining))
-        self._stream.flush()
+        columns = [(s.progress, scalars[name], s.dtype) for name, s in STEP_SCALARS.items() if s.progress]
+        if self._shown is None:
+            headings = [column.heading.rjust(len(column.form.format(0))) for column, *_ in columns]
+            print(*headings, "remaining", file=self._stream)
+        cells = [c.form.format(int(v) if kind[0] == "i" else c.factor * v) for c, v, kind in columns]
+        remaining = self._remaining(now, scalars["time"], self._simulation.end)
+        begin, end = ("\r", "") if self._in_place else ("", "\n")
+        line = " ".join([*cells, f"{remaining:>9s}"])
+        print(begin + line, end=end, file=self._stream, flush=True)
         self._shown = now
 
     def _remaining(self, now: float, time: float, end: float) -> str:
         """Remaining time from the rate over the last half of the wall clock time; "?": not known yet."""
-        if not self._samples or now - self._samples[-1][0] > SECONDS_BETWEEN_BARS:
+        if not self._samples or now - self._samples[-1][0] > SECONDS_IN_PLACE:
             self._samples.append((now, time))
         begun = self._samples[0][0]
         since = next(sample for sample in reversed(self._samples) if sample[0] <= begun + 0.5 * (now - begun))
         if now - begun < MIN_RATE_TIME and time < end or time <= since[1]:
             return "0s" if time >= end else "?"
         return duration((now - since[0]) * max(end - time, 0.0) / (time - since[1]))
-
-    def _draw_bar(self, done: float, remaining: str, scalars: dict[str, float]) -> None:
-        values = [column.bar.format(value) for column, value in _scaled(scalars) if column.bar]
-        text = "  ".join([f" {100 * done:5.1f} %", *values, f"{remaining} left"])
-        columns = shutil.get_terminal_size().columns
-        width = max(10, columns - len(text) - 3)
-        bar = f"[{('#' * round(done * width)).ljust(width, '.')}]{text}"[: columns - 1]
-        self._stream.write("\r" + bar.ljust(columns - 1))
-
-
-def _scaled(scalars: dict[str, float]) -> Iterator[tuple[Any, float]]:
-    """Columns and scaled values of the scalars of a step."""
-    for name, scalar in STEP_SCALARS.items():
-        if scalar.progress and name in scalars:
-            value = scalars[name]
-            yield scalar.progress, int(value) if scalar.dtype[0] == "i" else scalar.progress.factor * value
-
-
-def _heading(scalars: dict[str, float]) -> str:
-    cells = [column.heading.rjust(len(column.form.format(0))) for column, _ in _scaled(scalars)]
-    return " ".join([*cells, _REMAINING.format("remaining")]) + "\n"
-
-
-def _line(scalars: dict[str, float], remaining: str) -> str:
-    cells = [column.form.format(value) for column, value in _scaled(scalars)]
-    return " ".join([*cells, _REMAINING.format(remaining)]) + "\n"
 
 
 def duration(seconds: float) -> str:
