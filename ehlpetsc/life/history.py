@@ -10,18 +10,15 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import change, check_space, create, extend, open_for_reading, plain, put_fixed
+from ehlpetsc.results.hdf5_file import check_space, extend, open_for_reading, plain
 from ehlpetsc.results.output_guard import os_reason, replacing
-
-if TYPE_CHECKING:
-    import h5py
-
 
 BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
@@ -65,16 +62,16 @@ class LifeFile:
         """
         if self._file:
             with contextlib.suppress(OSError, RuntimeError):  # its rows are complete
-                change(self._file, "status", status)
+                self._file.attrs.modify("status", np.bytes_(status.encode()))
                 self._file.close()
         self._file = None
 
     def _create(self, history: LifeHistory) -> None:
         with replacing(self.path) as temporary:
-            file = self._file = create(temporary)
+            file = self._file = h5py.File(temporary, "w", libver="latest")
             attributes = {"kind": KIND, "case": history.case, "title": history.title}
-            file.attrs.update(attributes | {"format_version": FORMAT})
-            put_fixed(file, "status", "running", 16)
+            status = np.array(b"running", "S16")  # of fixed length, to be overwritten at the end
+            file.attrs.update(attributes | {"format_version": FORMAT, "status": status})
             _lay_out(file, history)
             self._append(history, range(len(history.rows)))
             file.swmr_mode = True

@@ -183,7 +183,7 @@ def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -
     figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
     window, limits = frames.window(results, options), _limits(results, chosen)
     writer = PillowWriter(fps=RATE)
-    with replacing(path, keep_ending=True) as temporary, writer.saving(figure, temporary, DPI):
+    with replacing(path) as temporary, writer.saving(figure, temporary, DPI):
         for index in chosen:
             for panel in axes:
                 panel.clear()

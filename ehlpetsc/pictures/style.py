@@ -66,7 +66,7 @@ def save(
         metadata = {"Date": None} if path.suffix == ".svg" else None  # the same file from the same result
         with (
             matplotlib.rc_context({"svg.hashsalt": "ehlpetsc"}),
-            replacing(path, keep_ending=True) as temporary,
+            replacing(path) as temporary,
         ):
             figure.savefig(temporary, dpi=dpi, metadata=metadata)
 

@@ -8,7 +8,7 @@ import resource
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import h5py
 import numpy as np
@@ -17,11 +17,6 @@ from ehlpetsc.base.errors import OutputError
 
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
 BEING_WRITTEN = "already open"  # in the message of HDF5 on a file of a live or killed writer
-
-
-def create(path: Path | BinaryIO) -> h5py.File:
-    """New HDF5 file, in the format that can be read while it is written."""
-    return h5py.File(path, "w", libver="latest")
 
 
 def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
@@ -50,17 +45,6 @@ def plain(value: Any) -> Any:
 def attributes(item: h5py.HLObject) -> dict[str, Any]:
     """Attributes of a file, group or dataset by name."""
     return {name: plain(value) for name, value in item.attrs.items()}
-
-
-def put_fixed(file: h5py.File, name: str, text: str, length: int) -> None:
-    """Store a text of at most `length` bytes that :func:`change` may overwrite while the file is read."""
-    file.attrs.create(name, np.array(text.encode(), f"S{length}"))
-
-
-def change(file: h5py.File, name: str, text: str) -> None:
-    """Overwrite a text of :func:`put_fixed`."""
-    kind = file.attrs.get_id(name).dtype
-    file.attrs.modify(name, np.array(text.encode(), kind))
 
 
 def extend(dataset: h5py.Dataset, rows: Sequence | np.ndarray) -> None:

@@ -18,7 +18,6 @@ from ehlpetsc.results.output_guard import (
     atomic_write,
     check_output_path,
     inputs_of,
-    remove_stale,
 )
 from ehlpetsc.results.reader import Result, read_result
 
@@ -57,7 +56,6 @@ class Index:
         if self.path.exists() and not overwrite and self.kind not in read_index(self.path):
             raise OutputError(f"{self.path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}")
         self._lock.acquire()
-        remove_stale(self.path)
 
     def release(self) -> None:
         """Release the lock."""

@@ -6,7 +6,7 @@ import contextlib
 import fcntl
 import os
 import socket
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -14,9 +14,6 @@ from ehlpetsc.base.errors import OutputError
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
-import glob
-import secrets
-from collections.abc import Iterator
 
 WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
@@ -103,25 +100,22 @@ def inputs_of(case: Case) -> list[Path]:
 
 
 @contextlib.contextmanager
-def replacing(path: Path, keep_ending: bool = False) -> Iterator[Path]:
-    """Context manager of an empty temporary file next to `path`: renamed at the end, removed after an error.
+def replacing(path: Path) -> Iterator[Path]:
+    """Context manager of an empty temporary file beside `path`: renamed at the end, removed after an error.
 
-    An OSError of the temporary file names `path` as its file. With `keep_ending` the temporary file has the
-    suffix of `path`, for writers that derive the format from it.
+    An OSError of the temporary file names `path` as its file. What a killed process left is overwritten.
     """
-    path = Path(path)
-    ending = f".tmp{path.suffix}" if keep_ending else ".tmp"
     target = Path(os.path.realpath(path))
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.{secrets.token_hex(4)}{ending}")
+    temporary = target.with_name(f".tmp.{target.name}")
     try:
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        temporary.touch()
         yield temporary
         os.replace(temporary, target)
     except BaseException as error:
         with contextlib.suppress(OSError):
             temporary.unlink()
         if isinstance(error, OSError) and error.errno and error.filename in (None, str(temporary)):
-            raise OSError(error.errno, error.strerror, str(path)) from error
+            raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
         raise
 
 
@@ -133,18 +127,7 @@ def atomic_write(path: Path, content: bytes) -> None:
         os.fsync(file.fileno())
 
 
-def remove_stale(path: Path) -> None:
-    """Remove the temporary files that killed runs left next to `path`; the caller must have its lock."""
-    target = Path(os.path.realpath(path))
-    for temporary in target.parent.glob(f".{glob.escape(target.name)}.*.tmp*"):
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-
-
 def os_reason(error: Exception) -> str:
     """Message of the operating system without HDF5's text."""
-    if error.args and "errno = " in str(error):
-        code = int(str(error).split("errno = ")[1].split(",")[0])
-        return os.strerror(code)
     number = getattr(error, "errno", None)
     return os.strerror(number) if number else str(error)

@@ -142,12 +142,12 @@ def test_passes_killed_while_writing_the_index_are_completed(tmp_path, uninterru
     assert [
         row["pass"] for row in json.loads((tmp_path / "running_in.passes.json").read_text())["passes"]
     ] == [1]
-    assert [path for path in tmp_path.iterdir() if path.name.endswith(".tmp")]
+    assert [path for path in tmp_path.iterdir() if path.name.startswith(".tmp")]
     done = run(CASE, *BRIEF, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "pass 1 of 2" not in done.stdout
     assert_as_uninterrupted(tmp_path, uninterrupted)
-    assert not [path.name for path in tmp_path.iterdir() if path.name.endswith((".lock", ".tmp"))]
+    assert not [path.name for path in tmp_path.iterdir() if path.suffix == ".lock" or path.name[0] == "."]
 
 
 @pytest.mark.parametrize("case", [CASE, CASES / "stribeck.toml"])

@@ -80,7 +80,7 @@ def test_killed_run_restarts_from_its_last_checkpoint(whole, tmp_path):
     assert done.returncode == 0, done.stderr
     assert "step 10, " in done.stdout
     assert_equal(whole / "table1_rough.h5", tmp_path / "table1_rough.h5")
-    assert [p.name for p in tmp_path.iterdir() if p.name.endswith(".tmp")] == []
+    assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".tmp")] == []
 
 
 def test_time_limit_writes_a_restart_file(tmp_path):
@@ -148,17 +148,16 @@ def test_full_disk_keeps_all_stored_steps(tmp_path):
     often = settings("time.travel=100", "output.checkpoint=0.002")
     full = called(["prlimit", "--fsize=9000000", *command(*scene, *often)], tmp_path)
     assert full.returncode == 2
-    step, time = re.search(r" step (\d+) \((\S+) us\)", full.stderr).groups()
     same = "the same command continues from table1_rough.restart.h5"
     assert is_line_with(full.stderr, "table1_rough.h5: ", "File too large", same)
     with read_result(tmp_path / "table1_rough.h5") as result:
-        np.testing.assert_array_equal(result.steps("step"), range(int(step) + 1))
-        assert len(result.time) == int(step) + 1 and result.attrs["status"] == "stopped"
+        step = result.step[-1]
+        np.testing.assert_array_equal(result.steps("step"), range(step + 1))
+        assert len(result.time) == step + 1 and result.attrs["status"] == "stopped"
         assert np.isfinite(result["pressure"][:]).all()
-        assert float(time) == pytest.approx(1e6 * result.time[-1], abs=1e-4)
-    going_on = [*settings(f"time.travel={(int(step) + 2) / 140}"), "--restart", "table1_rough.restart.h5"]
+    going_on = [*settings(f"time.travel={(step + 2) / 140}"), "--restart", "table1_rough.restart.h5"]
     done = run(*scene, *going_on, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     begun = int(re.search(r"restart: table1_rough.restart.h5, step (\d+), ", done.stdout)[1])
-    assert 0 < begun <= int(step)
-    assert last_step(tmp_path / "table1_rough.h5") == (int(step) + 2, "done")
+    assert 0 < begun <= step
+    assert last_step(tmp_path / "table1_rough.h5") == (step + 2, "done")

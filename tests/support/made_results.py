@@ -11,7 +11,7 @@ import numpy as np
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.effects.quantities import FIELDS, of_every_case
-from ehlpetsc.results.writer import Layout, ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
 TABLE_1 = """title = "made up"
@@ -97,15 +97,16 @@ def made(
         "ranks": 1,
         "petsc_options": "",
     }
-    profiles = {side: (s, 1e-7 * np.cos(s / 1e-5), speed) for side in ("1", "2") if rough}
-    writer = ResultWriter(path, Layout(x * A, list(fields), profiles=profiles), attrs, every)
+    surface = StoredSurface(s, 1e-7 * np.cos(s / 1e-5), speed)
+    surfaces = {side: surface for side in ("1", "2") if rough}
+    writer = ResultWriter(path, Layout(x * A, list(fields), surfaces=surfaces), attrs)
     for step, time in enumerate(np.linspace(0, 40e-6, steps)):
         values, contact = fields_at(x, time, viscosity)
         values["pressure"] = factor * values["pressure"]
         scalars = {"dt": 40e-6 / (steps - 1) if steps > 1 else 0.0, "contacts": contact.sum()}
         scalars |= {"h_min": values["film_thickness"].min(), "p_max": values["pressure"].max()}
         scalars |= {"newton": 5, "load": 527e3, "approach": -1e-6, "wall": 0.02}
-        writer.append(step, time, values, scalars, contact)
+        writer.append(step, time, values, scalars, contact, step % every == 0)
     writer.close(status)
     return path
 

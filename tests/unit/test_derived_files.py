@@ -63,7 +63,7 @@ def test_full_disk_keeps_the_older_picture(tmp_path, capsys, words, name):
 
 def test_temporary_file_is_removed_after_an_error(tmp_path):
     (tmp_path / "a.png").write_text("older")
-    with pytest.raises(OSError) as failed, replacing(tmp_path / "a.png", keep_ending=True) as beside:
+    with pytest.raises(OSError) as failed, replacing(tmp_path / "a.png") as beside:
         assert beside.suffix == ".png" and beside.parent == tmp_path
         raise OSError(28, "No space left on device")
     assert failed.value.filename == str(tmp_path / "a.png")

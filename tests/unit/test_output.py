@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -18,7 +17,7 @@ from ehlpetsc.effects import quantities
 from ehlpetsc.effects.quantities import FIELDS, of_every_case
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
-from ehlpetsc.results.writer import Layout, ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 
 STORED = [*of_every_case(FIELDS), "void_fraction"]
 STEP_SCALARS = of_every_case(quantities.STEP_SCALARS)
@@ -28,29 +27,29 @@ SCALES = dict(a=3.3e-4, p0=1e9, h_scale=5.7e-6, u1=5.6, u2=4.4, ranks=2, petsc_o
 SCALARS = dict.fromkeys(STEP_SCALARS, 1)
 
 
-def make_writer(path, every=1, attributes=SCALES, resume_step=None, contact_count=None, **changes):
+def make_writer(path, attributes=SCALES, resume_step=None, contact_count=None, **changes):
     layout = dict(
         x=X,
         fields=STORED,
         scalars=list(STEP_SCALARS),
-        profiles={"1": (np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6}), "2": None},
+        surfaces={"1": StoredSurface(np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6})},
     )
     attributes = {"title": "ä", "case": 'title = "ä"\n'} | attributes
     going_on = dict(resume_step=resume_step, contact_count=contact_count)
-    return ResultWriter(path, Layout(**(layout | changes)), attributes, every, **going_on)
+    return ResultWriter(path, Layout(**(layout | changes)), attributes, **going_on)
 
 
-def put(writer, steps):
+def put(writer, steps, every=1):
     """Steps whose every value tells its step and node; node k is in contact in steps that k divides."""
     for step in steps:
         values = {name: step + np.arange(NX) / 100 for name in STORED}
         contact = step % (np.arange(NX) + 1) == 0
-        writer.append(step, step * 1e-7, values, SCALARS | {"newton": step}, contact)
+        writer.append(step, step * 1e-7, values, SCALARS | {"newton": step}, contact, step % every == 0)
 
 
 def written(path, steps, every=1, **changes):
-    writer = make_writer(path, every=every, **changes)
-    put(writer, steps)
+    writer = make_writer(path, **changes)
+    put(writer, steps, every)
     writer.close("done")
     return path
 
@@ -233,8 +232,8 @@ def count_after(steps):
 @pytest.mark.parametrize("every", [1, 3])
 def test_resumed_run_equals_an_uninterrupted_one(tmp_path, every):
     first = written(tmp_path / "first.h5", range(60), every=every)
-    writer = make_writer(first, every=every, resume_step=59, contact_count=count_after(60))
-    put(writer, range(60, 130))
+    writer = make_writer(first, resume_step=59, contact_count=count_after(60))
+    put(writer, range(60, 130), every)
     writer.close("done")
     assert_same_content(first, written(tmp_path / "whole.h5", range(130), every=every))
     with read_result(first) as result:
@@ -260,7 +259,6 @@ def test_killed_run_is_resumed_from_an_earlier_step(tmp_path):
         ({"x": X * 2, "resume_step": 9}, "mesh"),
         ({"fields": ["pressure"], "resume_step": 9}, r"quantities \(film_thickness, in_contact, "),
         ({"resume_step": 12}, "at step 9, before step 12 "),
-        ({"attributes": SCALES | {"u1": 6.0}, "resume_step": 9}, r"u1 = 5\.6"),
     ],
 )
 def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
@@ -276,15 +274,13 @@ def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, disk):
     writer = make_writer(tmp_path / "r.h5")
     put(writer, range(1100))  # one batch of 1024 is in the file
     disk[0] = 1_000_000
-    with pytest.raises(
-        OutputError, match=r"r\.h5: .* No space left .* step 10\d\d \(10\d\.\d+ us\)$"
-    ) as fault:
+    with pytest.raises(OutputError, match=r"r\.h5: .* No space left on device$"):
         put(writer, range(1100, 20_000))
-    last = int(re.search(r" step (\d+) ", str(fault.value))[1])
     with h5py.File(tmp_path / "r.h5", "r"):
         pass  # closed cleanly
     with read_result(tmp_path / "r.h5") as result:
-        assert result.attrs["status"] == "stopped"
+        last = result.step[-1]
+        assert result.attrs["status"] == "stopped" and last >= 1023
         np.testing.assert_array_equal(result.step, range(last + 1))
         np.testing.assert_array_equal(result.steps("newton"), range(last + 1))
         assert result.frame("pressure", -1)[1] == pytest.approx(last + 0.01)

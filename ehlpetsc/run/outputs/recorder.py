@@ -16,9 +16,9 @@ from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
-from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of, remove_stale
+from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
-from ehlpetsc.results.writer import Layout, ResultWriter
+from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run.outputs.checkpoint import load, save
 from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.ranks import on_root
@@ -26,6 +26,8 @@ from ehlpetsc.stepping.time_stepping import on_level
 
 if TYPE_CHECKING:
     from ehlpetsc.run.simulation import AcceptedState, Simulation
+
+STATISTICS = ("ra", "rq", "rsk")  # of a profile, stored as attributes
 
 
 class Recorder:
@@ -79,8 +81,6 @@ class Recorder:
         check_output_path(own, inputs)
         self._lock = Lock(output)
         self._lock.acquire()
-        for path in (output, own):
-            remove_stale(path)
         return restart if restart or overwrite else restart_of_same(output, own, case.text)
 
     def resume(self, path: Path) -> list[str]:
@@ -143,17 +143,15 @@ class Recorder:
             "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
             "versions": libraries(),
         }
+        self._surfaces = stored_surfaces(self.simulation)
         layout = Layout(
             x=scales.x * scales.a,
             fields=[name for name in case.output.fields if name in stored],
             scalars=of_case(STEP_SCALARS, case),
             precision=case.output.precision,
-            profiles=stored_profiles(self.simulation),
+            surfaces=self._surfaces,
         )
-        every = case.output.every
-        self._writer = ResultWriter(
-            self.output, layout, attributes, every, resume_step=step, contact_count=count
-        )
+        self._writer = ResultWriter(self.output, layout, attributes, resume_step=step, contact_count=count)
 
     def _append(self, state: AcceptedState) -> None:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
@@ -161,9 +159,13 @@ class Recorder:
         self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
 
     def _close(self, status: ExitStatus) -> None:
-        simulation = self.simulation
-        for side, name, depth in stored_depths(simulation):
-            self._writer.put_depth(side, name, depth)
+        simulation, surfaces = self.simulation, self._surfaces
+        points = tuple(surfaces[side].s if side in surfaces else None for side in ("1", "2"))
+        for effect in simulation.stepper.effects:
+            for name, pair in effect.on_surfaces(simulation.solution.records[effect.name], points).items():
+                for side, depth in zip(("1", "2"), pair, strict=True):
+                    if depth is not None:
+                        self._writer.put_depth(side, name, depth)
         self.totals = Totals(self.totals.values, self._writer.means())
         figures = self.totals.values | self.totals.means
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures)
@@ -181,38 +183,19 @@ def libraries() -> dict[str, str]:
     return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}
 
 
-def stored_profiles(simulation: Simulation) -> dict[str, tuple | None]:
-    """Profiles of both surfaces for `Layout`; None for a smooth surface without depths of effects."""
+def stored_surfaces(simulation: Simulation) -> dict[str, StoredSurface]:
+    """Rough surfaces, and the points of smooth ones that pass the mesh where effects have depths, by side."""
     depths = [name for effect in simulation.stepper.effects for name in effect.surface]
-    rough, speeds = simulation.roughness, (simulation.scales.u1, simulation.scales.u2)
-    sides: dict[str, tuple | None] = {}
-    for k, side in enumerate(("1", "2")):
+    rough, scales = simulation.roughness, simulation.scales
+    surfaces = {}
+    for side, speed, extent in zip("12", (scales.u1, scales.u2), simulation.operation.extent(), strict=True):
         profile = rough and rough.side(side)
         if profile:
-            scalars = {"ra": profile.ra, "rq": profile.rq, "rsk": profile.rsk}
-            sides[side] = profile.s, profile.z, speeds[k], scalars, depths
-        else:
-            sides[side] = _smooth_side(simulation, k, depths) if depths else None
-    return sides
-
-
-def stored_depths(simulation: Simulation) -> list[tuple[str, str, np.ndarray]]:
-    """Surface, quantity and depths [m] of effects at the body points of :func:`stored_profiles`."""
-    sides = stored_profiles(simulation)
-    points = tuple(side[0] if side else None for side in sides.values())
-    depths = []
-    for effect in simulation.stepper.effects:
-        for name, pair in effect.on_surfaces(simulation.solution.records[effect.name], points).items():
-            stored = [(side, name, depth) for side, depth in zip(sides, pair, strict=True)]
-            depths += [entry for entry in stored if entry[2] is not None]
-    return depths
-
-
-def _smooth_side(simulation: Simulation, side: int, depths: list[str]) -> tuple:
-    """Body points of a smooth surface that pass the mesh, for its depths; `side` 0: surface 1."""
-    scales = simulation.scales
-    smallest, largest = simulation.operation.extent()[side]
-    ends = scales.x[[0, -1]] * scales.a
-    s = np.arange(ends[0] - largest, ends[1] - smallest, scales.dx)
-    flat = {"ra": 0.0, "rq": 0.0, "rsk": 0.0}
-    return s, np.zeros_like(s), (scales.u1, scales.u2)[side], flat, depths
+            statistics = {name: getattr(profile, name) for name in STATISTICS}
+            surfaces[side] = StoredSurface(profile.s, profile.z, speed, statistics, depths)
+        elif depths:
+            ends = scales.x[[0, -1]] * scales.a
+            s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.dx)
+            flat = dict.fromkeys(STATISTICS, 0.0)
+            surfaces[side] = StoredSurface(s, np.zeros_like(s), speed, flat, depths)
+    return surfaces
