@@ -52,9 +52,8 @@ class Result(reader.Result):
         from ehlpetsc.pictures import frames, style
 
         indices = frames.choose_frames([self], step, time)
-        view = window or frames.default_window([self])
         figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
-        frames.fill_frame(axes, [self], indices, view)
+        frames.fill_frame(axes, [self], indices, frames.view([self], window))
         style.set_title(figure, *frames.panel_title([self], indices))
         return figure
 

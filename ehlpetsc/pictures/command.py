@@ -43,7 +43,7 @@ OTHERS = {  # that are no pictures: ending, allowed files, help
     "report": (".html", PAGES, "all of one result as one HTML page"),
     "movie": (".gif", (".gif",), "pressure and film over time, as a GIF"),
 }
-WITHOUT_FRAMES = ("stribeck", "traction")  # kinds that need the scalars of the steps alone
+OF_ONE = ("over_time", "map", "temperatures", "report")  # kinds of a single result
 
 
 def arguments() -> CommandParser:
@@ -55,8 +55,7 @@ def arguments() -> CommandParser:
     instant = parser.add_mutually_exclusive_group()
     instant.add_argument("--step", type=int, help="number of the time step [maximum load on solids]")
     instant.add_argument("--time", type=float, help="time [s]")
-    parser.add_argument("--around", type=float, metavar="X", help="centre of the view, x/a [half-widths]")
-    parser.add_argument("--width", type=float, help=f"width of the view [{frames.AROUND_WIDTH}]")
+    parser.add_argument("--window", type=float, nargs=2, metavar=("LOW", "HIGH"), help="limits of x/a")
     style.add_options(parser)
     kind = parser.add_mutually_exclusive_group()
     for name, (*_, text) in (FIGURES | OTHERS).items():
@@ -90,31 +89,22 @@ def _run(options: argparse.Namespace, kind: str | None, output: Path) -> None:
 
 def draw(results: list[Result], kind: str | None, options: argparse.Namespace, output: Path) -> None:
     """Draw one picture or movie into a file."""
-    _check(results, kind, options)
+    if kind in OF_ONE and len(results) > 1:
+        raise OutputError(f"{len(results)} results; allowed: --{kind.replace('_', '-')} of one")
+    low, high = frames.view(results, options.window)
+    for result in results:
+        if not len(result.time):
+            raise OutputError(f"{result.path}: no frame in it")
+        x = result.x / result.attrs["a"]
+        if np.count_nonzero((x >= low) & (x <= high)) < 2:
+            raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
     if kind == "movie":
         save_movie(results, options, output)
     elif kind == "report":
-        if len(results) > 1:
-            raise OutputError(f"{len(results)} results; allowed: --report of one")
         save_report(results[0], output)
     else:
         function = FIGURES[kind][0] if kind else frames.draw_frame
         style.save(function(results, options), output, chosen=options)
-
-
-def _check(results: list[Result], kind: str | None, options: argparse.Namespace) -> None:
-    for result in results:
-        if not len(result.time):
-            raise OutputError(f"{result.path}: no frame in it")
-        if kind in WITHOUT_FRAMES:
-            continue
-        missing = {"pressure", "film_thickness"} - set(result.fields)
-        if missing:
-            raise OutputError(f"{result.path}: does not store {' and '.join(sorted(missing))}")
-        low, high = frames.window([result], options)
-        x = result.x / result.attrs["a"]
-        if np.count_nonzero((x >= low) & (x <= high)) < 2:
-            raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
 
 
 def _stem(paths: list[str]) -> str:

@@ -23,7 +23,6 @@ WINDOW = (-1.6, 1.4)  # limits of x/a by default
 SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
 FAR = 1e3  # µm, to which solids are filled
-AROUND_WIDTH = 0.5  # half-widths, of a view around a point
 MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
 
 
@@ -49,39 +48,25 @@ def choose_frames(results: list[Result], step: int | None = None, time: float | 
     Results with different speeds are compared at equal travel of the faster surface, at which asperities are
     in the same position.
     """
-    first, shown = results[0], results[0]
-    if step is not None:
-        last = int(first.steps("step")[-1])
-        if not first.step[0] <= step <= last:
-            raise OutputError(f"{first.path}: --step {step}; allowed: {first.step[0]} to {last}")
-        frame = first.nearest_frame(step=step)
-    elif time is not None:
-        last = first.steps("time")[-1]
-        if not first.time[0] <= time <= last * (1.0 + 1e-9):
-            raise OutputError(f"{first.path}: --time {time:g}; allowed: {first.time[0]:g} to {last:.9g} s")
-        frame = first.nearest_frame(time=time)
+    first = results[0]
+    if step is None and time is None:
+        frame = frame_to_show(first, min(travel_of(result)[-1] for result in results))
     else:
-        shown = max(results, key=_load_on_solids)
-        frame = frame_to_show(shown, min(travel_of(result)[-1] for result in results))
-    travel, at = travel_of(shown)[frame], shown.time[frame]
-    return [frame if result is shown else _frame_at(result, travel, at) for result in results]
+        wanted, stored = (step, first.step) if time is None else (time, first.time)
+        if not stored[0] <= wanted <= stored[-1] * (1.0 + 1e-9):
+            allowed = f"{stored[0]:g} to {stored[-1]:g}"
+            raise OutputError(f"{first.path}: no frame at {wanted:g}; allowed: {allowed}")
+        frame = first.nearest_frame(step=step, time=time)
+    travel = travel_of(first)[frame]
+    return [frame, *(_frame_at(result, travel, first.time[frame]) for result in results[1:])]
 
 
 def _frame_at(result: Result, travel: float, time: float) -> int:
-    """Frame at a time [s], if the travel [half-widths] is that by then, otherwise at this travel."""
-    travels = travel_of(result)
+    """Frame at a travel [half-widths], of several that nearest to a time [s]."""
     last = path_length(result)[-1] / result.attrs["a"]
     if travel > last * (1.0 + 1e-9) + 1e-12:
         raise OutputError(f"{result.path}: ends at travel {last:.4g} a, before travel {travel:.4g} a")
-    if np.isclose(np.interp(time, result.time, travels), travel, rtol=1e-6, atol=1e-6):
-        return result.nearest_frame(time=time)
-    return int(np.argmin(np.abs(travels - travel)))
-
-
-def _load_on_solids(result: Result) -> tuple[float, float]:
-    """Sort key of results: maximum fraction of the load on the solids, then maximum pressure."""
-    share = np.nanmax(result.steps("contact_share")) if "contact_share" in result.scalars else 0.0
-    return (share if share > MIN_LOAD_ON_SOLIDS else 0.0), np.nanmax(result.steps("p_max"))
+    return int(np.argmin(np.abs(travel_of(result) - travel) + np.abs(result.time - time)))
 
 
 def frame_to_show(result: Result, reached: float = np.inf) -> int:
@@ -102,19 +87,11 @@ def frame_to_show(result: Result, reached: float = np.inf) -> int:
     return int(np.argmax(np.where(allowed, np.nan_to_num(values), -1.0)))
 
 
-def default_window(results: list[Result]) -> tuple[float, float]:
-    """Limits of x/a around the contact, within the domains of all results."""
+def view(results: list[Result], chosen: Sequence[float] | None = None) -> Sequence[float]:
+    """Limits of x/a, by default around the contact, within the domains of all results."""
     low = max(result.x[0] / result.attrs["a"] for result in results)
     high = min(result.x[-1] / result.attrs["a"] for result in results)
-    return max(low, WINDOW[0]), min(high, WINDOW[1])
-
-
-def window(results: list[Result], options: argparse.Namespace) -> tuple[float, float]:
-    """Limits of x/a of the options `around` and `width`."""
-    if options.around is None:
-        return default_window(results)
-    half = 0.5 * (options.width or AROUND_WIDTH)
-    return options.around - half, options.around + half
+    return chosen or (max(low, WINDOW[0]), min(high, WINDOW[1]))
 
 
 def instant(results: list[Result], indices: Sequence[int]) -> str:
@@ -126,7 +103,7 @@ def instant(results: list[Result], indices: Sequence[int]) -> str:
     times = np.array([result.time[k] for result, k in zip(results, indices, strict=True)])
     if np.ptp(times) > 0.5 * np.nanmax(first.steps("dt")):
         return travel
-    return f"step {first.step[index]}, {style.digits(1e6 * times[0])} µs, {travel}"
+    return f"step {first.step[index]}, {1e6 * times[0]:.4g} µs, {travel}"
 
 
 def panel_title(results: list[Result], indices: Sequence[int]) -> list[str]:
@@ -137,7 +114,7 @@ def panel_title(results: list[Result], indices: Sequence[int]) -> list[str]:
 
 
 def fill_frame(
-    axes: Sequence[Axes], results: list[Result], indices: Sequence[int], window: tuple[float, float]
+    axes: Sequence[Axes], results: list[Result], indices: Sequence[int], window: Sequence[float]
 ) -> None:
     """Draw pressure and film at an instant into two axes; of a single result also what the solids carry.
 
@@ -145,76 +122,60 @@ def fill_frame(
     """
     upper, lower = axes
     colours, names, key = style.series_colours(results)
-    single, thickest = len(results) == 1, 0.0
+    single, across, highest, thickest = len(results) == 1, np.linspace(*window, 801), 1e-3, 0.0
     for number, (result, index, colour) in enumerate(zip(results, indices, colours, strict=True)):
         line = dict(color=colour, lw=1.1, ls="--" if number == 1 and len(results) == 2 else "-")
-        x = result.x / result.attrs["a"]
-        shown = (x >= window[0]) & (x <= window[1])
-        film = 1e6 * result.frame("film_thickness", index)
+        x, shown, inside = shown_nodes(result, window)
+        pressure, film = 1e-9 * result.frame("pressure", index), 1e6 * result.frame("film_thickness", index)
         if single:
-            names = ["total pressure" if draw_solids(upper, result, index, shown) else "pressure"]
-            touching = shown & ("in_contact" in result and result.contacts_at(index))
-            if touching.any():
-                marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3)
-                lower.plot(x[touching], film[touching], "v", label="in contact", **marks)
-        upper.plot(x, 1e-9 * result.frame("pressure", index), label=names[number], **line)
-        label = ("film" if result.case.fluid else "gap") if single else None
-        lower.plot(x, film, label=label, **line)
-        thickest = max(thickest, film[shown & (np.abs(x) <= 1.0)].max(initial=0.0) or film[shown].max())
-    draw_hertz(upper, results, indices, window)
+            draw_solids(axes, result, index, shown)
+        upper.plot(x, pressure, label="pressure" if single else names[number], **line)
+        gap = "film" if result.case.fluid else "gap"
+        lower.plot(x, film, label=gap if single else None, **line)
+        highest = max(highest, pressure[shown].max())
+        thickest = max(thickest, film[inside].max() or film[shown].max())
+    contacts = [style.hertz_at(result, index) for result, index in zip(results, indices, strict=True)]
+    curves = {(a / r.attrs["a"], p0): None for r, (a, p0) in zip(results, contacts, strict=True)}
+    for number, (width, p0) in enumerate(curves):
+        pressure, label = 1e-9 * hertz_pressure(across / width, 1.0, p0), "_" * number + "Hertz"
+        upper.plot(across, pressure, ":", color="0.6", lw=0.9, zorder=1, label=label)
+        highest = max(highest, pressure.max())
     style.legend_beside(upper, title=style.UNITS.get(key, key))
     style.legend_beside(lower)
     lower.set(xlabel=ACROSS, xlim=window, ylim=(0.0, 1.15 * thickest or 1.0))
-    upper.set(ylabel=PRESSURE, ylim=(0.0, 1.05 * max(highest(upper, window), 1e-3)))
+    upper.set(ylabel=PRESSURE, ylim=(0.0, 1.05 * highest))
     lower.set_ylabel(FILM if any(result.case.fluid for result in results) else GAP)
-    x_in_mm(upper, results)
+    if len({float(result.attrs["a"]) for result in results}) == 1:
+        style.scale_above(upper, 1e3 * results[0].attrs["a"], "x [mm]")
     mark_flow(upper, results, indices)
 
 
-def draw_solids(axes: Axes, result: Result, index: int, shown: np.ndarray) -> bool:
-    """Fill the pressure of the solids; returns whether there is any at the nodes `shown`."""
-    if "contact_pressure" not in result:
-        return False
-    solids = 1e-9 * result.frame("contact_pressure", index)
-    if is_any := bool(solids[shown].any()):
-        solid = dict(color=style.SOLIDS, lw=0, zorder=1.5, label="of the solids")
-        axes.fill_between(result.x / result.attrs["a"], 0.0, solids, **solid)
-    return is_any
+def shown_nodes(result: Result, window: Sequence[float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x/a, whether nodes are in view, and whether also inside the contact, if any is; shape (nx,)."""
+    x = result.x / result.attrs["a"]
+    shown = (x >= window[0]) & (x <= window[1])
+    inside = shown & (np.abs(x) <= 1.0)
+    return x, shown, inside if inside.any() else shown
 
 
-def draw_hertz(
-    axes: Axes, results: list[Result], indices: Sequence[int], window: tuple[float, float]
-) -> None:
-    """Draw the Hertz pressures at the instants."""
-    x, label = np.linspace(*window, 801), "Hertz"
-    contacts = [style.hertz_at(result, index) for result, index in zip(results, indices, strict=True)]
-    for a, p0 in dict.fromkeys((a / r.attrs["a"], p0) for r, (a, p0) in zip(results, contacts, strict=True)):
-        axes.plot(x, 1e-9 * hertz_pressure(x / a, 1.0, p0), ":", color="0.6", lw=0.9, zorder=1, label=label)
-        label = None
-
-
-def highest(axes: Axes, window: tuple[float, float]) -> float:
-    """Maximum of all lines in view."""
-    data = np.concatenate([line.get_xydata() for line in axes.lines])
-    return float(data[(data[:, 0] >= window[0]) & (data[:, 0] <= window[1]), 1].max())
+def draw_solids(axes: Sequence[Axes], result: Result, index: int, shown: np.ndarray) -> None:
+    """Fill the pressure of the solids and mark nodes in contact, of those `shown`."""
+    x = result.x / result.attrs["a"]
+    if "contact_pressure" in result:
+        solids = np.where(shown, 1e-9 * result.frame("contact_pressure", index), 0.0)
+        label = "of the solids" if solids.any() else None
+        axes[0].fill_between(x, 0.0, solids, color=style.SOLIDS, lw=0, zorder=1.5, label=label)
+    if "in_contact" in result and (touching := shown & result.contacts_at(index)).any():
+        marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3, label="in contact")
+        axes[1].plot(x[touching], 1e6 * result.frame("film_thickness", index)[touching], "v", **marks)
 
 
 def mark_flow(axes: Axes, results: list[Result], indices: Sequence[int]) -> None:
-    """Draw an arrow in the direction of the entrainment, if there is oil and all results have the same."""
+    """Mark the direction of the entrainment, if there is oil and all results have the same."""
     signs = {np.sign(sum(style.speeds_at(result, k))) for result, k in zip(results, indices, strict=True)}
-    if len(signs) > 1 or signs == {0.0} or not any(result.case.fluid for result in results):
-        return
-    ends = dict(xy=(0.13, 0.9), xytext=(0.02, 0.9), xycoords="axes fraction", textcoords="axes fraction")
-    if signs == {-1.0}:
-        ends |= dict(xy=ends["xytext"], xytext=ends["xy"])
-    axes.annotate("", **ends, arrowprops=dict(arrowstyle="->", color="0.35"))
-    axes.text(0.14, 0.9, "flow", transform=axes.transAxes, va="center", fontsize="small", color="0.35")
-
-
-def x_in_mm(axes: Axes, results: list[Result]) -> None:
-    """Add an axis in mm if all results have the same a."""
-    if len({float(result.attrs["a"]) for result in results}) == 1:
-        style.scale_above(axes, 1e3 * results[0].attrs["a"], "x [mm]")
+    if len(signs) == 1 and any(result.case.fluid for result in results):
+        text = {1.0: "flow →", -1.0: "← flow"}.get(signs.pop())
+        axes.text(0.02, 0.9, text, transform=axes.transAxes, fontsize="small", color="0.35")
 
 
 def deformed_heights(result: Result, index: int) -> tuple[np.ndarray, np.ndarray]:
@@ -235,14 +196,11 @@ def deformed_heights(result: Result, index: int) -> tuple[np.ndarray, np.ndarray
     return middle - 0.5 * film, middle + 0.5 * film
 
 
-def deformed_surfaces(axes: Axes, result: Result, index: int, window: tuple[float, float]) -> None:
+def deformed_surfaces(axes: Axes, result: Result, index: int, window: Sequence[float]) -> None:
     """Draw both deformed surfaces at an instant, solids in grey."""
-    x = result.x / result.attrs["a"]
-    in_view = (x >= window[0]) & (x <= window[1])
+    x, _, inside = shown_nodes(result, window)
     lower, upper = (1e6 * height for height in deformed_heights(result, index))
-    inside = in_view & (np.abs(x) <= 1.0)
-    shown = inside if inside.any() else in_view
-    bottom, top = lower[shown].min(), upper[shown].max()
+    bottom, top = lower[inside].min(), upper[inside].max()
     room = 0.15 * (top - bottom)
     for height, end, side in ((upper, FAR, "1"), (lower, -FAR, "2")):
         axes.fill_between(x, height, end, color="0.85", lw=0)
@@ -253,13 +211,13 @@ def deformed_surfaces(axes: Axes, result: Result, index: int, window: tuple[floa
 
 def draw_frame(results: list[Result], options: argparse.Namespace) -> Figure:
     """Pressure and film at an instant; for one rough result also both deformed surfaces."""
-    indices, view = choose_frames(results, options.step, options.time), window(results, options)
+    indices, window = choose_frames(results, options.step, options.time), view(results, options.window)
     rough = len(results) == 1 and any(results[0].profile(side) for side in "12")
     size = (SIZE[0], HEIGHT_WITH_SURFACES) if rough else SIZE
     figure, axes = style.new_figure(3 if rough else 2, 1, size, sharex=True)
-    fill_frame(axes[:2], results, indices, view)
+    fill_frame(axes[:2], results, indices, window)
     if rough:
-        deformed_surfaces(axes[2], results[0], indices[0], view)
+        deformed_surfaces(axes[2], results[0], indices[0], window)
         axes[1].set_xlabel("")
     style.set_title(figure, *panel_title(results, indices))
     return figure

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
+from matplotlib.image import AxesImage
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
@@ -19,7 +19,6 @@ from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
-MAX_MAP_ROWS = 1000  # rows of pixels of a space-time map
 COLOUR_PERCENTILE = 99.9  # upper end of the colours, without a few sharp peaks
 TEMPERATURES = {
     "film_temperature": ("film", style.FILM),
@@ -43,88 +42,56 @@ COURSE_HEIGHT = 1.5  # inches of a panel
 
 def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
     """Pressure of one result over x and time, contacts outlined."""
-    result = _only(results, "--map")
+    [result] = results
     figure, axes = style.new_figure(1, 1, frames.SIZE)
-    columns, stride, values = field_over_time(result, "pressure", frames.window(results, options))
-    limits = (0.0, 1e-9 * float(np.percentile(values, COLOUR_PERCENTILE)))
-    image = space_time_map(axes, result, columns, stride, 1e-9 * values, limits, "viridis")
-    outline_contacts(axes, result, columns, stride)
+    window = frames.view(results, options.window)
+    image = space_time_map(axes, result, "pressure", window, 1e-9, vmin=0.0)
     figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
-    if result.contact_count.any():
-        mark = Line2D([], [], color=style.CONTACT, lw=1.0, label="in contact")
-        axes.legend(handles=[mark], loc="upper left", fontsize="small")
+    if "in_contact" in result and result.contact_count.any():
+        columns = style.in_view(result.x / result.attrs["a"], window)
+        touching = result.contacts_at(slice(0, len(result.time)), columns)
+        x, time = result.x[columns] / result.attrs["a"], 1e6 * result.time
+        axes.contour(x, time, touching, [0.5], colors=style.CONTACT, linewidths=0.7)
+        axes.plot([], [], color=style.CONTACT, lw=1.0, label="in contact")
+        axes.legend(loc="upper left", fontsize="small")
     style.set_title(figure, str(result.attrs["title"]), style.conditions(results))
     return figure
 
 
-def field_over_time(result: Result, name: str, window: tuple[float, float]) -> tuple[slice, int, np.ndarray]:
-    """Columns in view, stride of the drawn frames, and a field there, shape (frames, columns)."""
+def space_time_map(
+    axes: Axes, result: Result, name: str, window: Sequence[float], factor: float = 1.0, **colours: object
+) -> AxesImage:
+    """Draw a field times a factor over x and time; returns the image for a colour bar."""
     if len(result.time) < 2:
         raise OutputError(f"{result.path}: a map over time needs more than one stored frame")
-    stride = -(-len(result.time) // MAX_MAP_ROWS)
     columns = style.in_view(result.x / result.attrs["a"], window)
-    return columns, stride, result[name][: len(result.time) : stride, columns].astype(float)
-
-
-def space_time_map(
-    axes: Axes,
-    result: Result,
-    columns: slice,
-    stride: int,
-    values: np.ndarray,
-    limits: tuple[float | None, float],
-    colours: str,
-) -> ScalarMappable:
-    """Draw a field of every `stride`-th frame over x and time; returns the image for a colour bar."""
     x, time = result.x[columns] / result.attrs["a"], 1e6 * result.time
-    mesh = dict(vmin=limits[0], vmax=limits[1], cmap=colours, shading="nearest", rasterized=True)
-    image = axes.pcolormesh(x, time[::stride], values, **mesh)
-    axes.set(xlabel=ACROSS, ylabel="time [µs]", xlim=(x[0], x[-1]), ylim=(time[0], time[-1]))
-    return image
-
-
-def outline_contacts(axes: Axes, result: Result, columns: slice, stride: int) -> None:
-    """Outline nodes in contact, also of the frames between the drawn ones."""
-    touching = contacts_of_blocks(result, columns, stride) if "in_contact" in result else np.zeros(0)
-    if touching.any():
-        x, rows = result.x[columns] / result.attrs["a"], 1e6 * result.time[::stride]
-        axes.contour(x, rows, touching, [0.5], colors=style.CONTACT, linewidths=0.7)
-
-
-def contacts_of_blocks(result: Result, columns: slice, stride: int) -> np.ndarray:
-    """1 where a node is in contact in any of `stride` frames, one row for every `stride` frames."""
-    last = len(result.time)
-    blocks = (slice(begin, min(begin + stride, last)) for begin in range(0, last, stride))
-    return np.array([result.contacts_at(block, columns).any(axis=0) for block in blocks], dtype=int)
+    values = factor * result[name][: len(time), columns]
+    edges = (np.concatenate([v[:1], 0.5 * (v[1:] + v[:-1]), v[-1:]]) for v in (x, time))
+    axes.set(xlabel=ACROSS, ylabel="time [µs]")
+    return axes.pcolorfast(*edges, values, vmax=np.percentile(values, COLOUR_PERCENTILE), **colours)
 
 
 def draw_temperatures(results: list[Result], options: argparse.Namespace) -> Figure:
     """Pressure, film and temperatures of one result at an instant, the hotter surface over x and time."""
-    result = _only(results, "--temperatures")
-    if missing := [name for name in TEMPERATURES if name not in result.fields]:
-        raise OutputError(
-            f"{result.path}: does not store {', '.join(missing)}: the case needs a table [heat], and "
-            "output.fields with them where it is given"
-        )
-    steady, view = len(result.time) == 1, frames.window(results, options)
+    [result], window = results, frames.view(results, options.window)
+    steady = len(result.time) == 1
     size, heights = (STEADY_SIZE, HEIGHTS[:3]) if steady else (TEMPERATURE_SIZE, HEIGHTS)
     figure, axes = style.new_figure(len(heights), 1, size, sharex=True, height_ratios=heights)
     [index] = frames.choose_frames(results, options.step, options.time)
-    frames.fill_frame(axes[:2], results, [index], view)
-    temperatures_at(axes[2], result, index, view)
+    frames.fill_frame(axes[:2], results, [index], window)
+    temperatures_at(axes[2], result, index, window)
     axes[1].set_xlabel("")
     axes[-1].set_xlabel(ACROSS)
     if not steady:
         side = max("12", key=lambda name: np.nanmean(result.steps(f"temperature_{name}_mean")))
-        columns, stride, values = field_over_time(result, f"temperature_{side}", view)
-        limits = (None, float(np.percentile(values, COLOUR_PERCENTILE)))
-        image = space_time_map(axes[3], result, columns, stride, values, limits, "inferno")
+        image = space_time_map(axes[3], result, f"temperature_{side}", window, cmap="inferno")
         figure.colorbar(image, ax=axes[3], label=f"temperature of\nsurface {side} [K]")
     style.set_title(figure, *frames.panel_title(results, [index]))
     return figure
 
 
-def temperatures_at(axes: Axes, result: Result, index: int, window: tuple[float, float]) -> None:
+def temperatures_at(axes: Axes, result: Result, index: int, window: Sequence[float]) -> None:
     """Draw temperatures along the contact, in K and in degrees Celsius."""
     x = result.x / result.attrs["a"]
     columns = style.in_view(x, window)
@@ -139,10 +106,11 @@ def temperatures_at(axes: Axes, result: Result, index: int, window: tuple[float,
 
 def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> Figure:
     """Conditions, film, pressure, friction and temperatures of every step of one result over time."""
-    result = _only(results, "--over-time")
+    [result] = results
     if len(result.steps("time")) < 2:
         raise OutputError(f"{result.path}: is steady; allowed: --over-time of a run over time")
-    time, filled = 1e3 * result.steps("time"), 1e3 * filled_from(result)
+    time = 1e3 * result.steps("time")
+    filled = min(1e3 * filled_from(result), time[-1])
     panels = {
         label: (factor, shown)
         for label, (factor, names) in COURSES.items()
@@ -155,20 +123,13 @@ def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> 
             panel.plot(time, factor * result.steps(name), color=colour, lw=1.0, label=words)
         panel.set_ylabel(label, fontsize="small")
         panel.grid(lw=0.3)
-        if time[0] < filled < time[-1]:
-            panel.axvspan(time[0], filled, color="0.93", zorder=0)
+        panel.axvspan(time[0], filled, color="0.93", lw=0, zorder=0)
         if len(shown) > 1:
             style.legend_beside(panel)
     axes[-1, 0].set(xlabel="time [ms]", xlim=(time[0], time[-1]))
-    note = "grey: the profiles do not yet fill the contact" if time[0] < filled < time[-1] else ""
+    note = "grey: the profiles do not yet fill the contact" if filled > time[0] else ""
     style.set_title(figure, str(result.attrs["title"]), style.conditions(results), note)
     return figure
-
-
-def _only(results: list[Result], option: str) -> Result:
-    if len(results) > 1:
-        raise OutputError(f"{len(results)} results; allowed: {option} of one")
-    return results[0]
 
 
 MAX_FRAMES = 150
@@ -181,7 +142,7 @@ def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -
     last = len(results[0].time) - 1
     chosen = np.unique(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int))
     figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
-    window, limits = frames.window(results, options), _limits(results, chosen)
+    window, limits = frames.view(results, options.window), _limits(results, chosen)
     writer = PillowWriter(fps=RATE)
     with replacing(path) as temporary, writer.saving(figure, temporary, DPI):
         for index in chosen:

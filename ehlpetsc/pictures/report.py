@@ -16,7 +16,7 @@ from ehlpetsc.base.environment import has
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frames import default_window, frame_to_show, travel_of
+from ehlpetsc.pictures.frames import frame_to_show, travel_of, view
 from ehlpetsc.pictures.style import hertz_at
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
@@ -100,7 +100,7 @@ def facts(result: Result) -> list[tuple[str, str]]:
 def frames(result: Result) -> dict:
     """Pressure, film, contacts and Hertz contact of stored frames in view."""
     x, a = result.x / result.attrs["a"], result.attrs["a"]
-    columns = style.in_view(x, default_window([result]))
+    columns = style.in_view(x, view([result]))
     width = -(-len(x[columns]) // MAX_NODES)
     last, shown = len(result.time) - 1, frame_to_show(result)
     spread = np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int)

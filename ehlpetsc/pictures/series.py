@@ -68,7 +68,7 @@ def draw_pressure(axes: Axes, results: list[Result]) -> None:
     for result, colour, name in ((first, FIRST, "pass 1"), (last, LAST, f"pass {len(results)}")):
         axes.plot(x, 1e-9 * result["pressure"][frame], color=colour, label=name)
     axes.set(xlabel=style.ACROSS, ylabel="pressure [GPa]", xlim=(-1.2, 1.2))
-    style.legend_above(axes, title=f"at {style.digits(1e6 * first.time[frame])} µs")
+    style.legend_above(axes, title=f"at {1e6 * first.time[frame]:.4g} µs")
 
 
 def draw_plastic_area(axes: Axes, rows: list[dict]) -> None:

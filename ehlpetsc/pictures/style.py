@@ -103,12 +103,7 @@ def scale_above(axes: Axes, factor: float, label: str) -> None:
     above.set_xlabel(label, fontsize="small")
 
 
-def digits(value: float) -> str:
-    """Four significant digits without an exponent where it is avoidable: 355.0, 0.1234, 1e-08."""
-    return f"{value:.4g}"
-
-
-def in_view(x: np.ndarray, window: tuple[float, float]) -> slice:
+def in_view(x: np.ndarray, window: Sequence[float]) -> slice:
     """Nodes with x/a within the limits of a view."""
     nodes = np.flatnonzero((x >= window[0]) & (x <= window[1]))
     return slice(nodes[0], nodes[-1] + 1)

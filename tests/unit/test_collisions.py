@@ -8,7 +8,6 @@ from support import ROOT
 from support.made_results import TABLE_1, A
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.pictures.over_time import contacts_of_blocks
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter
 
@@ -77,12 +76,10 @@ def test_printed_film_in_contact_is_that_of_the_file(tmp_path):
     assert " 0.0221,3.00" in collisions.report([found], [0.01], "fluid.viscosity", A)[2]
 
 
-def test_contacts_of_a_map_are_those_of_the_frames(tmp_path):
+def test_contacts_are_those_of_the_frame(tmp_path):
     whole = make(tmp_path / "whole.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)])
     assert whole.in_contact.any() and not whole.in_contact.all()
     np.testing.assert_array_equal(whole.contacts_at(40, slice(100, 200)), whole.in_contact[40, 100:200])
-    shown = slice(100, 200)
-    np.testing.assert_array_equal(contacts_of_blocks(whole, shown, 1), whole.in_contact[:, shown])
     films = make(tmp_path / "film.h5", 0.01, [], fields=FIELDS[:2])
     with pytest.raises(OutputError, match="film.h5: does not store in_contact"):
         films.contacts_at(40)
