@@ -73,11 +73,9 @@ def save(
 
 def shades(count: int) -> list:
     """Colours of the members of a series, or of depths; the light end of the map is not visible on white."""
-    return (
-        [SINGLE, SECOND]
-        if count == 2
-        else [matplotlib.colormaps["viridis"](0.9 * k / max(count - 1, 1)) for k in range(count)]
-    )
+    if count <= 2:
+        return [SINGLE, SECOND][:count]
+    return [matplotlib.colormaps["viridis"](0.9 * k / (count - 1)) for k in range(count)]
 
 
 def legend_beside(axes: Axes, handles: Sequence[Artist] | None = None, title: str | None = None) -> None:
