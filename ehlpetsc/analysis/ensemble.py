@@ -85,11 +85,6 @@ def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
     return found
 
 
-def deviation(values: np.ndarray) -> float:
-    """Standard deviation of runs, with n - 1; nan for one run."""
-    return float(values.std(ddof=1)) if values.size > 1 else np.nan
-
-
 def table(results: list[Result], _chosen: argparse.Namespace | None = None) -> list[Sequence]:
     """Names of the columns, then a row for each scalar of each ensemble."""
     found = ensembles(results)
@@ -101,7 +96,8 @@ def table(results: list[Result], _chosen: argparse.Namespace | None = None) -> l
     rows: list[Sequence] = [COLUMNS]
     for ensemble, scalars in found.items():
         for name, values in scalars.items():
-            reduced = values.mean(), deviation(values), values.min(), values.max()
+            deviation = values.std(ddof=1) if values.size > 1 else np.nan
+            reduced = values.mean(), deviation, values.min(), values.max()
             rows.append((ensemble, name, _units(name), values.size, *(f"{v:.6g}" for v in reduced)))
     return rows
 

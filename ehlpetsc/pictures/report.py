@@ -29,14 +29,8 @@ MINIMUM_SCALARS = {"h_min", "film_central", "mean_gap_ratio"}  # of several step
 FIELDS = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
 SHOWN_UNITS = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
 HIDDEN_SCALARS = set("step time dt newton retries load wall load_error mass_error".split())
-MEANS = {  # over the time in which both surfaces fill the contact: label, factor, unit
-    "friction_coefficient": ("mean friction coefficient", 1.0, ""),
-    "film_central": ("mean central film", 1e6, " µm"),
-    "lambda_ratio": ("lambda ratio", 1.0, ""),
-    "mean_gap_ratio": ("mean gap ratio", 1.0, ""),
-    "contact_share": ("mean share of the load on the solids", 100.0, " %"),
-}
-TEMPERATURES = ("film_temperature_max", "temperature_1_max", "temperature_2_max")
+EXTREMES = """h_min p_max film_temperature_max temperature_1_max temperature_2_max load_error
+mass_error""".split()  # of the run, in the table at the top
 
 
 def save_report(result: Result, path: Path) -> None:
@@ -75,26 +69,30 @@ def report_data(result: Result) -> dict:
 
 
 def facts(result: Result) -> list[tuple[str, str]]:
-    """Names and values of the table at the top."""
-    attrs, steps = result.attrs, result.steps
+    """Names and values of the table at the top; means as of `ehlpetsc.results.means`."""
     rows = [
-        ("ended as", str(attrs.get("status", "unknown"))),
+        ("ended as", str(result.attrs["status"])),
         ("contact", f"{result.case.contact.model} contact, {style.conditions([result])}"),
-        ("nodes, steps", f"{len(result.x)}, {len(steps('time')) - 1}"),
-        ("minimum film", f"{1e6 * np.nanmin(steps('h_min')):.4g} µm"),
-        ("maximum pressure", f"{1e-9 * np.nanmax(steps('p_max')):.4g} GPa"),
+        ("nodes, steps", f"{len(result.x)}, {len(result.steps('time')) - 1}"),
     ]
-    found = means(result)
-    for name, (label, factor, unit) in MEANS.items():
-        if name in found:
-            rows.append((label, f"{factor * found[name]:.4g}{unit}"))
-    if TEMPERATURES[0] in result.scalars:
-        values = ", ".join(f"{np.nanmax(steps(name)) - 273.15:.1f}" for name in TEMPERATURES)
-        rows.append(("maximum temperature of film, surface 1, surface 2", f"{values} °C"))
-    for name, words in (("load_error", "load"), ("mass_error", "oil balance")):
-        if np.isfinite(steps(name)).any():
-            rows.append((f"maximum error of the {words}", f"{np.nanmax(steps(name)):.2g}"))
-    return rows + [("limit", line) for line in str(attrs.get("limits", "")).strip().splitlines()]
+    for name in EXTREMES:
+        if name in result.scalars and np.isfinite(values := result.steps(name)).any():
+            extreme = np.nanmin(values) if name in MINIMUM_SCALARS else np.nanmax(values)
+            rows.append((STEP_SCALARS[name].long_name, _with_unit(name, extreme)))
+    for name, mean in means(result).items():
+        rows.append((f"{name.replace('_', ' ')}, mean", _with_unit(name, mean)))
+    return rows + [("limit", line) for line in str(result.attrs.get("limits", "")).strip().splitlines()]
+
+
+def _shown_unit(name: str) -> tuple[str, float]:
+    """Unit in which a scalar is shown, and the factor to it."""
+    unit = STEP_SCALARS[name].units
+    return SHOWN_UNITS.get(unit, (unit, 1.0))
+
+
+def _with_unit(name: str, value: float) -> str:
+    unit, factor = _shown_unit(name)
+    return f"{factor * value:.4g} {unit}".strip()
 
 
 def frames(result: Result) -> dict:
@@ -137,10 +135,9 @@ def scalars_over_time(result: Result) -> dict:
         finite = values[np.isfinite(values)]
         if not finite.size or np.ptp(finite) <= MIN_CHANGE * np.abs(finite).max():
             continue
-        scalar = STEP_SCALARS[name]
-        unit, factor = SHOWN_UNITS.get(scalar.units, (scalar.units, 1.0))
+        unit, factor = _shown_unit(name)
         reduce = np.fmin.reduce if name in MINIMUM_SCALARS else np.fmax.reduce
-        label = f"{scalar.long_name} [{unit}]" if unit else scalar.long_name
+        label = STEP_SCALARS[name].long_name + (f" [{unit}]" if unit else "")
         figures.append({"name": label, "y": _packed(binned(factor * values, width, reduce))})
     return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
 

@@ -89,20 +89,16 @@ def draw_plastic_area(axes: Axes, rows: list[dict]) -> None:
 def draw_contact(axes: Axes, rows: list[dict]) -> None:
     """Draw the means of the load fraction of the solids and of the contact length."""
     share, length = (
-        np.array([np.nan if row.get(name) is None else row[name] for row in rows])
-        for name in ("contact_share", "contact_length")
+        np.array([row.get(name) for row in rows], float) for name in ("contact_share", "contact_length")
     )
     axes.plot(*_over_passes(axes, share), ".-", color=LAST)
     axes.set_ylabel("share of the load on solids", color=LAST)
     length_axes = axes.twinx()
     length_axes.plot(*_over_passes(axes, 1e6 * length), ".--", color=style.SINGLE)
     length_axes.set_ylabel("length in contact [µm]", color=style.SINGLE)
+    axes.set_ylim(bottom=0.0)
     # twice the room above, so that both curves stay apart
-    for panel, values, room in ((axes, share, 1.15), (length_axes, 1e6 * length, 2.3)):
-        panel.set_ylim(0.0, room * np.nanmax(values, initial=0.0) or 1.0)
-    if not np.isfinite(share).any():
-        note = "the run ends before both surfaces\nfill the contact: no means over time"
-        axes.text(0.5, 0.5, note, transform=axes.transAxes, ha="center", va="center")
+    length_axes.set_ylim(0.0, 2.3e6 * np.nanmax(length, initial=0.0) or 1.0)
 
 
 def draw_fatigue(axes: Axes, damages: list[PostResult], side: str) -> None:

@@ -76,8 +76,8 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
         np.testing.assert_array_equal(unpacked(contacts["y"]), r.steps("contacts")[1:])
         assert frames["step"][frames["first"]] == r.step[plot_first(r)]
         facts, means = dict(data["facts"]), Totals.of_result(r).means
-        assert facts["mean friction coefficient"] == f"{means['friction_coefficient']:.4g}"
-        assert facts["mean share of the load on the solids"] == f"{100 * means['contact_share']:.4g} %"
+        assert facts["friction coefficient, mean"] == f"{means['friction_coefficient']:.4g}"
+        assert facts["maximum pressure"] == f"{1e-9 * r.steps('p_max').max():.4g} GPa"
         assert " contact, u = " in facts["contact"] and facts["contact"].endswith(", oil 5 mPa s")
     names = [figure["name"] for figure in data["steps"]["figures"]]
     assert data["damage"] is None and "maximum pressure [GPa]" in names
