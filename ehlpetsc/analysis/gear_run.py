@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,8 +42,6 @@ class GearRun:
     path : ehlpetsc.gears.path.Path
     rho, position
         Position of each step on the line of action from the base circle and from the pitch point [m].
-    friction
-        Friction coefficient of each step.
     scalars
         Those of `SCALARS` in the result.
     rating
@@ -59,23 +58,16 @@ class GearRun:
             self.path, self.title = path_of_contact(gears.pair), result.attrs["title"]
             self.rho = result.steps("speed_1") / self.path.pair.angular_speeds[0]
             self.scalars = {name: result.steps(name) for name, _, _ in SCALARS if name in result.scalars}
-            self.friction = result.steps("friction_coefficient")
         self.modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
         self.position = self.rho - self.path.pair.points["C"]
         self.rating, self.bulk = rating, min(heat.bulk_temperature) if heat else np.nan
         self.standards = values_of(rating) if rating else {}
         post = Path(file).with_suffix(".post.h5")
-        self.damage = FlankDamage(post, self.profile_offsets) if post.exists() else None
-
-    @property
-    def profile_offsets(self) -> tuple[float, float]:
-        """Arc lengths of both flanks at the beginning of the run, from A [m]."""
-        first, second = self.path.pair.flank_arcs(self.rho[0])
-        return float(first), float(second)
+        self.damage = FlankDamage(post, self.path.pair.flank_arcs(self.rho[0])) if post.exists() else None
 
     def friction_on_path(self) -> np.ndarray:
         """Friction coefficient at the samples of the path; constant beyond the ends of the run."""
-        return np.interp(self.path.rho, self.rho, self.friction)
+        return np.interp(self.path.rho, self.rho, self.scalars["friction_coefficient"])
 
     def mean(self, name: str) -> float:
         """Mean of a scalar along the path, nan without."""
@@ -85,7 +77,7 @@ class GearRun:
     def figures(self) -> dict[str, float]:
         """Figures of the run by name and unit, those of standards under their names; nan without."""
         friction, nothing = self.friction_on_path(), np.full(len(self.rho), np.nan)
-        pressure, film = (self.scalars.get(name, nothing) for name in ("p_max", "film_central"))
+        pressure, film = self.scalars["p_max"], self.scalars["film_central"]
         hottest = [self.scalars.get(f"temperature_{side}_max", nothing).max() for side in "12"]
         roughness = self.rating.roughness if self.rating and self.rating.roughness else np.nan
         figures = {
@@ -99,7 +91,7 @@ class GearRun:
             "Hertz pressure at A [GPa]": 1e-9 * hertz(self.path, self.modulus)[1][0],
             "maximum pressure at A, mean over 1 % of the path [GPa]": 1e-9 * self.averaged(pressure)[0],
             "maximum pressure [GPa]": 1e-9 * pressure.max(),
-            "minimum film [µm]": 1e6 * float(self.scalars["h_min"].min()),
+            "minimum film [µm]": 1e6 * self.scalars["h_min"].min(),
             "mean share of the load on the solids": self.mean("contact_share"),
         }
         maxima = self.damage.maxima() if self.damage else {}
@@ -151,7 +143,7 @@ class FlankDamage:
     damage.
     """
 
-    def __init__(self, file: Path, profile_offsets: tuple[float, float]) -> None:
+    def __init__(self, file: Path, profile_offsets: Sequence[float]) -> None:
         post = PostResult(file)
         self.depths = post.z * post.a
         self.arcs = [begin - post.s[::-1] for begin in profile_offsets]

@@ -15,7 +15,6 @@ import argparse
 import contextlib
 import re
 from pathlib import Path
-from subprocess import CalledProcessError
 
 import numpy as np
 
@@ -39,9 +38,9 @@ FIGURES = {
     "temperatures": (draw_temperatures, "of film and surfaces, of one with [heat]"),
     "running_in": (draw_running_in, "surfaces and pressure pass by pass"),
 }
-OTHERS = {  # that are no pictures: ending, allowed files, help
-    "report": (".html", PAGES, "all of one result as one HTML page"),
-    "movie": (".gif", (".gif",), "pressure and film over time, as a GIF"),
+OTHERS = {  # that are no pictures: endings of their files, help
+    "report": (PAGES, "all of one result as one HTML page"),
+    "movie": ((".gif",), "pressure and film over time, as a GIF"),
 }
 OF_ONE = ("over_time", "map", "temperatures", "report")  # kinds of a single result
 
@@ -56,41 +55,44 @@ def arguments() -> CommandParser:
     instant.add_argument("--step", type=int, help="number of the time step [maximum load on solids]")
     instant.add_argument("--time", type=float, help="time [s]")
     parser.add_argument("--window", type=float, nargs=2, metavar=("LOW", "HIGH"), help="limits of x/a")
-    style.add_options(parser)
+    parser.add_argument("--dpi", type=float, default=style.DPI, help="dots per inch of a png [%(default)s]")
+    parser.add_argument("--size", type=float, nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches")
+    parser.add_argument("--no-title", action="store_true", help="without the title above the panels")
     kind = parser.add_mutually_exclusive_group()
-    for name, (*_, text) in (FIGURES | OTHERS).items():
-        kind.add_argument(f"--{name.replace('_', '-')}", action="store_true", help=text)
+    for name, (_, text) in (FIGURES | OTHERS).items():
+        option = f"--{name.replace('_', '-')}"
+        kind.add_argument(option, dest="kind", action="store_const", const=name, help=text)
     return parser
 
 
 def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     options = arguments().parse_args(words)
-    kind = next((name for name in (*FIGURES, *OTHERS) if getattr(options, name)), None)
-    ending = OTHERS[kind][0] if kind in OTHERS else f".{kind}.png" if kind else ".png"
-    output = options.output or Path(_stem(options.results) + ending)
-    return exit_status("plot", lambda: _run(options, kind, output), (ValueError, CalledProcessError), output)
+    allowed = OTHERS[options.kind][0] if options.kind in OTHERS else PICTURES
+    kind = f".{options.kind}" if options.kind in FIGURES else ""
+    output = options.output or Path(_stem(options.results) + kind + allowed[0])
+    return exit_status("plot", lambda: _run(options, output, allowed), (ValueError,), output)
 
 
-def _run(options: argparse.Namespace, kind: str | None, output: Path) -> None:
-    signatures, inputs = OTHERS[kind][1] if kind in OTHERS else PICTURES, list(map(Path, options.results))
+def _run(options: argparse.Namespace, output: Path, allowed: tuple[str, ...]) -> None:
+    inputs = list(map(Path, options.results))
     if any(path.suffix == ".toml" for path in inputs):
-        if len(inputs) > 1 or kind:
+        if len(inputs) > 1 or options.kind:
             raise OutputError(f"{inputs[0]}: a case is drawn alone, without results and kinds of pictures")
-        check_derived(output, inputs, signatures)
+        check_derived(output, inputs, allowed)
         style.save(draw_case(inputs[0], options.set), output, chosen=options)
     else:
         with contextlib.ExitStack() as stack:
             results = in_order(open_all(options.results, stack))
-            check_derived(output, [*inputs, *(result.path for result in results)], signatures)
-            draw(results, kind, options, output)
+            check_derived(output, [*inputs, *(result.path for result in results)], allowed)
+            draw(results, options, output)
     print(output)
 
 
-def draw(results: list[Result], kind: str | None, options: argparse.Namespace, output: Path) -> None:
+def draw(results: list[Result], options: argparse.Namespace, output: Path) -> None:
     """Draw one picture or movie into a file."""
-    if kind in OF_ONE and len(results) > 1:
-        raise OutputError(f"{len(results)} results; allowed: --{kind.replace('_', '-')} of one")
+    if options.kind in OF_ONE and len(results) > 1:
+        raise OutputError(f"{len(results)} results; allowed: --{options.kind.replace('_', '-')} of one")
     low, high = frames.view(results, options.window)
     for result in results:
         if not len(result.time):
@@ -98,12 +100,12 @@ def draw(results: list[Result], kind: str | None, options: argparse.Namespace, o
         x = result.x / result.attrs["a"]
         if np.count_nonzero((x >= low) & (x <= high)) < 2:
             raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
-    if kind == "movie":
+    if options.kind == "movie":
         save_movie(results, options, output)
-    elif kind == "report":
+    elif options.kind == "report":
         save_report(results[0], output)
     else:
-        function = FIGURES[kind][0] if kind else frames.draw_frame
+        function = FIGURES[options.kind][0] if options.kind else frames.draw_frame
         style.save(function(results, options), output, chosen=options)
 
 

@@ -31,14 +31,6 @@ SMALL = dict(fontsize="small", title_fontsize="small")  # of legends
 LEGEND_ENTRIES = 12
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a picture to a command."""
-    add = parser.add_argument_group("pictures").add_argument
-    add("--dpi", type=float, default=DPI, help="dots per inch of a png [%(default)s]")
-    add("--size", type=float, nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches")
-    add("--no-title", action="store_true", help="without the title above the panels")
-
-
 def new_figure(rows: int, columns: int, size: tuple[float, float], **shared: object) -> tuple[Figure, Axes]:
     """Figure and axes without pyplot, so that a notebook does not display the figure; `size` in inches."""
     figure = Figure(figsize=size, layout="constrained")
@@ -53,7 +45,7 @@ def set_title(figure: Figure, *lines: str) -> None:
 def save(
     figure: Figure, *paths: str | Path, chosen: argparse.Namespace | None = None, dpi: float = DPI
 ) -> None:
-    """Write a figure, in the format of each file name; `chosen` has the options of `add_options`."""
+    """Write a figure, in the format of each file name; `chosen` are the options of the command."""
     if chosen:
         dpi = chosen.dpi
         figure.set_size_inches(chosen.size or figure.get_size_inches())
