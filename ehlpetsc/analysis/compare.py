@@ -77,14 +77,15 @@ def compare(one: Result, other: Result) -> Iterator[Difference]:
     skipped = () if len(one.x) == len(other.x) == len(x) else OF_NODES
     for name in [name for name in FIELDS if name in one.fields and name in other.fields]:
         if name not in skipped:
-            values = [r[name][: len(r.time)][f][:, n] for r, f, n in zip(both, frames, nodes, strict=True)]
-            yield difference(name, FIELDS[name].units, *values, x, time)
+            first, second = (r[name][f][:, n] for r, f, n in zip(both, frames, nodes, strict=True))
+            yield difference(name, FIELDS[name].units, first, second, x, time)
     rows = common(one.steps("time"), other.steps("time"), "time steps")
     shared, time = set(one.scalars) & set(other.scalars), one.steps("time")[rows[0]]
     for name in [name for name in STEP_SCALARS if STEP_SCALARS[name].compared and name in shared]:
         if name not in skipped:
-            values = [result.steps(name)[chosen, None] for result, chosen in zip(both, rows, strict=True)]
-            yield difference(f"steps/{name}", STEP_SCALARS[name].units, *values, np.array([np.nan]), time)
+            first, second = (r.steps(name)[chosen, None] for r, chosen in zip(both, rows, strict=True))
+            nowhere = np.array([np.nan])
+            yield difference(f"steps/{name}", STEP_SCALARS[name].units, first, second, nowhere, time)
 
 
 def difference(
