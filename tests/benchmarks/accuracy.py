@@ -15,7 +15,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -23,7 +22,6 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 import ehlpetsc
@@ -50,26 +48,16 @@ MEASURES = {
     "contact": "length in contact",
     "damage": "damage, decades",
 }
-COLUMNS = ("varied", "value", "converged", "cpu_s", "newton", "steps", *MEASURES)
+COLUMNS = ("varied", "value", "cpu_s", "newton", "steps", *MEASURES)
 ORDERS = (0.5, 2.0)  # limits of the observed order
 
 
-@dataclass
-class Measured:
-    """Cost of a run, films of its last frame [m], extremes, mean contact length [a]."""
+def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool, folder: Path) -> dict:
+    """Run a case with these values of keys and, without a dot in the name, of PETSc options.
 
-    cost: dict[str, float]
-    x: np.ndarray
-    h: np.ndarray
-    h_min: float
-    h_c: float
-    p_max: float
-    contact: float
-    damage: float  # log10 of the maximum on surface 2
-
-
-def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool, folder: Path) -> Measured:
-    """Run a case with these values of keys and, without a dot in the name, of PETSc options."""
+    Cost, x/a and film of the last frame [m], minimum and central film [m], maximum pressure [Pa], mean
+    contact length [a], log10 of the maximum damage on surface 2.
+    """
     keys = [f"{key}={value}" for key, value in values.items() if "." in key]
     options = {name: value for name, value in values.items() if "." not in name}
     fields = ("pressure", "film_thickness", *(("shear_stress_1", "shear_stress_2") if damage else ()))
@@ -80,17 +68,18 @@ def run(case: Path, overrides: list[str], values: dict[str, float], damage: bool
     result = ehlpetsc.solve(given, output, options, overwrite=True, progress=False)
     steps, x = result.steps, result.x / result.attrs["a"]
     h, dt = result.frame("film_thickness", -1), steps("dt")
-    cost = {"cpu_s": float(steps("wall").sum()), "newton": int(steps("newton").sum()), "steps": len(dt) - 1}
-    return Measured(
-        cost,
-        x,
-        h,
-        float(steps("h_min").min()),
-        float(h[np.argmin(np.abs(x))]),
-        float(steps("p_max").max()),
-        float((steps("contacts") * dt).sum() / dt.sum() * (x[1] - x[0])) if dt.sum() else 0.0,
-        _damage(output) if damage else np.nan,
-    )
+    return {
+        "cpu_s": float(steps("wall").sum()),
+        "newton": int(steps("newton").sum()),
+        "steps": len(dt) - 1,
+        "x": x,
+        "h": h,
+        "h_min": steps("h_min").min(),
+        "h_c": h[np.argmin(np.abs(x))],
+        "p_max": steps("p_max").max(),
+        "contact": (steps("contacts") * dt).sum() / dt.sum() * (x[1] - x[0]) if dt.sum() else 0.0,
+        "damage": _damage(output) if damage else np.nan,
+    }
 
 
 def _damage(path: Path) -> float:
@@ -100,18 +89,18 @@ def _damage(path: Path) -> float:
     return float(np.log10(PostResult(post_path(path)).passed("2").max()))
 
 
-def errors(found: Measured, true: Measured) -> dict[str, float]:
+def errors(found: dict, true: dict) -> dict[str, float]:
     """Relative errors by measure; film: local maximum over h_c, damage: difference in decades."""
-    inside = np.abs(found.x) <= 1.0
-    local = np.abs(found.h - np.interp(found.x, true.x, true.h))[inside].max() / true.h_c
+    inside = np.abs(found["x"]) <= 1.0
+    local = np.abs(found["h"] - np.interp(found["x"], true["x"], true["h"]))[inside].max() / true["h_c"]
     relative = {
-        name: abs(getattr(found, name) / getattr(true, name) - 1.0) if getattr(true, name) else np.nan
+        name: abs(found[name] / true[name] - 1.0) if true[name] else np.nan
         for name in ("h_min", "h_c", "p_max", "contact")
     }
-    return {**relative, "film": local, "damage": abs(found.damage - true.damage)}
+    return {**relative, "film": local, "damage": abs(found["damage"] - true["damage"])}
 
 
-def uncertainty(fine: Measured, middle: Measured, coarse: Measured) -> dict[str, float]:
+def uncertainty(fine: dict, middle: dict, coarse: dict) -> dict[str, float]:
     """Estimated error of the finest of three runs, by measure."""
     first, second = errors(middle, fine), errors(coarse, fine)
     estimates = {}
@@ -132,14 +121,22 @@ def table(
     finest = REFERENCE_TOLERANCES
     if settings.time:
         base[STEP], varied[STEP], finest = settings.time.courant, courant, finest | {STEP: 0.5 * min(courant)}
-    print(text(dict(zip(COLUMNS, COLUMNS, strict=True))))
+    print("".join(f"{name:>17}" for name in COLUMNS))
+    rows = []
+
+    def add(varied: str, value: object, found: dict) -> None:
+        row = dict.fromkeys(COLUMNS, np.nan) | {"varied": varied, "value": value} | found
+        rows.append(row)
+        cells = (f"{row[name]:.3g}" if isinstance(row[name], float) else row[name] for name in COLUMNS)
+        print("".join(f"{cell:>17}" for cell in cells), flush=True)
+
     with tempfile.TemporaryDirectory() as folder:
 
-        def measured(values: dict[str, float]) -> Measured:
+        def measured(values: dict[str, float]) -> dict:
             return run(case, overrides, base | values, damage, Path(folder))
 
         references = [measured({**finest, MESH: 2 * max(meshes) // coarser}) for coarser in (1, 2, 4)]
-        rows = [_row("reference", "", references[0].cost, uncertainty(*references))]
+        add("reference", "", references[0] | uncertainty(*references))
         runs = [("", "as it is", {})]
         runs += [
             (NAMES[key], value, {key: value})
@@ -149,26 +146,13 @@ def table(
         for name, value, changed in runs:
             try:
                 found = measured(changed)
-                rows.append(_row(name, value, found.cost, errors(found, references[0])))
+                add(name, value, found | errors(found, references[0]))
             except ehlpetsc.NotConverged:
-                rows.append(_row(name, value, {}, {}) | {"converged": "no"})
+                add(name, value, {"steps": "not converged"})
     return rows
 
 
-def _row(varied: str, value: object, cost: dict[str, float], found: dict[str, float]) -> dict:
-    row = dict.fromkeys(COLUMNS, np.nan) | {"varied": varied, "value": value, "converged": "yes"}
-    row |= {**cost, **found}
-    print(text(row), flush=True)
-    return row
-
-
-def text(row: dict) -> str:
-    """Row as text in columns."""
-    shown = (f"{row[name]:.2e}" if isinstance(row[name], float) else str(row[name]) for name in COLUMNS)
-    return " ".join(f"{cell:>{16 if not k else 9}}" for k, cell in enumerate(shown))
-
-
-def draw(rows: list[dict], path: Path, title: str) -> Figure:
+def draw(rows: list[dict], path: Path, title: str) -> None:
     """Picture of the errors over processor time and over Newton iterations, a column for each measure."""
     reference, base, *others = rows
     shown = [name for name in MEASURES if any(row[name] > 0.0 for row in rows[1:])]
@@ -177,8 +161,7 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
     for column, name in zip(axes.T, shown, strict=True):
         for panel, (cost, label) in zip(column, costs.items(), strict=True):
             for marker, varied in zip("osD^v", dict.fromkeys(row["varied"] for row in others), strict=False):
-                chosen = [row for row in others if row["varied"] == varied and row["converged"] == "yes"]
-                chosen.sort(key=lambda row: row["value"])
+                chosen = [row for row in others if row["varied"] == varied and np.isfinite(row[cost])]
                 values = [(row[cost], max(row[name], 1e-8)) for row in chosen]
                 panel.loglog(*np.transpose(values), marker=marker, ms=4, lw=0.8, label=varied)
             panel.loglog(base[cost], max(base[name], 1e-8), "k*", ms=11, label="the case as it is")
@@ -196,7 +179,6 @@ def draw(rows: list[dict], path: Path, title: str) -> Figure:
     handles, names = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, names, loc="lower center", ncols=4, frameon=False, fontsize="small")
     style.save(figure, path)
-    return figure
 
 
 def main() -> None:
@@ -212,7 +194,7 @@ def main() -> None:
     chosen = parser.parse_args()
     rows = table(chosen.case, chosen.set, chosen.meshes, chosen.courant, chosen.damage)
     with open(f"{chosen.case.stem}.accuracy.csv", "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS)
+        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore")
         writer.writeheader()
         writer.writerows(rows)
     draw(rows, Path(f"{chosen.case.stem}.accuracy.png"), load(chosen.case).title)

@@ -27,7 +27,6 @@ PROFILES = ROOT / "cases" / "profiles"
 COLUMNS = tuple(
     "axis value converged steps halved newton h_min_um p_max_GPa load_error mass_error seconds reason".split()
 )
-WIDTHS = (-14, -42, 9, 6, 6, 7, 9, 9, 10, 10, 7, 0)
 VARIANTS = {  # of the base case: changed keys of its oil; None: removed
     "table_1": {},
     "barus": {"law": "barus"},
@@ -131,7 +130,7 @@ def _figures(result: ehlpetsc.Result) -> dict[str, object]:
 def table(cases: list[Extreme], path: Path) -> list[dict[str, object]]:
     """Run the cases; the rows, printed and written one by one."""
     rows = []
-    print(text(dict(zip(COLUMNS, COLUMNS, strict=True))), flush=True)
+    print(" ".join(COLUMNS), flush=True)
     with open(path, "w", newline="") as file, tempfile.TemporaryDirectory() as folder:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
@@ -139,18 +138,10 @@ def table(cases: list[Extreme], path: Path) -> list[dict[str, object]]:
             rows.append(row(case, Path(folder)))
             writer.writerow(rows[-1])
             file.flush()
-            print(text(rows[-1]), flush=True)
+            print(*rows[-1].values(), flush=True)
     done = sum(found["converged"] == "yes" for found in rows)
     print(f"{done} of {len(rows)} cases converged")
     return rows
-
-
-def text(found: dict[str, object]) -> str:
-    """Row as text in columns."""
-    cells = zip((str(found.get(name, "")) for name in COLUMNS), WIDTHS, strict=True)
-    return " ".join(
-        f"{cell:<{-width}}" if width < 0 else f"{cell:>{width}}" for cell, width in cells
-    ).rstrip()
 
 
 def main() -> None:

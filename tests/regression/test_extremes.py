@@ -34,7 +34,8 @@ def test_every_row_of_the_whole_table_loads(far, count, model):
 def measured(error, contact=0.0):
     x, more = np.linspace(-1.5, 1.5, 31), 1.0 + error
     film = 0.2 * more * np.ones(31)
-    return accuracy.Measured({}, x, film, 0.1 * more, 0.2 * more, 1e9 * (1.0 - error), contact, np.nan)
+    scalars = {"h_min": 0.1 * more, "h_c": 0.2 * more, "p_max": 1e9 * (1.0 - error), "contact": contact}
+    return scalars | {"x": x, "h": film, "damage": np.nan}
 
 
 def test_errors_are_relative_and_local():
