@@ -100,10 +100,9 @@ def instant(results: list[Result], indices: Sequence[int]) -> str:
     if len(first.time) == 1:
         return ""
     travel = f"travel {travel_of(first)[index]:.2f} a"
-    times = np.array([result.time[k] for result, k in zip(results, indices, strict=True)])
-    if np.ptp(times) > 0.5 * np.nanmax(first.steps("dt")):
+    if len({float(result.time[k]) for result, k in zip(results, indices, strict=True)}) > 1:
         return travel
-    return f"step {first.step[index]}, {1e6 * times[0]:.4g} µs, {travel}"
+    return f"step {first.step[index]}, {1e6 * first.time[index]:.4g} µs, {travel}"
 
 
 def panel_title(results: list[Result], indices: Sequence[int]) -> list[str]:

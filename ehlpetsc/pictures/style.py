@@ -51,16 +51,9 @@ def save(
         figure.set_size_inches(chosen.size or figure.get_size_inches())
         if chosen.no_title:
             figure.suptitle("")
-    figure.set_dpi(dpi)
-    figure.draw_without_rendering()  # one layout for all formats
-    figure.set_layout_engine("none")
-    for path in map(Path, paths):
-        metadata = {"Date": None} if path.suffix == ".svg" else None  # the same file from the same result
-        with (
-            matplotlib.rc_context({"svg.hashsalt": "ehlpetsc"}),
-            replacing(path) as temporary,
-        ):
-            figure.savefig(temporary, dpi=dpi, metadata=metadata)
+    for path in paths:
+        with replacing(Path(path)) as temporary:
+            figure.savefig(temporary, dpi=dpi)
 
 
 def shades(count: int) -> list:
