@@ -77,7 +77,7 @@ def compare(one: Result, other: Result) -> Iterator[Difference]:
     skipped = () if len(one.x) == len(other.x) == len(x) else OF_NODES
     for name in [name for name in FIELDS if name in one.fields and name in other.fields]:
         if name not in skipped:
-            first, second = (r[name][f][:, n] for r, f, n in zip(both, frames, nodes, strict=True))
+            first, second = (r[name][:][f][:, n] for r, f, n in zip(both, frames, nodes, strict=True))
             yield difference(name, FIELDS[name].units, first, second, x, time)
     rows = common(one.steps("time"), other.steps("time"), "time steps")
     shared, time = set(one.scalars) & set(other.scalars), one.steps("time")[rows[0]]
