@@ -134,10 +134,8 @@ def exponent(meshes):
 def on_ranks(points, ranks):
     """Figures of one group of processes."""
     command = ["mpirun", "-n", str(ranks), "--oversubscribe", sys.executable, __file__, "--inside"]
-    done = subprocess.run(
-        [*command, str(points)], env=ENVIRONMENT, capture_output=True, text=True, check=True
-    )
-    return json.loads(done.stdout.splitlines()[-1])
+    printed = subprocess.check_output([*command, str(points)], env=ENVIRONMENT, text=True)
+    return json.loads(printed.splitlines()[-1])
 
 
 def inside(points, steps=16):
@@ -174,10 +172,7 @@ def main():
         for ranks, figures in taken.items():
             median = {name: statistics.median(one[name] for one in figures) for name in figures[0]}
             faster = statistics.median(b / one["snes"] for b, one in zip(first, figures, strict=True))
-            print(
-                f"a/{points}, {median['nodes']:.0f} nodes, {ranks} ranks, {faster:.2f} times as fast:",
-                end=" ",
-            )
+            print(f"{median['nodes']:.0f} nodes, {ranks} ranks, {faster:.2f} times as fast:", end=" ")
             print(f"{median['snes']:.2f} ms, {median['newton']:.0f} Newton, {median['memory']:.0f} MB")
     if not chosen.ranks:
         exponent((100, 200, 400, 800, 1600))
