@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.stresses.body_points import Passage, passage
+from ehlpetsc.post.stresses.body_points import Passage
 from ehlpetsc.post.stresses.body_stress import limited_slopes
 from ehlpetsc.results.post_result import PointTemperatures
 
@@ -23,7 +23,7 @@ def point_temperatures(loads: Loads, surface: str, motion: Passage, points: int)
     lasts = _weights(loads.time)
     for begin in range(0, loads.time.size, FRAMES_PER_READ):
         frames = np.arange(begin, min(begin + FRAMES_PER_READ, loads.time.size))
-        rows = _temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
+        rows = temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
         for frame, values in zip(frames, rows, strict=True):
             x = loads.x[: values.size] + motion.offset[frame] * loads.dx
             first = motion.shift[frame]  # node of point 0
@@ -39,21 +39,13 @@ def point_temperatures(loads: Loads, surface: str, motion: Passage, points: int)
     return PointTemperatures(highest, mean, highest - loads.bulk_temperature(surface))
 
 
-def temperature_history(loads: Loads, surface: str, s: float) -> np.ndarray:
-    """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
-    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
-    frames = np.arange(int(motion.enter[0]), int(motion.leave[0]) + 1)
-    rows = _temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
-    return rows[np.arange(frames.size), motion.shift[frames]]
-
-
 def _weights(time: np.ndarray) -> np.ndarray:
     """Time weight of each frame [s]."""
     step = np.diff(time)
     return 0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))
 
 
-def _temperatures_between_nodes(
+def temperatures_between_nodes(
     loads: Loads, surface: str, frames: np.ndarray, offset: np.ndarray
 ) -> np.ndarray:
     """Temperatures (frames, nodes), `offset` (frames,) elements right of the nodes, by limited cubics.

@@ -35,7 +35,7 @@ def test_default_depths_reach_the_stresses_of_the_smooth_contact():
 
 def test_history_contains_every_sample_of_every_point(scene, tmp_path):
     """As many as the sweep counts, also where a frame finds the point at the first node but for rounding."""
-    from ehlpetsc.post.stresses.body_stress import history_at
+    from support.histories import history_at
 
     path = write(tmp_path / "a.h5", scene)
     run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("2",), depths=(0.0,)))

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 from support import ROOT, is_line_with, refused
+from support.histories import history_at
 from support.made_loads import Scene, write
 
 from ehlpetsc.pictures import damage as gallery
@@ -18,7 +19,7 @@ from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.stresses.body_stress import QUANTUM, history_at
+from ehlpetsc.post.stresses.body_stress import QUANTUM
 from ehlpetsc.results.post_result import PostResult
 
 sys.path.append(str(ROOT / "cases" / "paper"))

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 from scipy.special import erf
+from support.histories import temperature_history
 
 import ehlpetsc
 from ehlpetsc.physics.flash_temperature import Solid
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.temperatures import temperature_history
 from ehlpetsc.results.post_result import PostResult
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.histories import history_at
 from support.made_loads import P0, A, Scene, write
 
 from ehlpetsc.post import Material, damage, stress
@@ -9,7 +10,7 @@ from ehlpetsc.post.fatigue.accumulate import Counting
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_points import passage
-from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, history_at, offset_weights
+from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, offset_weights
 from ehlpetsc.post.stresses.half_plane import StressField
 from ehlpetsc.results.post_result import PostResult
 

@@ -26,7 +26,7 @@ import numpy as np
 from scipy import fft
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.stresses.body_points import Passage, passage
+from ehlpetsc.post.stresses.body_points import Passage
 from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
 
 if TYPE_CHECKING:
@@ -258,13 +258,3 @@ def histories(
                 fields = stress(depth, spectra, of_frames)
                 _collect(fields, begin + at, points[0], places, quantum, rows)
     return found
-
-
-def history_at(
-    loads: Loads, surface: str, s: float, depth: float, quantum: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Times and stresses (3, samples) at body point s (m) and depth z (m) while it is among the nodes, Pa."""
-    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
-    stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
-    found = histories(loads, surface, motion, stress, np.array([0]), quantum, float)
-    return loads.time[motion.enter[0] : motion.leave[0] + 1], found[0, 0]

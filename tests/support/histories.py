@@ -1,0 +1,23 @@
+"""Stress and temperature of one body point on its way through the nodes, for comparison with closed forms."""
+
+import numpy as np
+
+from ehlpetsc.post.stresses.body_points import passage
+from ehlpetsc.post.stresses.body_stress import BodyStress, histories
+from ehlpetsc.post.temperatures import temperatures_between_nodes
+
+
+def history_at(loads, surface, s, depth, quantum=0.0):
+    """Times and stresses (3, samples) at body point s [m] and depth [m] while it is among the nodes [Pa]."""
+    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
+    stress = BodyStress(loads.x.size, np.array([depth / loads.dx]))
+    found = histories(loads, surface, motion, stress, np.array([0]), quantum, float)
+    return loads.time[motion.enter[0] : motion.leave[0] + 1], found[0, 0]
+
+
+def temperature_history(loads, surface, s):
+    """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
+    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
+    frames = np.arange(int(motion.enter[0]), int(motion.leave[0]) + 1)
+    rows = temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
+    return rows[np.arange(frames.size), motion.shift[frames]]
