@@ -124,7 +124,7 @@ def _damage(file: Path) -> list[tuple]:
                 raise PostError(
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
-            values = solve(prepared, side, job.counting, job.criteria)
+            values = solve(prepared, side, job)
             criterion = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
             damages.append((prepared.s[passed], loads.a * depths, criterion[:, passed]))
     return damages

@@ -14,7 +14,7 @@ import numpy as np
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES, Counting
+from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import check_output_path
@@ -98,10 +98,10 @@ def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> No
         output,
         SURFACES if chosen.surface == "both" else (chosen.surface,),
         None if chosen.depths is None else tuple(chosen.depths),
-        Counting(mean_stress=chosen.mean_stress),
-        chosen.jobs,
-        tuple(name for name in CRITERIA if name in chosen.criterion),
-        tuple(chosen.set),
+        chosen.mean_stress,
+        jobs=chosen.jobs,
+        criteria=tuple(name for name in CRITERIA if name in chosen.criterion),
+        settings=tuple(chosen.set),
     )
     start = time.perf_counter()
     if not chosen.overwrite and job.is_done():

@@ -18,7 +18,8 @@ from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import Counter, Counting
+from ehlpetsc.post.fatigue.accumulate import count_damage
+from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared, prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, histories, runs_of_points
@@ -31,15 +32,16 @@ DEPTHS_AT_ONCE = 4  # with common reading and transforms of the loads
 class Job(NamedTuple):
     """One result file and the settings of its processing.
 
-    `depths` overrides the depths of the case, `settings` ("table.key=value") other keys; the strain rule of
-    `counting` is that of the case, whose criterion is added to `criteria`.
+    `depths` overrides the depths of the case, `settings` ("table.key=value") other keys; `strain`
+    is that of the case, whose criterion is added to `criteria`.
     """
 
     path: str
     output: str
     surfaces: tuple[str, ...] = SURFACES
     depths: tuple[float, ...] | None = None
-    counting: Counting = Counting()
+    mean_stress: str = "none"
+    strain: str = DEFAULT_STRAIN
     jobs: int = 1
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
@@ -47,7 +49,7 @@ class Job(NamedTuple):
     def of_case(self, case: Case) -> Job:
         """The job with the strain rule and the criterion of a case."""
         criteria = tuple(name for name in CRITERIA if name in (*self.criteria, case.post.criterion))
-        return self._replace(counting=self.counting._replace(strain=case.post.strain), criteria=criteria)
+        return self._replace(strain=case.post.strain, criteria=criteria)
 
     def fingerprint(self) -> str:
         """Hash of the settings and of the version of the result file."""
@@ -72,7 +74,6 @@ def run(
 
     `report` is called with warnings and notes, `progress` with the finished part.
     """
-    job.counting.check()
     depths = () if job.depths is None else (("post.depths", list(job.depths)),)
     with Loads(job.path, [*job.settings, *depths]) as loads:
         identity = job.fingerprint()
@@ -85,9 +86,9 @@ def run(
             report(note)
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.settings.depths}
         for surface in prepared.motions:
-            datasets |= solve(prepared, surface, job.counting, job.criteria, job.jobs, progress)
+            datasets |= solve(prepared, surface, job, progress)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
-        attributes = attributes_of(prepared) | job.counting._asdict()
+        attributes = attributes_of(prepared) | {"mean_stress": job.mean_stress, "strain": job.strain}
         attributes |= {"settings": "\n".join(job.settings), "fingerprint": identity}
         write_result(job.output, datasets, attributes)
 
@@ -107,70 +108,62 @@ def _notes(job: Job, loads: Loads) -> Iterator[str]:
             names = ", ".join(f'"temperature_{surface}"' for surface in cold)
             yield f"note: no surface temperatures in it: list {names} in output.fields of the case for them"
         yield "note: thermal stresses are not computed: damage is that of pressure and shear stress alone"
-    if case.post.residual_stress and job.counting.mean_stress == "none" and not job.criteria:
+    if case.post.residual_stress and job.mean_stress == "none" and not job.criteria:
         yield "note: residual_stress changes nothing without --mean-stress morrow or --criterion"
 
 
 def solve(
     prepared: Prepared,
     surface: str,
-    counting: Counting,
-    criteria: tuple[str, ...] = (),
-    jobs: int = 1,
+    job: Job,
     progress: Callable[[str], None] = lambda text: None,
 ) -> dict[str, np.ndarray]:
     """Damage, cycles, peak range and criteria of a surface (depths, points) by name in the file.
 
-    nan for incomplete points. `jobs` is the number of threads.
+    nan for incomplete points.
     """
     depths = prepared.settings.depths
-    blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(jobs, len(depths))))
-    work = partial(_solve_depths, prepared, surface, counting, criteria, MAX_HISTORY_BYTES / jobs)
+    blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(job.jobs, len(depths))))
+    work = partial(_solve_depths, prepared, surface, job)
     found = []
-    for values in ThreadPoolExecutor(jobs).map(work, blocks) if jobs > 1 else map(work, blocks):
+    for values in ThreadPoolExecutor(job.jobs).map(work, blocks) if job.jobs > 1 else map(work, blocks):
         found.append(values)
         progress(f"surface {surface}: {len(found)} of {len(blocks)} layers")
     return {name: np.concatenate([values[name] for values in found]) for name in found[0]}
 
 
-def _solve_depths(
-    prepared: Prepared,
-    surface: str,
-    counting: Counting,
-    criteria: tuple[str, ...],
-    memory: float,
-    depths: np.ndarray,
-) -> dict[str, np.ndarray]:
+def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray) -> dict[str, np.ndarray]:
     loads, motion = prepared.loads, prepared.motions[surface]
-    counters = _counters(prepared, surface, counting, criteria, motion.samples() + 2)
-    names = [[f"{start}{column}" for column in counter.columns] for start, counter in counters]
-    names[0][0] = f"damage/{surface}"
-    out = {name: np.full((len(depths), prepared.s.size), np.nan) for row in names for name in row}
+    counts = _counts(prepared, surface, job)
+    names = [name for columns, _ in counts for name in columns]
+    out = {name: np.full((len(depths), prepared.s.size), np.nan) for name in names}
     lengths = motion.leave - motion.enter + 3
     stress = BodyStress(loads.x.size, depths * loads.a / loads.dx)
-    for points in runs_of_points(motion, memory, len(depths)):
+    for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, len(depths)):
         for k, stresses in enumerate(histories(loads, surface, motion, stress, points, QUANTUM * loads.p0)):
-            for row, (_, counter) in zip(names, counters, strict=True):
-                values = np.empty((points.size, len(row)))
-                counter(stresses, lengths[points], values, prepared.settings.residual(depths[k]))
-                for name, column in zip(row, values.T, strict=True):
+            residual = prepared.settings.residual(depths[k])
+            for columns, count in counts:
+                values = count(stresses, lengths[points], residual)
+                for name, column in zip(columns, values.T, strict=True):
                     out[name][k, points] = column
     return out
 
 
-def _counters(
-    prepared: Prepared, surface: str, counting: Counting, criteria: tuple[str, ...], samples: int
-) -> list[tuple[str, Any]]:
-    """Beginning of the names of results, and counter of histories, of the paper's damage and of criteria."""
+def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str], Callable]]:
+    """Names of results and function of histories of the paper's damage and of each criterion."""
     material, constants = prepared.settings.materials[surface], prepared.settings.criteria
-    counters: list[tuple[str, Any]] = [(f"damage/{surface}_", Counter(material, counting, samples))]
-    if "fatemi-socie" in criteria:  # slow to compile: only if requested
-        from ehlpetsc.post.criteria.critical_plane import PlaneCounter
+    names = [f"damage/{surface}", f"damage/{surface}_cycles", f"damage/{surface}_peak_range"]
+    count = partial(count_damage, material=material, mean_stress=job.mean_stress, strain=job.strain)
+    counts: list[tuple[list[str], Callable]] = [(names, count)]
+    if "fatemi-socie" in job.criteria:  # slow to compile: only if requested
+        from ehlpetsc.post.criteria.critical_plane import PlaneDamage, count_on_planes
 
-        counter = PlaneCounter(material, constants, counting, samples)
-        counters.append((f"criteria/fatemi_socie/{surface}_", counter))
-    if "dang-van" in criteria:
-        from ehlpetsc.post.criteria.dang_van import LimitCounter
+        names = [f"criteria/fatemi_socie/{surface}_{column}" for column in PlaneDamage._fields]
+        count = partial(count_on_planes, material=material, constants=constants, strain=job.strain)
+        counts.append((names, count))
+    if "dang-van" in job.criteria:
+        from ehlpetsc.post.criteria.dang_van import count_utilisation
 
-        counters.append((f"criteria/dang_van/{surface}_", LimitCounter(material.poisson_ratio, constants)))
-    return counters
+        count = partial(count_utilisation, poisson_ratio=material.poisson_ratio, constants=constants)
+        counts.append(([f"criteria/dang_van/{surface}_utilisation"], count))
+    return counts

@@ -8,15 +8,14 @@ import pytest
 from ehlpetsc import post
 from ehlpetsc.post import Criteria, Material, cycles_to_failure, dang_van, stress
 from ehlpetsc.post.criteria.critical_plane import (
-    PlaneCounter,
-    normal_weights,
     plane_damage,
+    plane_law,
+    plane_weights,
+    plane_workspace,
     planes_and_directions,
-    shear_weights,
     turning_samples,
 )
 from ehlpetsc.post.criteria.dang_van import smallest_ball
-from ehlpetsc.post.fatigue.accumulate import Counting
 
 STEEL = Material()
 SHEAR = Criteria(normal_sensitivity=0.0)  # shear strain alone
@@ -104,9 +103,9 @@ def test_pressure_at_the_surface_damages_out_of_plane():
 
 def on_planes(grid, sx, sz, txz):
     """Largest damage of one history on planes of a grid, each counted on all samples."""
-    counter = PlaneCounter(STEEL, Criteria(), Counting(strain="direct"), sx.size)
+    law, work = plane_law(0.0, STEEL, Criteria(), "direct"), plane_workspace(sx.size)
     history = np.stack([sx, sz, txz])
-    return max(plane_damage(g, history, counter.law(0.0), 0.0, counter.work) for g in grid)
+    return max(plane_damage(g, history, law, 0.0, work) for g in grid)
 
 
 def contact_like(seed, samples=300):
@@ -171,8 +170,10 @@ def test_weights_are_those_of_the_tensor():
         across = np.array([-np.sin(theta), 0, np.cos(theta)])
         t = np.cos(psi) * across + np.sin(psi) * np.cross(across, n)
         values = np.array([sx, sz, txz])
-        assert values @ np.array(shear_weights(theta, phi, psi, nu)) == pytest.approx(t @ tensor @ n)
-        assert values @ np.array(normal_weights(theta, phi, nu)) == pytest.approx(n @ tensor @ n)
+        shear, normal, share = plane_weights(theta, phi, psi, nu)
+        assert values @ np.array(shear) == pytest.approx(t @ tensor @ n)
+        assert values @ np.array(normal) == pytest.approx(n @ tensor @ n)
+        assert share == pytest.approx(n @ np.diag([1, 1, 0]) @ n)
 
 
 def test_tension_and_residual_stress():

@@ -25,16 +25,17 @@ about the tolerance.
 
 from __future__ import annotations
 
+from functools import partial
 from math import cos, exp, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
-from ehlpetsc.post.criteria.laws import Criteria, shear_tables
-from ehlpetsc.post.fatigue.accumulate import Counting, evaluate
+from ehlpetsc.post.criteria.laws import Criteria
+from ehlpetsc.post.fatigue.accumulate import evaluate
 from ehlpetsc.post.fatigue.cycles import equivalent_points, find_cycles, loop_of, workspace
-from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material, interpolate
+from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material, interpolate, shear_tables
 
 GRID_STEP = pi / 12  # between the planes and directions of the coarse grid
 TOLERANCE = 0.02  # of the widest of the three axes
@@ -50,33 +51,15 @@ DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
 @compiled(error_model="python", nogil=True)
-def _normal(theta: float, phi: float) -> tuple[float, float, float]:
-    return cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
-
-
-@compiled(error_model="python", nogil=True)
-def shear_weights(theta: float, phi: float, psi: float, nu: float) -> tuple[float, float, float]:
-    """Weights (3,) of sx, sz, txz in the shear stress on a plane along a direction in it."""
-    x, y, z = _normal(theta, phi)
+def plane_weights(theta: float, phi: float, psi: float, nu: float) -> tuple[tuple, tuple, float]:
+    """Weights (3,) of sx, sz, txz in shear and normal stress on a plane, of residual stress in the latter."""
+    x, y, z = cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
     c, s = cos(psi), sin(psi)
     tx = -c * sin(theta) - s * sin(phi) * cos(theta)
     ty = s * cos(phi)
     tz = c * cos(theta) - s * sin(phi) * sin(theta)
-    return x * tx + nu * y * ty, z * tz + nu * y * ty, x * tz + z * tx
-
-
-@compiled(error_model="python", nogil=True)
-def normal_weights(theta: float, phi: float, nu: float) -> tuple[float, float, float]:
-    """Weights (3,) of sx, sz, txz in the normal stress on a plane."""
-    x, y, z = _normal(theta, phi)
-    return x * x + nu * y * y, z * z + nu * y * y, 2 * x * z
-
-
-@compiled(error_model="python", nogil=True)
-def residual_share(theta: float, phi: float) -> float:
-    """Normal stress on a plane under a unit residual stress along the surface, in x and y."""
-    x, y, _ = _normal(theta, phi)
-    return x * x + y * y
+    shear = x * tx + nu * y * ty, z * tz + nu * y * ty, x * tz + z * tx
+    return shear, (x * x + nu * y * y, z * z + nu * y * y, 2 * x * z), x * x + y * y
 
 
 def planes_and_directions(step: float = GRID_STEP) -> np.ndarray:
@@ -173,11 +156,12 @@ NEGLIGIBLE_RANGE = (
 @compiled(error_model="python", nogil=True)
 def _on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
     """Fill in the shear stress, as an equivalent stress, and the normal stress."""
-    (theta, phi, psi), nu, size = angles, law[0], stress.shape[1]
-    a, b, c = shear_weights(theta, phi, psi, nu)
+    size = stress.shape[1]
+    shear, normal, share = plane_weights(angles[0], angles[1], angles[2], law[0])
+    a, b, c = shear
     work[2][:size] = 3**0.5 * (a * stress[0] + b * stress[1] + c * stress[2])
-    a, b, c = normal_weights(theta, phi, nu)
-    work[3][:size] = law[1] * residual_share(theta, phi) + (a * stress[0] + b * stress[1] + c * stress[2])
+    a, b, c = normal
+    work[3][:size] = law[1] * share + (a * stress[0] + b * stress[1] + c * stress[2])
 
 
 @compiled(error_model="python", nogil=True)
@@ -263,30 +247,6 @@ def _improve(angles: np.ndarray, damage: float, stress: np.ndarray, law: tuple, 
             step /= 2
 
 
-@compiled(error_model="python", nogil=True)
-def worst_plane(
-    grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple, spare: tuple
-) -> tuple[float, float, float]:
-    """Damage on the worst plane of stress (3, samples), theta and phi of its normal [rad].
-
-    The plane is sought on the samples at which the path turns; `spare` holds arrays for their search.
-    """
-    points, indices = spare
-    equivalent_points(stress, law[0], points)
-    count = turning_samples(points, stress.shape[1], indices)
-    few = stress[:, indices[:count]]
-    starts, damages = _coarse(grid, few, law, work)
-    worst, theta, phi = 0.0, 0.0, 0.0
-    for k in range(2):
-        if damages[k] <= 0:
-            continue
-        _improve(starts[k], damages[k], few, law, work)
-        damage = plane_damage(starts[k], stress, law, 0.0, work)
-        if damage > worst:
-            worst, theta, phi = damage, starts[k, 0], starts[k, 1]
-    return worst, theta, phi
-
-
 class PlaneDamage(NamedTuple):
     """Damage of each history on its worst plane, and angles of the plane's normal in degrees.
 
@@ -301,42 +261,56 @@ class PlaneDamage(NamedTuple):
 
 @compiled(error_model="python", nogil=True)
 def _worst_planes(
-    grid: np.ndarray, histories: tuple, law: tuple, work: tuple, spare: tuple, out: np.ndarray
+    grid: np.ndarray, stress: np.ndarray, lengths: np.ndarray, law: tuple, work: tuple, out: np.ndarray
 ) -> None:
-    stress, lengths = histories
+    """Set out (points, 3) to the damage on the worst plane, theta and phi of its normal [rad].
+
+    Planes are sought on the samples at which the path turns.
+    """
+    points, indices = np.empty(stress.shape[1:]), np.empty(stress.shape[2], np.int64)
     for p in range(stress.shape[0]):
-        out[p] = worst_plane(grid, stress[p, :, : lengths[p]].copy(), law, work, spare)
+        history = stress[p, :, : lengths[p]].copy()
+        equivalent_points(history, law[0], points)
+        few = history[:, indices[: turning_samples(points, lengths[p], indices)]]
+        starts, damages = _coarse(grid, few, law, work)
+        out[p] = 0.0
+        for k in range(2):
+            if damages[k] <= 0:
+                continue
+            _improve(starts[k], damages[k], few, law, work)
+            damage = plane_damage(starts[k], history, law, 0.0, work)
+            if damage > out[p, 0]:
+                out[p, 0], out[p, 1:] = damage, starts[k, :2]
 
 
-class PlaneCounter:
-    """Damage on the worst plane of blocks of histories."""
+def plane_law(residual: float, material: Material, constants: Criteria, strain: str) -> tuple:
+    """Constants of the compiled functions; residual stress [Pa]."""
+    sensitivity = constants.sensitivity(material)
+    return material.poisson_ratio, residual, sensitivity, *shear_tables(material, strain)
 
-    columns = PlaneDamage._fields
 
-    def __init__(self, material: Material, constants: Criteria, counting: Counting, samples: int) -> None:
-        counting.check()
-        self.grid, self.tables = planes_and_directions(), shear_tables(material, counting.strain)
-        self.head = material.poisson_ratio, constants.sensitivity(material)
-        self.work = (*workspace(samples), np.empty(samples), np.empty(samples))
-        self.spare = np.empty((3, samples)), np.empty(samples, np.int64)
+def plane_workspace(samples: int) -> tuple:
+    """Arrays of :func:`plane_damage`."""
+    return *workspace(samples), np.empty(samples), np.empty(samples)
 
-    def law(self, residual: float) -> tuple:
-        """Constants of the compiled functions; residual stress [Pa]."""
-        nu, sensitivity = self.head
-        return nu, float(residual), sensitivity, *self.tables
 
-    def __call__(
-        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
-    ) -> None:
-        """Stress (points, 3, samples), lengths (points,) -> out (points, 3): as in PlaneDamage."""
-        stress = np.ascontiguousarray(stress, float)  # one compiled version for files and arrays
-        _worst_planes(self.grid, (stress, lengths), self.law(residual), self.work, self.spare, out)
-        theta, phi = out[:, 1].copy(), out[:, 2]
-        x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
-        out[:, 1], out[:, 2] = (
-            np.degrees(np.arctan2(z, x)) % 180.0,
-            np.degrees(np.arctan2(abs(y), np.hypot(x, z))),
-        )
+def count_on_planes(
+    stress: np.ndarray,
+    lengths: np.ndarray,
+    residual: float,
+    material: Material,
+    constants: Criteria,
+    strain: str,
+) -> np.ndarray:
+    """Results (points, 3) as in PlaneDamage of histories (points, 3, samples) of these lengths."""
+    stress = stress.astype(float, copy=False)  # one compiled version for files and arrays
+    law, work = plane_law(residual, material, constants, strain), plane_workspace(stress.shape[-1])
+    out = np.empty((len(stress), 3))
+    _worst_planes(planes_and_directions(), stress, lengths, law, work, out)
+    damage, theta, phi = out.T
+    x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
+    inclination = np.degrees(np.arctan2(z, x)) % 180.0
+    return np.stack([damage, inclination, np.degrees(np.arctan2(abs(y), np.hypot(x, z)))], axis=1)
 
 
 def critical_plane(
@@ -357,9 +331,5 @@ def critical_plane(
     `residual_stress`: residual stress along the surface, equal in x and y, zero in z [Pa]; adds to the normal
         stress of a plane.
     """
-    counting = Counting(strain=strain)
-
-    def counter_of(samples: int) -> PlaneCounter:
-        return PlaneCounter(material, constants or Criteria(), counting, samples)
-
-    return PlaneDamage(*evaluate(sx, sz, txz, counter_of, residual_stress))
+    count = partial(count_on_planes, material=material, constants=constants or Criteria(), strain=strain)
+    return PlaneDamage(*evaluate(sx, sz, txz, count, residual_stress))

@@ -18,6 +18,7 @@ hydrostatic stress counts as zero, which is conservative.
 
 from __future__ import annotations
 
+from functools import partial
 from math import sqrt
 
 import numpy as np
@@ -150,21 +151,14 @@ def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, o
         out[p, 0] = largest / limit
 
 
-class LimitCounter:
-    """Dang Van's utilisation of blocks of histories."""
-
-    columns = ("utilisation",)
-
-    def __init__(self, poisson_ratio: float, constants: Criteria) -> None:
-        self.nu = poisson_ratio
-        self.limits = constants.hydrostatic_slope, constants.torsion_limit
-
-    def __call__(
-        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
-    ) -> None:
-        """Stress (points, 3, samples), lengths (points,) -> out (points, 1)."""
-        stress = np.ascontiguousarray(stress, float)
-        _utilisations((stress, lengths), self.nu, float(residual), self.limits, out)
+def count_utilisation(
+    stress: np.ndarray, lengths: np.ndarray, residual: float, poisson_ratio: float, constants: Criteria
+) -> np.ndarray:
+    """Dang Van's utilisation (points, 1) of histories (points, 3, samples) of these lengths."""
+    out = np.empty((len(stress), 1))
+    limits = constants.hydrostatic_slope, constants.torsion_limit
+    _utilisations((stress.astype(float, copy=False), lengths), poisson_ratio, residual, limits, out)
+    return out
 
 
 def dang_van(
@@ -182,5 +176,5 @@ def dang_van(
     `residual_stress`: residual stress along the surface, equal in x and y [Pa]; adds to the hydrostatic
         stress.
     """
-    constants = constants or Criteria()
-    return evaluate(sx, sz, txz, lambda samples: LimitCounter(poisson_ratio, constants), residual_stress)[0]
+    count = partial(count_utilisation, poisson_ratio=poisson_ratio, constants=constants or Criteria())
+    return evaluate(sx, sz, txz, count, residual_stress)[0]

@@ -20,19 +20,9 @@ limited to a cycle that ends at zero stress.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log, sqrt
+from math import sqrt
 
-import numpy as np
-
-from ehlpetsc.post.fatigue.strain_life import (
-    MAX_RANGE,
-    MIN_RANGE,
-    Material,
-    curve_table,
-    log_amplitude,
-    log_damage,
-    rule_of,
-)
+from ehlpetsc.post.fatigue.strain_life import Material
 
 PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 
@@ -67,17 +57,3 @@ class Criteria:
         """k/sigma_y of Fatemi and Socie, 1/Pa."""
         cyclic = material.hardening_coefficient * PLASTIC_STRAIN**material.cyclic_hardening
         return self.normal_sensitivity / (self.yield_strength or cyclic)
-
-
-def shear_tables(material: Material, strain: str = "direct") -> tuple[np.ndarray, np.ndarray]:
-    """ln of the strain amplitude over ln of the squared range, ln(1/N) over ln of the parameter.
-
-    Strains over sqrt(3): uniaxial with 3G for E.
-    """
-    modulus = 1.5 * material.youngs_modulus / (1 + material.poisson_ratio)
-    _, hardening, exponent, strength, ductility, b, c = material.constants()
-    curve, life = (modulus, hardening, exponent, rule_of(strain)), (strength, modulus, ductility, b, c)
-    ends = 2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength)
-    amplitudes = curve_table(*ends, lambda log_squared: log_amplitude(log_squared, *curve))
-    ends = amplitudes[0, 0], amplitudes[-2, 0]
-    return amplitudes, curve_table(*ends, lambda parameter: log_damage(parameter, *life))

@@ -3,6 +3,7 @@ r"""Palmgren-Miner damage of stress histories, :math:`D=\sum1/N_i` (Holmes et al
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import sqrt
 from typing import NamedTuple
 
@@ -20,33 +21,26 @@ from ehlpetsc.post.fatigue.strain_life import (
 )
 from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
+MEAN_STRESSES = ("none", "morrow")
+
 
 def evaluate(
-    sx: np.ndarray, sz: np.ndarray, txz: np.ndarray, counter_of: Callable, residual_stress: float
-) -> list:
-    """Columns of results of a counter for each history, shape (...).
+    sx: np.ndarray, sz: np.ndarray, txz: np.ndarray, count: Callable, residual_stress: float
+) -> list[np.ndarray]:
+    """Columns of results of each history, shape (...).
 
     `sx`, `sz`, `txz`: [Pa], shape (..., samples).
-    `counter_of`: from the number of samples to a counter with `columns`, which is called with stress (points,
-        3, samples), lengths (points,), out (points, columns) and the residual stress.
+    `count`: results (points, columns) of stress (points, 3, samples), lengths (points,) and residual stress.
     """
-    stress = np.stack(
-        np.broadcast_arrays(*(np.asarray(component, float) for component in (sx, sz, txz))), axis=-2
-    )
+    stress = np.stack(np.broadcast_arrays(sx, sz, txz), axis=-2).astype(float)
     if not np.isfinite(stress).all():
         raise ValueError("stress histories must be finite")
     if not np.isfinite(residual_stress):
         raise ValueError("residual_stress must be a finite number")
     shape, samples = stress.shape[:-2], stress.shape[-1]
-    counter = counter_of(samples)
-    blocks = np.ascontiguousarray(stress).reshape(-1, 3, samples)
-    out = np.empty((len(blocks), len(counter.columns)))
-    counter(blocks, np.full(len(blocks), samples), out, residual_stress)
+    blocks = stress.reshape(-1, 3, samples)
+    out = count(blocks, np.full(len(blocks), samples), float(residual_stress))
     return [column.reshape(shape)[()] for column in out.T]
-
-
-CHANNELS = {"max3": (0, 1, 2), "sx": (0,), "sz": (1,), "txz": (2,)}
-MEAN_STRESSES = ("none", "morrow")
 
 
 class Damage(NamedTuple):
@@ -55,22 +49,6 @@ class Damage(NamedTuple):
     damage: np.ndarray
     cycles: np.ndarray
     peak_range: np.ndarray
-
-
-class Counting(NamedTuple):
-    """Options of counting, explained in :func:`damage`."""
-
-    count: str = "max3"  # type: ignore[assignment]
-    mean_stress: str = "none"
-    strain: str = DEFAULT_STRAIN
-
-    def check(self) -> Counting:
-        """Raise ValueError for an unknown option."""
-        choices = (CHANNELS, MEAN_STRESSES, STRAINS)
-        for name, value, allowed in zip(self._fields, self, choices, strict=True):
-            if value not in allowed:
-                raise ValueError(f"{name} = {value!r}: must be one of {', '.join(allowed)}")
-        return self
 
 
 _squared = compiled(von_mises_squared, error_model="python", nogil=True)
@@ -101,16 +79,14 @@ def _sum_cycles(stress: np.ndarray, nu: float, cycles: np.ndarray, law: tuple) -
 
 
 @compiled(error_model="python", nogil=True)
-def damage_of_points(
-    histories: tuple, nu: float, channels: np.ndarray, law: tuple, work: tuple, out: np.ndarray
-) -> None:
+def damage_of_points(histories: tuple, nu: float, law: tuple, work: tuple, out: np.ndarray) -> None:
     """Set out (points, 3) from histories: stress (points, 3, samples) with lengths[point] samples each."""
     stress, lengths = histories
     stack, cycles, scalar = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
         worst = -1.0
-        for channel in channels:
+        for channel in range(3):
             scalar[: lengths[point]] = history[channel]  # copied: counting is compiled once for all kinds
             count = find_cycles(scalar[: lengths[point]], stack, cycles)
             total, number, largest = _sum_cycles(history, nu, cycles[:count], law)
@@ -119,29 +95,24 @@ def damage_of_points(
                 out[point, 0], out[point, 1], out[point, 2] = total, number, sqrt(largest)
 
 
-class Counter:
-    """Damage of blocks of histories for one material and one method of counting."""
+def count_damage(
+    stress: np.ndarray,
+    lengths: np.ndarray,
+    residual: float,
+    material: Material,
+    mean_stress: str,
+    strain: str,
+) -> np.ndarray:
+    """Damage, cycles and maximum range (points, 3) of histories (points, 3, samples) of these lengths.
 
-    columns = Damage._fields
-
-    def __init__(self, material: Material, counting: Counting, samples: int) -> None:
-        counting.check()
-        self.material = material
-        self.channels = np.array(CHANNELS[counting.count])
-        self.options = counting.mean_stress == "morrow", STRAINS.index(counting.strain)
-        self.table = life_table(material, counting.strain)
-        self.work = (*workspace(samples), np.empty(samples))
-
-    def __call__(
-        self, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray, residual: float = 0.0
-    ) -> None:
-        """Stress (points, 3, samples), lengths (points,) -> out (points, 3): damage, cycles, peak range.
-
-        `residual` (Pa) acts in both directions along the surface; it enters only the mean-stress term.
-        """
-        law = (*self.options, float(residual)), self.material.constants(), self.table
-        histories = stress, lengths
-        damage_of_points(histories, self.material.poisson_ratio, self.channels, law, self.work, out)
+    The residual stress [Pa] acts in both directions along the surface, in the mean-stress term only.
+    """
+    samples, out = stress.shape[-1], np.empty((len(stress), 3))
+    options = MEAN_STRESSES.index(mean_stress) > 0, STRAINS.index(strain), residual
+    law = options, material.constants(), life_table(material, strain)
+    work = *workspace(samples), np.empty(samples)
+    damage_of_points((stress, lengths), material.poisson_ratio, law, work, out)
+    return out
 
 
 def damage(
@@ -149,17 +120,17 @@ def damage(
     sz: np.ndarray,
     txz: np.ndarray,
     material: Material,
-    count: str = "max3",
     mean_stress: str = "none",
     strain: str = DEFAULT_STRAIN,
     residual_stress: float = 0.0,
 ) -> Damage:
     """Damage of one pass of each history, cycles of the scalar with the maximum damage, shape (...).
 
+    sx, sz and txz are counted separately, and the maximum damage is used, which Holmes et al. do not specify:
+    no single component has every cycle (under a ripple sx and sz change together, under a passing asperity
+    txz reverses while sz peaks).
+
     `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    `count`: scalar whose reversals are counted, which Holmes et al. do not specify. "max3" counts sx, sz and
-        txz separately and uses the maximum damage: no single component has every cycle (under a ripple sx and
-        sz change together, under a passing asperity txz reverses while sz peaks).
     `mean_stress`: Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in
         uniaxial loading the mean stress) from the fatigue strength. The benefit of compression is limited to
         that of a uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this
@@ -169,5 +140,5 @@ def damage(
     `residual_stress`: residual stress along the surface, equal in x and y, zero in z [Pa]; enters twice in
         the mean of Morrow's term, and has no effect without this term.
     """
-    counting = Counting(count, mean_stress, strain)
-    return Damage(*evaluate(sx, sz, txz, lambda n: Counter(material, counting, n), residual_stress))
+    count = partial(count_damage, material=material, mean_stress=mean_stress, strain=strain)
+    return Damage(*evaluate(sx, sz, txz, count, residual_stress))

@@ -37,7 +37,7 @@ in logarithms (the power laws of the two curves' ends) outside. Relative error o
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import exp, inf, log
 
@@ -53,7 +53,7 @@ DEFAULT_STRAIN = "neuber"
 def _sum_of_powers(
     first: float, first_slope: float, second: float, second_slope: float, target: float
 ) -> tuple[float, float]:
-    """y at which exp(first + first_slope y) + exp(second + second_slope y) = exp(wanted), and d wanted/dy.
+    """y at which exp(first + first_slope y) + exp(second + second_slope y) = exp(target), and d target/dy.
 
     The logarithm of the sum is convex and increasing in y; from the smaller of the one-term solutions,
     right of the root, Newton's method converges without overshoot.
@@ -119,47 +119,33 @@ class Material:
         return *curve, self.fatigue_strength, self.fatigue_ductility, self.b, self.c
 
 
-def rule_of(strain: str) -> int:
-    """Index of a rule in `STRAINS`; ValueError for an unknown rule."""
-    if strain not in STRAINS:
-        raise ValueError(f"strain = {strain!r}: must be one of {', '.join(STRAINS)}")
-    return STRAINS.index(strain)
-
-
 @compiled(error_model="python", nogil=True)
-def log_strain_amplitude(log_dsv: float, modulus: float, hardening: float, exponent: float) -> float:
-    """ln of half the strain range of eq. (13) from ln of the stress range: no overflow."""
-    elastic = log_dsv - log(2 * modulus)
-    plastic = (log_dsv - log(2 * hardening)) / exponent
+def log_amplitude(
+    log_squared: float, rule: int, modulus: float, hardening: float, exponent: float
+) -> tuple[float, float]:
+    """ln of half the strain range of eq. (13), and its slope, from ln of the squared elastic stress range."""
+    local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
+    elastic = local - log(2 * modulus)
+    plastic = (local - log(2 * hardening)) / exponent
     high = max(elastic, plastic)
-    return high + log(exp(elastic - high) + exp(plastic - high))
+    value = high + log(exp(elastic - high) + exp(plastic - high))
+    share = exp(elastic - value)
+    return value, (share + (1 - share) / exponent) * rate / 2
 
 
 @compiled(error_model="python", nogil=True)
-def log_reversals(
-    log_amplitude: float, strength: float, modulus: float, ductility: float, b: float, c: float
-) -> float:
-    """ln(2N) from ln of the strain amplitude, eq. (14).
+def log_damage(
+    amplitude: float, modulus: float, strength: float, ductility: float, b: float, c: float
+) -> tuple[float, float]:
+    """ln(1/N), and its slope, from ln of the strain amplitude, eq. (14).
 
-    The logarithm of the right-hand side is convex and decreasing in ln(2N); from the larger of the one-term
-    solutions, left of the root, Newton's method converges without overshoot. With a strength <= 0 (mean
-    stress above it) only the plastic term remains.
+    With a strength <= 0 (mean stress above it) only the plastic term remains.
     """
     plastic = log(ductility)
     if strength <= 0:
-        return (log_amplitude - plastic) / c
-    elastic = log(strength / modulus)
-    y = max((log_amplitude - elastic) / b, (log_amplitude - plastic) / c)
-    for _ in range(50):
-        e, p = elastic + b * y, plastic + c * y
-        high = max(e, p)
-        total = high + log(exp(e - high) + exp(p - high))
-        weight = exp(e - total)
-        step = (total - log_amplitude) / (b * weight + c * (1 - weight))
-        y -= step
-        if abs(step) <= 1e-13 * (1 + abs(y)):
-            break
-    return y
+        return log(2.0) + (plastic - amplitude) / c, -1 / c
+    y, slope = _sum_of_powers(log(strength / modulus), -b, plastic, -c, amplitude)
+    return log(2.0) + y, 1 / slope
 
 
 @compiled(error_model="python", nogil=True)
@@ -170,10 +156,8 @@ def cycle_damage(dsv: float, mean: float, rule: int, constants: tuple) -> float:
         return 0.0
     if dsv == inf:
         return inf
-    local, _ = log_local_range(log(dsv), modulus, hardening, exponent, rule)
-    amplitude = log_strain_amplitude(local, modulus, hardening, exponent)
-    y = log_reversals(amplitude, strength - mean, modulus, ductility, b, c)
-    return 2 * exp(min(-y, MAX_EXPONENT))
+    amplitude, _ = log_amplitude(2 * log(dsv), rule, modulus, hardening, exponent)
+    return exp(min(log_damage(amplitude, modulus, strength - mean, ductility, b, c)[0], MAX_EXPONENT))
 
 
 def cycles_to_failure(
@@ -185,7 +169,7 @@ def cycles_to_failure(
     `mean_stress`: subtracted from the fatigue strength in the elastic term of (14) (Morrow) [Pa].
     `strain`: rule applied to the elastic range before (13): "direct", "neuber" or "glinka".
     """
-    rule, constants = rule_of(strain), material.constants()
+    rule, constants = STRAINS.index(strain), material.constants()
     dsv, mean = np.broadcast_arrays(np.asarray(dsv, float), np.asarray(mean_stress, float))
     if not (dsv >= 0).all() or np.isnan(mean).any():
         raise ValueError("stress ranges must be numbers of 0 or more")
@@ -214,40 +198,38 @@ def curve_table(
     return table
 
 
-def log_amplitude(
-    log_squared: float, modulus: float, hardening: float, exponent: float, rule: int
-) -> tuple[float, float]:
-    """ln of the strain amplitude, and its slope, from ln of the squared elastic range."""
-    local, rate = log_local_range(log_squared / 2, modulus, hardening, exponent, rule)
-    value = log_strain_amplitude(local, modulus, hardening, exponent)
-    elastic = exp(local - log(2 * modulus) - value)
-    return value, (elastic + (1 - elastic) / exponent) * rate / 2
-
-
-def log_damage(
-    amplitude: float, strength: float, modulus: float, ductility: float, b: float, c: float
-) -> tuple[float, float]:
-    """ln(1/N), and its slope, from ln of the strain amplitude."""
-    y = log_reversals(amplitude, strength, modulus, ductility, b, c)
-    elastic = exp(log(strength / modulus) + b * y - amplitude)
-    return log(2.0) - y, -1 / (b * elastic + c * (1 - elastic))
-
-
 @lru_cache(maxsize=8)
-def life_table(material: Material, strain: str = "direct") -> np.ndarray:
+def life_table(material: Material, strain: str) -> np.ndarray:
     """Table of ln(1/N) over ln(dsv^2), dsv elastic; `strain`: rule applied before eq. (13).
 
     Cached: all histories of one material use the same table.
     """
-    modulus, hardening, exponent, strength, ductility, b, c = material.constants()
-    curve = modulus, hardening, exponent, rule_of(strain)
+    rule, constants = STRAINS.index(strain), material.constants()
 
     def value_and_slope(log_squared: float) -> tuple[float, float]:
-        amplitude, rate = log_amplitude(log_squared, *curve)
-        value, slope = log_damage(amplitude, strength, modulus, ductility, b, c)
+        amplitude, rate = log_amplitude(log_squared, rule, *constants[:3])
+        value, slope = log_damage(amplitude, constants[0], *constants[3:])
         return value, slope * rate
 
-    return curve_table(2 * log(MIN_RANGE * strength), 2 * log(MAX_RANGE * strength), value_and_slope)
+    return curve_table(*_ends(material), value_and_slope)
+
+
+@lru_cache(maxsize=8)
+def shear_tables(material: Material, strain: str) -> tuple[np.ndarray, np.ndarray]:
+    """ln of the shear strain amplitude over sqrt(3) over ln of the squared range; ln(1/N) over the former.
+
+    As uniaxial strains, with 3G for E.
+    """
+    shear = replace(material, youngs_modulus=1.5 * material.youngs_modulus / (1 + material.poisson_ratio))
+    rule, constants = STRAINS.index(strain), shear.constants()
+    amplitudes = curve_table(*_ends(shear), lambda squared: log_amplitude(squared, rule, *constants[:3]))
+    ends = amplitudes[0, 0], amplitudes[-2, 0]
+    return amplitudes, curve_table(*ends, lambda value: log_damage(value, constants[0], *constants[3:]))
+
+
+def _ends(material: Material) -> tuple[float, float]:
+    """ln of the squared stress ranges between which tables extend."""
+    return 2 * log(MIN_RANGE * material.fatigue_strength), 2 * log(MAX_RANGE * material.fatigue_strength)
 
 
 @compiled(error_model="python", nogil=True)
@@ -270,4 +252,4 @@ def interpolate(logarithm: float, table: np.ndarray) -> float:
 @compiled(error_model="python", nogil=True)
 def look_up(squared: float, table: np.ndarray) -> float:
     """1/N at the square of a stress range > 0."""
-    return exp(min(interpolate(log(squared), table), 700.0))
+    return exp(min(interpolate(log(squared), table), MAX_EXPONENT))
