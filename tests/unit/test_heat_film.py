@@ -45,6 +45,7 @@ LAWS = {
     "limited": LAW._replace(limit=0.06),
     "carreau": LAW._replace(flow=tuple(FlowLaw(CARREAU, 7e6, 0.45, 2.0)), limit=0.06),
     "eyring of p": LAW._replace(stress_pressure=0.6e-9, stress_temperature=0.003, limit=0.06),
+    "limit of T": LAW._replace(limit=0.06, limit_temperature=-0.01),
     "conducting": LAW._replace(conductivity_pressure=1.7e-9, conductivity_saturation=0.5e-9),
     "roelands": LAW._replace(viscosity=oil(ROELANDS, 1.1, 0.0), is_linear=False),
 }
@@ -74,7 +75,8 @@ def test_shear_stress_of_a_film_without_transport(law):
     grown = (1.0 + law.stress_pressure * 0.8e9) * (1.0 + law.stress_temperature * (REFERENCE - 363.0))
     flow = FlowLaw(law.flow[0], law.flow[1] * grown, *law.flow[2:])
     state = 3e-7, 0.02 * np.exp(eta - SPREAD), -slope, wall, wall
-    film = film_stress(*state, 0.14 * (1.0 + rise), 12.5, flow, law.limit * 0.8e9)
+    limit = law.limit * (1.0 + law.limit_temperature * (REFERENCE - 363.0)) * 0.8e9
+    film = film_stress(*state, 0.14 * (1.0 + rise), 12.5, flow, limit)
     assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)
     assert t - wall == pytest.approx(film.mean, rel=1e-8)
     assert q1 == pytest.approx(0.5 * shear, rel=1e-8) and q2 == pytest.approx(q1)

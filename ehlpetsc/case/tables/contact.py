@@ -170,6 +170,11 @@ KEYS = {
         *("", 1e-4, 1),
         equation="mean shear stress `(tau^-4 + (limiting_shear p)^-4)^(-1/4)`, `tau` without it",
     ),
+    "limiting_shear_temperature": Key(
+        "`k` of `limiting_shear (1 + k (T - T0))`, with [heat]",
+        *("1/K", -0.02, 0.0),
+        needs=("fluid.limiting_shear",),
+    ),
     "inlet_film": Key("`h (1 - theta)` at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
 }
 FLUID = KeyTable("fluid", "left out: dry contact", KEYS, complete=lambda fluid: completed(vars(fluid)))

@@ -57,7 +57,7 @@ MAX_SPLIT_CHANGE = 1e-6  # of d
 MIN_SLOPE = 1e-12  # 1/K
 MIN_RISE = 0.1  # K of the secant
 MIN_HEATING = 1e-12  # of b: less does not heat the film
-MIN_STRESS = 0.1  # of the shear law's stress, over that at the reference temperature
+MIN_STRESS = 0.1  # of the shear law's and the limiting stress, over those at the reference temperature
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
 A, B, G, SPREAD, W1, W2, R1, R2, MIDDLE, REFERENCE = range(10)  # rows of FilmHeat.of_nodes
@@ -91,6 +91,8 @@ class FilmLaw(NamedTuple):
     stress_pressure, stress_temperature
         Relative rise of the stress of the shear law with pressure [1/Pa] and, from the temperature at which
         the viscosity is eta0, with temperature [1/K].
+    limit_temperature
+        Relative rise of the limiting shear stress with temperature [1/K], likewise.
     """
 
     viscosity: tuple
@@ -105,6 +107,7 @@ class FilmLaw(NamedTuple):
     thinnest: float = 0.0
     stress_pressure: float = 0.0
     stress_temperature: float = 0.0
+    limit_temperature: float = 0.0
 
 
 def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
@@ -130,6 +133,7 @@ def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> Fi
         thinnest,
         stress_pressure(fluid),
         getattr(fluid, "eyring_stress_temperature", None) or 0.0,
+        getattr(fluid, "limiting_shear_temperature", None) or 0.0,
     )
 
 
@@ -253,11 +257,14 @@ def film_temperature(
     over_k, k_slope = _resistivity(p, left, law)
     r = h * over_k
     kind, stress, n, width = law.flow
-    stress_p = 0.0
+    stress_p, warmer = 0.0, reference - law.viscosity[2]
     if law.stress_pressure != 0.0 or law.stress_temperature != 0.0:
         grown = 1.0 + law.stress_pressure * p
-        stress *= grown * max(1.0 + law.stress_temperature * (reference - law.viscosity[2]), MIN_STRESS)
+        stress *= grown * max(1.0 + law.stress_temperature * warmer, MIN_STRESS)
         stress_p = law.stress_pressure / grown
+    limit_p = law.limit
+    if law.limit_temperature != 0.0:
+        limit_p *= max(1.0 + law.limit_temperature * warmer, MIN_STRESS)
     flow = FlowLaw(kind, stress, n, width)
     sheared = max(h, law.thinnest)
     heat = left * law.sliding if sheared > 0.0 else 0.0
@@ -265,7 +272,7 @@ def film_temperature(
     ln_eta, beta, eta_p, beta_p = _line(p, middle, reference, law)
     if heat > 0.0:
         ln_rate = np.log(law.sliding * law.eta0 / (flow.stress * sheared)) - spread
-        limit = np.inf if law.limit == np.inf else law.limit * p
+        limit = np.inf if law.limit == np.inf else limit_p * p
     heating = 0.125 * beta * law.sliding * r * max(left, MIN_CONDUCTING_FRACTION)
     t, y = base, profile
     temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
@@ -333,7 +340,7 @@ def film_temperature(
             # derivatives of both equations by the pressure and by the film, at constant t and y
             tau_p, r_p = by_x * (eta_p - beta_p * (t - reference)), -r * k_slope
             if limit < np.inf:
-                tau_p += by_limit * law.limit
+                tau_p += by_limit * limit_p
             tau_p += stress_p * (tau - by_x - by_limit * limit if limit < np.inf else tau - by_x)
             heating_p = heating * (beta_p / beta - k_slope)
             tau_h = -by_x / h if h == sheared else 0.0
