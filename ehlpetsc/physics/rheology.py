@@ -21,7 +21,6 @@ MAX_LN_SINH = 20.0  # above it asinh(exp(x)) is x + ln 2 to 1e-17, below its neg
 MAX_EXPONENT = 600.0
 MIN_RATE = 1e-30  # shear rate and stress difference of a film at rest, over those of its law
 NO_FLOW = 0.0, 0.0, 0.0, 0.0
-ONE, TWO, THREE = unsigned(1), unsigned(2), unsigned(3)
 
 
 class FlowLaw(NamedTuple):
@@ -296,80 +295,70 @@ def _fill_table(n: float, a: float, x: np.ndarray, ln_drop: np.ndarray, out: np.
     for i in range(len(x)):
         for j in range(len(ln_drop)):
             phi, t = flow_across(np.exp(x[i]), np.exp(ln_drop[j]), n, a)
-            out[0, i, j], out[1, i, j] = np.log(phi), np.log(t) - x[i]
+            out[0, i, j], out[1, i, j] = phi, np.log(t) - x[i]
 
 
 @cache
 def flow_table(kind: int, n: float, a: float) -> np.ndarray:
     r"""Table of the pressure flow of a shear law over x = ln(Gamma) and ln(s), empty where it is closed.
 
-    The quantities are :math:`\ln\Phi` and :math:`\ln(t/\Gamma)` of :func:`flow_across`. They do not depend on
-    small Gamma and s; beyond large ones, where the law is a power, those of (x, ln s) follow from those of
-    (x - e, ln s - n e) by :math:`\pm(1-n)e`. Cubic between its points, to 3e-5, next to s = 2 t to 4e-4.
+    The quantities are :math:`\Phi` and :math:`\ln(t/\Gamma)` of :func:`flow_across`. They do not depend on
+    small Gamma and s; beyond large ones, where the law is a power, the logarithms of both at (x, ln s) are
+    those at (x - e, ln s - n e) with :math:`\pm(1-n)e`. Cubic between the points, to 1e-4; a = 1: 8e-4.
 
     Returns
     -------
-    ndarray, shape (points of x and 1, points of ln s, 8)
-        Value, derivatives by x, ln s and both of either quantity, in steps; the last row has n, the first x
-        and ln s, one over both steps, the last x and ln s, a,
-        and Gamma and s below which the film is Newtonian.
+    ndarray, shape (2 * intervals of x + 1, intervals of ln s, 16)
+        Coefficients of :math:`u^av^b` at 4 b + a in an interval, u and v from 0 to 1, of the first and then
+        of the second quantity. The last row begins with n, the first x and ln s, one over both steps, the
+        last x and ln s, a, and Gamma and s below which the film is Newtonian.
     """
     if kind != CARREAU:
-        return np.zeros((0, 0, 8))
-    from scipy.interpolate import RectBivariateSpline
+        return np.zeros((0, 0, 16))
+    from scipy.interpolate import CubicSpline
 
     last, bend = RANGE / min(a, 2.0), max(a, 2.0) / 2.0
     step_x, step = STEPS[0] / bend, STEPS[1] / bend
     x, ln_drop = np.arange(-last, last, step_x), np.arange(-last, n * last + 1.0, step)
-    values, table = np.empty((2, len(x), len(ln_drop))), np.zeros((len(x) + 1, len(ln_drop), 8))
+    values = np.empty((2, len(x), len(ln_drop)))
     _fill_table(n, a, x, ln_drop, values)
     u, v = (np.arange(len(points), dtype=float) for points in (x, ln_drop))
-    for quantity in range(2):
-        spline = RectBivariateSpline(u, v, values[quantity], s=0)
-        for order, (by_u, by_v) in enumerate(((0, 0), (1, 0), (0, 1), (1, 1))):
-            table[:-1, :, 4 * quantity + order] = spline(u, v, dx=by_u, dy=by_v)
-    begin, end, per_step = (x[0], ln_drop[0]), (x[-1], ln_drop[-1]), (1.0 / step_x, 1.0 / step)
-    table[-1, :9, 0] = n, *begin, *per_step, *end, a, NEWTONIAN ** (1.0 / a)
+    table = np.zeros((2 * len(x) - 1, len(ln_drop) - 1, 16))
+    for quantity, rows in enumerate(np.split(table[:-1], 2)):
+        coefficients = CubicSpline(v, CubicSpline(u, values[quantity]).c, axis=2).c  # falling powers of v, u
+        rows[:] = coefficients[::-1, :, ::-1].transpose(3, 1, 0, 2).reshape(rows.shape)
+    constants = n, x[0], ln_drop[0], 1.0 / step_x, 1.0 / step, x[-1], ln_drop[-1], a, NEWTONIAN ** (1.0 / a)
+    table[-1, 0, : len(constants)] = constants
     return table
 
 
 @inlined
-def _hermite(s: float) -> tuple:
-    """Cubic weights of the values and derivatives at 0 and at 1, and derivatives of the weights."""
-    r = 1.0 - s
-    a2, d2 = s * s * (3.0 - 2.0 * s), 6.0 * s * r
-    return 1.0 - a2, s * r * r, a2, -s * s * r, r * (1.0 - 3.0 * s), d2, s * (3.0 * s - 2.0)
+def _place(x: float, ln_drop: float, table: np.ndarray) -> tuple:
+    """Interval of (x, ln s) in :func:`flow_table`, position in it, and the distance e beyond the table."""
+    last = unsigned(table.shape[0] - 1)  # numbers, not views of the row, which would be counted
+    n = table[last, 0, 0]
+    beyond = max(max(x - table[last, 0, 5], (ln_drop - table[last, 0, 6]) / n), 0.0)
+    u = max((x - beyond - table[last, 0, 1]) * table[last, 0, 3], 0.0)
+    v = max((ln_drop - n * beyond - table[last, 0, 2]) * table[last, 0, 4], 0.0)
+    i, j = unsigned(min(u, table.shape[0] // 2 - 0.5)), unsigned(min(v, table.shape[1] - 0.5))
+    return i, j, u - i, v - j, beyond
 
 
 @inlined
-def _interpolated(quantity: int, x: float, ln_drop: float, table: np.ndarray) -> tuple[float, float, float]:
-    """A quantity of :func:`flow_table`, and its derivatives by x and ln(s)."""
-    last = unsigned(table.shape[0] - 1)
-    n, per_x, per_v = table[last, 0, 0], table[last, 3, 0], table[last, 4, 0]
-    beyond = max(max(x - table[last, 5, 0], (ln_drop - table[last, 6, 0]) / n), 0.0)
-    u = max((x - beyond - table[last, 1, 0]) * per_x, 0.0)
-    v = max((ln_drop - n * beyond - table[last, 2, 0]) * per_v, 0.0)
-    i, j = unsigned(min(u, table.shape[0] - 2.5)), unsigned(min(v, table.shape[1] - 1.5))
-    b0, b1, b2, b3, e1, e2, e3 = _hermite(v - j)
-    a0, a1, a2, a3, d1, d2, d3 = _hermite(u - i)
-    i1, j1, k = i + ONE, j + ONE, unsigned(4 * quantity)
-    k1, k2, k3 = k + ONE, k + TWO, k + THREE
-    low = b0 * table[i, j, k] + b1 * table[i, j, k2] + b2 * table[i, j1, k] + b3 * table[i, j1, k2]
-    high = b0 * table[i1, j, k] + b1 * table[i1, j, k2] + b2 * table[i1, j1, k] + b3 * table[i1, j1, k2]
-    low_u = b0 * table[i, j, k1] + b1 * table[i, j, k3] + b2 * table[i, j1, k1] + b3 * table[i, j1, k3]
-    high_u = b0 * table[i1, j, k1] + b1 * table[i1, j, k3] + b2 * table[i1, j1, k1] + b3 * table[i1, j1, k3]
-    value = a0 * low + a1 * low_u + a2 * high + a3 * high_u
-    by_u = d2 * (high - low) + d1 * low_u + d3 * high_u
-    low_v = e1 * table[i, j, k2] + e2 * (table[i, j1, k] - table[i, j, k]) + e3 * table[i, j1, k2]
-    high_v = e1 * table[i1, j, k2] + e2 * (table[i1, j1, k] - table[i1, j, k]) + e3 * table[i1, j1, k2]
-    low_uv = e1 * table[i, j, k3] + e2 * (table[i, j1, k1] - table[i, j, k1]) + e3 * table[i, j1, k3]
-    high_uv = e1 * table[i1, j, k3] + e2 * (table[i1, j1, k1] - table[i1, j, k1]) + e3 * table[i1, j1, k3]
-    by_v = a0 * low_v + a1 * low_uv + a2 * high_v + a3 * high_uv
-    value += (1.0 - n) * (beyond if quantity == 0 else -beyond)
-    return value, by_u * per_x, by_v * per_v
+def _cubic_in_x(i: int, j: int, v: float, c: np.ndarray) -> tuple:
+    """Coefficients of a cubic in u at one v, and their derivatives by v."""
+    p0 = c[i, j, 0] + v * (c[i, j, 4] + v * (c[i, j, 8] + v * c[i, j, 12]))
+    p1 = c[i, j, 1] + v * (c[i, j, 5] + v * (c[i, j, 9] + v * c[i, j, 13]))
+    p2 = c[i, j, 2] + v * (c[i, j, 6] + v * (c[i, j, 10] + v * c[i, j, 14]))
+    p3 = c[i, j, 3] + v * (c[i, j, 7] + v * (c[i, j, 11] + v * c[i, j, 15]))
+    d0 = c[i, j, 4] + v * (2.0 * c[i, j, 8] + 3.0 * v * c[i, j, 12])
+    d1 = c[i, j, 5] + v * (2.0 * c[i, j, 9] + 3.0 * v * c[i, j, 13])
+    d2 = c[i, j, 6] + v * (2.0 * c[i, j, 10] + 3.0 * v * c[i, j, 14])
+    d3 = c[i, j, 7] + v * (2.0 * c[i, j, 11] + 3.0 * v * c[i, j, 15])
+    return (p0, p1, p2, p3), (d0, d1, d2, d3)
 
 
-@compiled
+@inlined
 def tabulated_mobilities(
     h: float,
     gradient: float,
@@ -382,22 +371,42 @@ def tabulated_mobilities(
     """As :func:`mobilities`, of a law with a table by :func:`flow_table`."""
     if h <= 0.0:
         return NO_FLOW, NO_FLOW
-    drop, rate, cube = h * abs(gradient) / stress, slip / h, h * h * h / 12.0
-    if max(drop, rate / min(fluidity_l, fluidity_r)) < table[unsigned(table.shape[0] - 1), 8, 0]:
+    last, over_h, cube = unsigned(table.shape[0] - 1), 1.0 / h, h * h * h / 12.0
+    drop, rate = h * abs(gradient) / stress, slip * over_h
+    if max(drop, rate / min(fluidity_l, fluidity_r)) < table[last, 0, 8]:
         left, right = cube * fluidity_l, cube * fluidity_r
-        return (left, 3.0 * left / h, 0.0, -left), (right, 3.0 * right / h, 0.0, -right)
-    face = h, gradient, np.log(max(drop, MIN_RATE)), rate, cube
-    return _tabulated_mobility(fluidity_l, face, table), _tabulated_mobility(fluidity_r, face, table)
+        return (left, 3.0 * left * over_h, 0.0, -left), (right, 3.0 * right * over_h, 0.0, -right)
+    ln_drop = np.log(max(drop, MIN_RATE))
+    at_l = _place(np.log(max(rate / fluidity_l, MIN_RATE)), ln_drop, table)
+    at_r = _place(np.log(max(rate / fluidity_r, MIN_RATE)), ln_drop, table)
+    cubic_l = _cubic_in_x(at_l[0], at_l[1], at_l[3], table)
+    cubic_r = _cubic_in_x(at_r[0], at_r[1], at_r[3], table)
+    over_gradient = 1.0 / gradient if gradient != 0.0 else 0.0
+    face = over_h, over_gradient, cube, table[last, 0, 0], table[last, 0, 3], table[last, 0, 4]
+    return (
+        _tabulated_mobility(fluidity_l, at_l, cubic_l, face),
+        _tabulated_mobility(fluidity_r, at_r, cubic_r, face),
+    )
 
 
 @inlined
-def _tabulated_mobility(fluidity: float, face: tuple, table: np.ndarray) -> tuple[float, float, float, float]:
+def _tabulated_mobility(
+    fluidity: float, at: tuple, cubic: tuple, face: tuple
+) -> tuple[float, float, float, float]:
     """One of :func:`mobilities`."""
-    h, gradient, ln_drop, rate, cube = face
-    value, by_x, by_drop = _interpolated(0, np.log(max(rate / fluidity, MIN_RATE)), ln_drop, table)
-    mobility = cube * fluidity * np.exp(value)
-    by_gradient = mobility * by_drop / gradient if gradient != 0.0 else 0.0
-    return mobility, mobility / h * (3.0 - by_x + by_drop), by_gradient, mobility * (by_x - 1.0)
+    over_h, over_gradient, cube, n, per_x, per_v = face
+    u, beyond, (p, d) = at[2], at[4], cubic
+    unit = cube * fluidity
+    if beyond > 0.0:
+        unit *= np.exp((1.0 - n) * beyond)
+    mobility, by_drop = unit * _cubic(u, p), unit * per_v * _cubic(u, d)
+    by_x = unit * per_x * (p[1] + u * (2.0 * p[2] + 3.0 * u * p[3]))
+    return mobility, over_h * (3.0 * mobility - by_x + by_drop), by_drop * over_gradient, by_x - mobility
+
+
+@inlined
+def _cubic(u: float, p: tuple) -> float:
+    return p[0] + u * (p[1] + u * (p[2] + u * p[3]))
 
 
 @inlined
@@ -408,9 +417,11 @@ def stress_spread(sigma: float, x: float, table: np.ndarray) -> float:
     viscosity nor a steep gradient overflows.
     """
     if len(table) > 0:
-        ln_drop = np.log(max(2.0 * sigma, MIN_RATE))
-        lower = _interpolated(1, x, ln_drop, table)[0]
-        return x - np.log(rate_of_stress(np.exp(x + lower), table[-1, 0, 0], table[-1, 7, 0])[0])
+        i, j, u, v, beyond = _place(x, np.log(max(2.0 * sigma, MIN_RATE)), table)
+        p, _ = _cubic_in_x(unsigned(table.shape[0] // 2) + i, j, v, table)
+        n, a = table[-1, 0, 0], table[-1, 0, 7]
+        lower = _cubic(u, p) - (1.0 - n) * beyond
+        return x - np.log(rate_of_stress(np.exp(x + lower), n, a)[0])
     if sigma < SERIES_LIMIT:
         square = sigma * sigma
         return square * (1 / 6 - square * (1 / 180 - square / 2835))
