@@ -89,8 +89,8 @@ def benedict_kelley(
 
     w' in N/mm, :math:`\eta` in mPa s, :math:`R_a` in um: Benedict & Kelley, ASLE Trans. 4 (1961) 59,
     doi:10.1080/05698196108972420, with their imperial constants :math:`3.17\cdot10^8` and 50 microinches.
-    Disc tests of ground steel with mineral oils; without bound towards no sliding. The constants are from
-    memory, not checked against the article.
+    Disc tests of ground steel with mineral oils; without bound towards no sliding. 0.0127 and 29660 are as in
+    the public program github.com/PedroTayer/contact_mechanics, the factor of the roughness is from memory.
 
     Parameters
     ----------

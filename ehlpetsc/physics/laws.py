@@ -253,8 +253,9 @@ def walther_constants(v40: float, v100: float) -> tuple[float, float]:
 def gold_pressure_viscosity(nu: float) -> float:
     r"""Pressure-viscosity coefficient [1/Pa], :math:`\alpha=9.904\,\nu^{0.139}` /GPa, nu in mm^2/s.
 
-    Gold, Schmidt, Dicke, Loos & Assmann, J. Synth. Lubr. 18 (2001) 51, their constants for mineral oils: a
-    secant of ln(eta) over 2000 bar, as usual in German data sheets (from memory, unchecked).
+    Gold, Schmidt, Dicke, Loos & Assmann, J. Synth. Lubr. 18 (2001) 51, their constants for mineral oils, as
+    in the public program github.com/PedroTayer/contact_mechanics. That they are a secant of ln(eta) over
+    2000 bar, usual in German data sheets, is from memory.
     """
     return 9.904e-9 * nu**0.139
 
