@@ -12,7 +12,7 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, FilmLaw, film_law, film_temperature
-from ehlpetsc.physics.film_shear import film_stress
+from ehlpetsc.physics.film_shear import film_stress, wall_exchange
 from ehlpetsc.physics.laws import EXPONENTIAL, ROELANDS, ln_viscosity, padded
 from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
 from ehlpetsc.physics.scales import Scales
@@ -28,7 +28,7 @@ def oil(*thermal):
 LAW = FilmLaw(
     oil(EXPONENTIAL, 0.04, 0.0), True, 0.02, tuple(FlowLaw(EYRING, 10e6)), np.inf, 0.14, 0.0, 0.0, 12.5
 )
-WALLS = (372.0, 368.0, 1.4e-8, 1.9e-8)
+WALLS = (372.0, 368.0, 1.4e-8, 1.9e-8, 1.0)
 A, B, G, SPREAD = 2e4, 2e4 * 365.0, 3e7, 2.0
 
 
@@ -51,19 +51,35 @@ LAWS = {
 }
 
 
+@pytest.mark.parametrize("between", [1.0, 2.5])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_balance_and_fluxes(law):
-    t, _, _, q1, q2, shear, *_ = solved(law=law)
-    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:], (q1, q2), strict=True)]
+def test_balance_and_fluxes(law, between):
+    t, _, _, q1, q2, shear, *_ = solved(law=law, walls=(*WALLS[:4], between))
+    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:4], (q1, q2), strict=True)]
     conductivity = 1.0 + law.conductivity_pressure * 0.8e9 / (1.0 + law.conductivity_saturation * 0.8e9)
-    assert q2 - q1 == pytest.approx(2.0 * 0.14 * conductivity * 0.9 / 3e-7 * (walls[0] - walls[1]), rel=1e-8)
+    exchange = 2.0 * 0.14 * conductivity * 0.9 / (3e-7 * between) * (walls[0] - walls[1])
+    assert q2 - q1 == pytest.approx(exchange, rel=1e-8)
     assert A * t - B == pytest.approx(shear + G - q1 - q2, abs=1e-9 * shear)
+
+
+@pytest.mark.parametrize("t1, t2", [(385.0, 365.0), (365.0, 405.0)])
+def test_unequal_walls_get_the_heat_of_the_closed_form(t1, t2):
+    """The hotter wall more than by conduction, as the oil near it is the most fluid."""
+    eta = 0.02 * np.exp(ln_viscosity(LAW.viscosity, 0.8e9, 0.5 * (t1 + t2))[0])
+    film = film_stress(3e-7, eta, 0.04, t1, t2, 0.14, 12.5, FlowLaw(*LAW.flow))
+    exchange = wall_exchange(float(film.y), 0.02 * (t1 - t2))
+    walls = t1, t2, 0.0, 0.0, 1.0 / exchange
+    start = 370.0, 0.0, 0.8e9, 3e-7, 1.0, 1e-6, 1e-6 * 363.0, 0.0, 0.0, 375.0, 375.0
+    _, _, _, q1, q2, shear, *_ = film_temperature(*start, walls, LAW)
+    assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)
+    assert (q1, q2) == pytest.approx((float(film.q1), float(film.q2)), rel=1e-8)
+    assert exchange < 0.9
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_shear_stress_of_a_film_without_transport(law):
     """That of the closed form between the walls, whose temperatures follow from the fluxes."""
-    a, walls = 1e-6, (372.0, 372.0, 1.4e-8, 1.4e-8)
+    a, walls = 1e-6, (372.0, 372.0, 1.4e-8, 1.4e-8, 1.0)
     t, _, _, q1, q2, shear, *_ = film_temperature(
         370.0, 0.0, 0.8e9, 3e-7, 1.0, a, a * 363.0, 0.0, SPREAD, MIDDLE, REFERENCE, walls, law
     )
@@ -83,7 +99,9 @@ def test_shear_stress_of_a_film_without_transport(law):
 
 
 @pytest.mark.parametrize(
-    "walls, accuracy", [((370.0, 370.0, 1.4e-8, 1.4e-8), 1e-4), (WALLS, 5e-3)], ids=["equal", "unequal"]
+    "walls, accuracy",
+    [((370.0, 370.0, 1.4e-8, 1.4e-8, 1.0), 1e-4), (WALLS, 5e-3), ((*WALLS[:4], 2.5), 1e-2)],
+    ids=["equal", "unequal", "resisting"],
 )
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 @pytest.mark.parametrize("p, h", [(0.8e9, 3e-7), (0.05e9, 5e-6), (2.5e9, 2e-8)])
@@ -105,7 +123,7 @@ OIL = {"colder than both": -5.0, "colder than the mean": 5.0, "near the mean": 3
 @pytest.mark.parametrize("over", OIL.values(), ids=OIL)
 def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over):
     """Between surfaces far apart in temperature a parabola takes heat from the colder one into warmer oil."""
-    a, walls, h = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8), 1e-6
+    a, walls, h = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0), 1e-6
     law = LAW._replace(sliding=0.0)
 
     def found(h):
@@ -130,7 +148,7 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
 
 def test_exchange_is_continuous():
     """From oil colder than both surfaces to oil warmer than both, the fluxes have no steps."""
-    a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8)
+    a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
     law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
     fluxes = [
         film_temperature(370.0, 0.0, 1e6, 1e-6, 1.0, a, a * t, 0.0, 0.0, 363.0, 363.0, walls, law)[3:5]
@@ -158,7 +176,7 @@ def test_the_temperature_does_not_depend_on_the_guess(guess):
 
 def test_surfaces_in_contact_have_one_temperature():
     t, _, _, q1, q2, shear, *_ = solved(h=0.0, left=1.0)
-    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:], (q1, q2), strict=True)]
+    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:4], (q1, q2), strict=True)]
     assert walls[0] == pytest.approx(walls[1], abs=1e-9)
     assert t == pytest.approx(walls[0], abs=1e-9)
     assert shear == 0.0
@@ -182,7 +200,7 @@ def test_derivatives_of_reynolds_rows(ends):
     arrays = [1e4 * rng.uniform(0.0, 2.0, n), 1e4 * 363.0 * rng.uniform(0.0, 2.0, n)]
     arrays += [1e7 * rng.uniform(0.0, 1.0, n), rng.uniform(0.0, 3.0, n)]
     arrays += [363.0 + 20.0 * rng.uniform(0.0, 1.0, n) for _ in range(2)]
-    arrays += [1e-8 * rng.uniform(0.5, 1.0, n)] * 2
+    arrays += [1e-8 * rng.uniform(0.5, 1.0, n)] * 2 + [np.ones(n)]
     arrays[4] = arrays[5]  # derivatives are at a constant difference of the walls
     arrays += [np.full(n, 375.0)] * 2
     law = film_law(case.fluid, case.heat, scales.conditions.sliding)
@@ -215,7 +233,19 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     q, h, b = np.full(n, 0.5), np.full(n, 5e-4), np.full(n, 363e6)
     q[20], b[20] = 1.0, 563e6
     zero, response = np.zeros(n), np.full(n, 1e-8)
-    of_nodes = np.full(n, 1e6), b, zero, zero, b / 1e6, b / 1e6, response, response, b / 1e6, b / 1e6
+    of_nodes = (
+        np.full(n, 1e6),
+        b,
+        zero,
+        zero,
+        b / 1e6,
+        b / 1e6,
+        response,
+        response,
+        zero + 1,
+        b / 1e6,
+        b / 1e6,
+    )
     heat = FilmHeat(film_law(case.fluid, case.heat, 0.0), np.array(of_nodes), state(n), None, zero)
     inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
     found = heat.guess.copy()

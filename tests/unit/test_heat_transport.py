@@ -33,7 +33,7 @@ def carried(profile, nodes, way=1.0, moving=False):
         film = zero, 1e-6 * full, full, t, stored, change, kept, flow
         a, b = explicit_transport(stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
-        of_nodes = np.array((a, b, zero, zero, *walls, INLET * full, INLET * full))
+        of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
         new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
         assert transport(b / a, zero.copy(), b / a, *film, INLET, INLET, tuple(LAW), of_nodes, *out) == 1
         taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)

@@ -9,12 +9,14 @@ concentrates in its middle. Its base temperature is that of the walls and of all
 :math:`T_s=(T_1+T_2)/2+Hr/12`, :math:`H=q_1+q_2-\Phi`, :math:`r=h/k_f`. The fluxes are those of a parabola
 with the mean temperature :math:`T_e=(T_1+T_2)/2+(q_1+q_2)r/12`,
 
-.. math:: q_{1,2}=\frac1r\Big[6(T_e-T_w)\pm(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2,
+.. math:: q_{1,2}=\frac1r\Big[6(T_e-T_w)\pm X(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2,
 
-and the mean of the profile is :math:`T=T_s+m/\beta`. What is left are two equations, for :math:`T_s`
-and y, with one solution. (Heat in the middle of the film would need the weight of
-:func:`ehlpetsc.physics.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is 10 % of
-:math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
+X the factor of :func:`ehlpetsc.physics.film_shear.wall_exchange` at the last level: the oil is most fluid
+near the hotter wall, which gets more of the heat of shear than conduction alone leaves it. (X = 1 gives 8 %
+more friction at slide/roll 1.9, 2 % at 1.5.) The mean of the profile is :math:`T=T_s+m/\beta`. What is left
+are two equations, for :math:`T_s` and y, with one solution. (Heat in the middle of the film would need
+the weight of :func:`ehlpetsc.physics.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is
+10 % of :math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
 
 Oil that enters cold between surfaces far apart in temperature has no parabola: the law would cool the colder
 surface by oil that is warmer than it. Where it does, the sum of both fluxes stays and the colder surface has
@@ -22,8 +24,8 @@ none; where the oil is colder than both surfaces, each gives heat by its own dif
 :math:`q_i=6(T_e-T_i)/r`, with the same sum. All three agree where they meet. The sum is
 :math:`(T_e-\alpha)/\kappa`, for the parabola with
 
-.. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r+R_1+R_2}\Big],\qquad
-   \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r+R_1+R_2)},
+.. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r/X+R_1+R_2}\Big],\qquad
+   \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r/X+R_1+R_2)},
 
 regular at r = 0.
 """
@@ -60,7 +62,7 @@ MIN_HEATING = 1e-12  # of b: less does not heat the film
 MIN_STRESS = 0.1  # of the shear law's and the limiting stress, over those at the reference temperature
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
-A, B, G, SPREAD, W1, W2, R1, R2, MIDDLE, REFERENCE = range(10)  # rows of FilmHeat.of_nodes
+A, B, G, SPREAD, W1, W2, R1, R2, BETWEEN, MIDDLE, REFERENCE = range(11)  # rows of FilmHeat.of_nodes
 BASE, PROFILE, MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
 PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
@@ -140,9 +142,9 @@ def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> Fi
 @inlined
 def exchange_law(kind: int, r: float, walls: tuple) -> tuple[float, float]:
     """Flux into both surfaces per temperature [W/(m^2 K)], and the temperature without flux [K]."""
-    w1, w2, r1, r2 = walls
+    w1, w2, r1, r2, between = walls
     if kind == PARABOLA:
-        skew = (r1 - r2) / (r + r1 + r2)
+        skew = (r1 - r2) / (r * between + r1 + r2)
         resistance = r * (1.0 / 12.0) + 0.25 * (r1 + r2 - (r1 - r2) * skew)
         return 1.0 / resistance, 0.5 * (w1 + w2) - 0.5 * skew * (w1 - w2)
     if kind == INSULATED:
@@ -156,14 +158,15 @@ def fluxes(
     kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: float
 ) -> tuple[float, float, float]:
     """Heat fluxes into both surfaces, and the derivative of their sum with respect to r."""
-    w1, w2, r1, r2 = walls
+    w1, w2, r1, r2, between = walls
     flow = (t - alpha) * exchange
     if kind == PARABOLA:
-        over_total = 1.0 / (r + r1 + r2)
+        over_total = 1.0 / (r * between + r1 + r2)
         skew = (r1 - r2) * over_total
-        between = -2.0 * (w1 - w2) * over_total - skew * flow
-        by_r = -(0.5 * skew * (w1 - w2) * over_total + flow * (1.0 / 12.0 + 0.25 * skew * skew)) * exchange
-        return 0.5 * (flow + between), 0.5 * (flow - between), by_r
+        more = -2.0 * (w1 - w2) * over_total - skew * flow
+        by_r = 0.5 * between * skew * (w1 - w2) * over_total
+        by_r = -(by_r + flow * (1.0 / 12.0 + 0.25 * between * skew * skew)) * exchange
+        return 0.5 * (flow + more), 0.5 * (flow - more), by_r
     if kind == INSULATED:
         first = 0.0 if w1 < w2 else flow
         return first, flow - first, -flow * exchange / 12.0
@@ -182,7 +185,7 @@ def _resistivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
 @inlined
 def fixed_at(i: int, of_nodes: np.ndarray, law: FilmLaw) -> tuple:
     """Arguments of :func:`film_temperature` at node i from `g` on, by :class:`.film.FilmHeat`."""
-    walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i]
+    walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i], of_nodes[BETWEEN, i]
     return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[MIDDLE, i], of_nodes[REFERENCE, i], walls, law
 
 
@@ -219,7 +222,7 @@ def film_temperature(
     spread: float,
     middle: float,
     reference: float,
-    walls: tuple[float, float, float, float],
+    walls: tuple[float, float, float, float, float],
     law: FilmLaw,
 ) -> tuple:
     r"""Temperature of the film at one node.
@@ -240,7 +243,7 @@ def film_temperature(
         Temperatures of the last level [K], in the middle of the film and :math:`T_s`: :math:`\beta` is the
         secant of ln(eta) between them. Around the second the law is exponential, which leaves one solution.
     walls
-        W1, W2 [K], R1, R2 [m^2 K/W].
+        W1, W2 [K], R1, R2 [m^2 K/W], and the resistance of the film between the walls over r, 1/X.
 
     Returns
     -------
@@ -253,7 +256,7 @@ def film_temperature(
     base, profile
         :math:`T_s` [K] and y.
     """
-    w1, w2, r1, r2 = walls
+    w1, w2 = walls[0], walls[1]
     over_k, k_slope = _resistivity(p, left, law)
     r = h * over_k
     kind, stress, n, width = law.flow

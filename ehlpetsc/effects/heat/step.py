@@ -26,6 +26,7 @@ HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the sur
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the maximum
 MIN_TEMPERATURE_RISE = 1e-3  # K
+TINY = 1e-6  # y whose sinh(y)/y is 1
 DEPTH = 6
 ITERATIONS = 200
 ACCURACY = 1e-11  # of the maximum
@@ -89,23 +90,31 @@ class HeatStep:
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
         of_nodes = np.array(
-            (*rows, *rubbed, *responses, self._middle(record, inputs.fluid, law), record.base)
+            (*rows, *rubbed, *responses, *self._across(record, inputs.fluid, law), record.base)
         )
         guess = np.array((record.base, record.profile, record.film))
         return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
 
-    def _middle(self, record: HeatRecord, fluid: Any, law: FilmLaw) -> np.ndarray:
-        r"""Temperatures in the middle of the film [K], where :math:`\ln\eta` is lower by 2 ln(cosh(y/2))."""
-        at = record.base
-        if law.is_linear:
-            return at
+    def _across(self, record: HeatRecord, fluid: Any, law: FilmLaw) -> tuple[np.ndarray, np.ndarray]:
+        r"""1/X of :mod:`.film_law` and temperatures in the middle of the film [K].
+
+        There :math:`\ln\eta` is lower by 2 ln(cosh(y/2)).
+        """
+        at, y = record.base, record.profile
+        if fluid is None:
+            return np.ones_like(at), at
         constants, viscosity = viscosity_law(fluid, self.heat).constants, LAWS[fluid.law]
-        drop = 2.0 * np.log(np.cosh(0.5 * record.profile))
         value, _, slope = viscosity(record.pressure, at, constants)
-        bottom = value - drop
-        at = at - drop / np.minimum(slope, -MIN_SLOPE)
+        slope = np.minimum(slope, -MIN_SLOPE)
+        d = np.minimum(0.5 * np.abs(slope * (record.wall_1 - record.wall_2)), y)
+        (y_over_sinh, d_over_sinh) = (x / np.sinh(x) for x in (np.maximum(y, TINY), np.maximum(d, TINY)))
+        between = d_over_sinh / y_over_sinh
+        if law.is_linear:
+            return between, at
+        bottom = value - 2.0 * np.log(np.cosh(0.5 * y))
+        at = at + (bottom - value) / slope
         value, _, slope = viscosity(record.pressure, at, constants)
-        return at + (bottom - value) / np.minimum(slope, -MIN_SLOPE)
+        return between, at + (bottom - value) / np.minimum(slope, -MIN_SLOPE)
 
     def solve(
         self, record: HeatRecord, solution: Solution, step: Step
