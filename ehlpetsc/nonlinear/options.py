@@ -12,7 +12,6 @@ from ehlpetsc.base.errors import UsageError
 
 DEFAULTS = {
     "snes_linesearch_type": "basic",
-    "snes_linesearch_maxstep": "1e10",
     "snes_max_it": "30",
     "snes_rtol": "0",  # no fraction of the first residual is an accuracy: with a thick film it may be 1e17
     "snes_stol": "0",
