@@ -80,9 +80,10 @@ def _run(options: argparse.Namespace, output: Path, allowed: tuple[str, ...]) ->
         if len(inputs) > 1 or options.kind:
             raise OutputError(f"{inputs[0]}: a case is drawn alone, without results and kinds of pictures")
         check_derived(output, inputs, allowed)
-        style.save(draw_case(inputs[0], options.set), output, chosen=options)
+        with style.fonts(options.size):
+            style.save(draw_case(inputs[0], options.set), output, chosen=options)
     else:
-        with contextlib.ExitStack() as stack:
+        with contextlib.ExitStack() as stack, style.fonts(options.size):
             results = in_order(open_all(options.results, stack))
             check_derived(output, [*inputs, *(result.path for result in results)], allowed)
             draw(results, options, output)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import matplotlib
@@ -29,6 +30,7 @@ DPI = 160
 ACROSS = "x/a"
 SMALL = dict(fontsize="small", title_fontsize="small")  # of legends
 LEGEND_ENTRIES = 12
+FULL_WIDTH, MIN_FONT = 6.0, 0.65  # width [inches] below which text shrinks with it, down to this fraction
 
 
 def new_figure(rows: int, columns: int, size: tuple[float, float], **shared: object) -> tuple[Figure, Axes]:
@@ -40,6 +42,12 @@ def new_figure(rows: int, columns: int, size: tuple[float, float], **shared: obj
 def set_title(figure: Figure, *lines: str) -> None:
     """Set the title above all panels; empty lines are left out."""
     figure.suptitle("\n".join(filter(None, lines)), fontsize="medium")
+
+
+def fonts(size: Sequence[float] | None) -> AbstractContextManager:
+    """Context in which the text of narrow figures is smaller; `size` in inches, None: usual."""
+    factor = min(1.0, max(MIN_FONT, size[0] / FULL_WIDTH)) if size else 1.0
+    return matplotlib.rc_context({"font.size": factor * matplotlib.rcParams["font.size"]})
 
 
 def save(
