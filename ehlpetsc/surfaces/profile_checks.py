@@ -40,7 +40,7 @@ def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) 
         fault = f"slopes of {slope:.3g} in the root mean square"
     else:
         return None
-    return f'{fault}: not a profile of this contact; is it in another unit, unit = "um"?'
+    return f'{fault}: not a profile of this contact; is it in another unit, unit = "mm", "um" or "nm"?'
 
 
 def _um(length: float) -> str:
