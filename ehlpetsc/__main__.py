@@ -87,7 +87,7 @@ def _start(words: list[str]) -> int:
         return _run_script(words[1:])
     if first and not (first.startswith("-") or first.endswith(".toml") or Path(first).exists()):
         close = difflib.get_close_matches(first, [*COMMANDS, *(path.stem for path in Path().glob("*.toml"))])
-        meant = f"{close[0]}{'' if close[0] in COMMANDS else '.toml'}" if close else ""
+        meant = " or ".join(name if name in COMMANDS else f"{name}.toml" for name in close)
         hint = f"did you mean {meant}?" if meant else f"allowed: CASE.toml, {', '.join(COMMANDS)}"
         return refuse(f"ehlpetsc: {first}: unknown command; {hint}")
     return _run(words)
