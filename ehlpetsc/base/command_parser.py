@@ -37,7 +37,7 @@ class CommandParser(argparse.ArgumentParser):
             conflict_handler="resolve",
         )
         if "output" in options:
-            self.add_argument("-o", "--output", type=Path, metavar="FILE", help="output")
+            self.add_argument("-o", "--output", type=Path, metavar="FILE", help="text file [standard output]")
         if "set" in options:
             key = "key of the case; may be repeated"
             self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
@@ -60,6 +60,7 @@ def put(text: str, chosen: argparse.Namespace) -> None:
     try:
         with open(chosen.output, "w" if chosen.overwrite else "x") as file:
             file.write(text)
+        print(chosen.output)
     except FileExistsError:
         raise OutputError(f"{chosen.output}: exists; give another -o, or --overwrite to replace it") from None
 
