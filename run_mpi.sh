@@ -147,12 +147,14 @@ settings_of_ranks() {
         export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 }
 
-# Leave out the comment of Open MPI 5 on an exit status that the run has explained
+# Leave out the comment of Open MPI 5 on an exit status that the run has explained, and that of Open MPI 6 on the
+# names of the settings above
 without_comment() {
     trap '' INT TERM HUP USR1
-    exec awk '/^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
+    local left_out='prterun[ \n]+(detected|noticed)|Deprecated variable: +(hwloc|rmaps)_default_'
+    exec awk -v left_out="$left_out" '/^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
         /^-+$/ && length > 70 && held == "" { held = $0 "\n"; next }
-        /^-+$/ && length > 70 { if (held !~ /prterun[ \n]+(detected|noticed)/) printf "%s%s\n", held, $0; held = ""; next }
+        /^-+$/ && length > 70 { if (held !~ left_out) printf "%s%s\n", held, $0; held = ""; next }
         held != "" { held = held $0 "\n"; next }
         { print; fflush() }
         END { printf "%s", held }'
