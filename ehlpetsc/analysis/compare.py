@@ -121,7 +121,7 @@ def main(words: Sequence[str]) -> int:
     parser = CommandParser("compare", description, "")
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
-    parser.add_argument("--rtol", type=float, default=RTOL, help="over the scale [%(default)s]")
+    parser.add_argument("--rtol", type=float, default=RTOL, help="tolerance over the scale [%(default)s]")
     options = parser.parse_args(words)
     return exit_status("compare", lambda: _compare_files(options))
 
@@ -135,6 +135,8 @@ def _compare_files(options: argparse.Namespace) -> int:
         if one.attrs["status"] != other.attrs["status"]:
             faults.append(f"one run is {one.attrs['status']}, the other {other.attrs['status']}")
         print(f"{one.path}: {one!r}", f"{other.path}: {other!r}", sep="\n")
+        nodes, frames = len(common(one.x, other.x, "")[0]), len(common(one.time, other.time, "")[0])
+        print(f"compared: {nodes} nodes and {frames} frames that both have")
         print(table(differences, float(one.attrs["a"]), options.rtol))
     faults += [d.name for d in differences if not d.same(options.rtol)]
     print(f"different: {'; '.join(faults)}" if faults else "same", f"(rtol {options.rtol:g})")

@@ -27,7 +27,7 @@ from ehlpetsc.results.reader import Result
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "load", "approach")
-COLUMNS = ("ensemble", "figure", "unit", "runs", "mean", "deviation", "min", "max")
+COLUMNS = ("ensemble", "scalar", "unit", "runs", "mean", "deviation", "min", "max")
 
 
 def run_scalars(result: Result) -> dict[str, float]:

@@ -35,7 +35,9 @@ def arguments() -> CommandParser:
     parser.add_argument("-o", "--output", help="picture [CASE.path.png, RESULT.gears.png]")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="the path as a table for [operation]")
-    parser.add_argument("--run", metavar="RESULT.h5", help="run the case until bulk temperatures suit losses")
+    parser.add_argument(
+        "--run", metavar="RESULT.h5", help="repeat the run until bulk temperatures are those of its losses"
+    )
     return parser
 
 

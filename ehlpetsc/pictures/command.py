@@ -31,15 +31,15 @@ from ehlpetsc.results.output_guard import PAGES, PICTURES, check_derived
 from ehlpetsc.results.reader import Result
 
 FIGURES = {
-    "over_time": (draw_courses, "film, pressure, friction of every step over time, as of a cycle"),
+    "over_time": (draw_courses, "film, pressure, friction of every step over time"),
     "map": (draw_map, "pressure over x and time, contacts marked"),
-    "stribeck": (draw_stribeck, "friction over speed, of a series over it"),
+    "stribeck": (draw_stribeck, "friction over speed, of a series"),
     "traction": (draw_traction, "friction over slide/roll ratio, of a series"),
-    "temperatures": (draw_temperatures, "of film and surfaces, of one with [heat]"),
+    "temperatures": (draw_temperatures, "temperatures of film and surfaces, with [heat]"),
     "running_in": (draw_running_in, "surfaces and pressure pass by pass"),
 }
 OTHERS = {  # that are no pictures: endings of their files, help
-    "report": (PAGES, "all of one result as one HTML page"),
+    "report": (PAGES, "one result as one HTML page with slider and zoom"),
     "movie": ((".gif",), "pressure and film over time, as a GIF"),
 }
 OF_ONE = ("over_time", "map", "temperatures", "report")  # kinds of a single result

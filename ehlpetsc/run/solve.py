@@ -136,5 +136,5 @@ def place_of_stop(simulation: Simulation, recorder: Recorder) -> str:
     """Step at which a run was stopped, and how it is continued."""
     if simulation.solution is None:
         return "stopped during the steady start; nothing to continue from"
-    advice = f"; continue by the same, or with --restart {recorder.restart}" if recorder.output else ""
+    advice = f"; continue with the same command or --restart {recorder.restart}" if recorder.output else ""
     return f"stopped at step {simulation.solution.step}{advice}"

@@ -66,7 +66,7 @@ def test_ensemble_table_of_a_series(tmp_path, capsys):
     index.write_text(json.dumps({"members": files}))
     assert ensemble.main([str(index)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    rows = {(row["ensemble"], row["figure"]): row for row in csv.DictReader(lines)}
+    rows = {(row["ensemble"], row["scalar"]): row for row in csv.DictReader(lines)}
     row = rows["entrainment_speed = 1", "contact_share"]
     assert int(row["runs"]) == 6
     assert float(row["mean"]) == pytest.approx(np.mean(SHARES), rel=0.02)
