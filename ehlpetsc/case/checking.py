@@ -132,7 +132,8 @@ def _missing(place: str, key: Key, data: Tables, root: Tables) -> list[Fault]:
         return []
     given = [name for name in key.replaced_by if (root.get(name[1:-1]) if name[0] == "[" else data.get(name))]
     text = f"{place} is missing" + (f", and does not follow from {given[0]}" if given else "")
-    return [Fault(place, f"{text}; allowed: {allowed(key)}", bool(given))]
+    instead = "".join(f", or {name}" for name in key.replaced_by if not given)
+    return [Fault(place, f"{text}; allowed: {allowed(key)}{instead}", bool(given))]
 
 
 def _checked(
