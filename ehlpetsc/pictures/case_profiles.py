@@ -57,16 +57,18 @@ def draw_heights(axes: Axes, profile: Profile, case: Case, scales: Scales, colou
     """Draw a profile, the part of it that passes the contact, and the width of the contact."""
     x, z = 1e3 * profile.X, 1e6 * profile.heights
     axes.plot(x, z, color=style.FAINT, lw=0.7)
+    arrives = entry_times(profile, scales)
     begin, end = passing(profile, case, scales)
     inside = (profile.X >= begin) & (profile.X <= end) & (end > begin)
-    axes.plot(x[inside], z[inside], color=colour, lw=0.8, label="passes the whole contact")
+    label = "passes the whole contact" if arrives else None  # not where it is in the contact from the start
+    axes.plot(x[inside], z[inside], color=colour, lw=0.8, label=label)
     room = 0.18 * np.ptp(z)
     width = dict(color="k", lw=2.0, label=f"2a = {2e3 * scales.a:.3g} mm")
     axes.plot([x[0], x[0] + 2e3 * scales.a], [z.max() + 0.5 * room] * 2, **width)
     axes.set(xlim=(x[0], x[-1]), ylim=(z.min() - room, z.max() + 1.4 * room))
     axes.set_xlabel("abscissa of the profile [mm]")
     text = f"Ra {1e6 * profile.ra:.3f} µm, Rq {1e6 * profile.rq:.3f} µm, Rsk {profile.rsk:.2f}"
-    if arrives := entry_times(profile, scales):
+    if arrives:
         text += f"; left end first, at the contact at travel {arrives[0]:.2f} a of {case.time.travel:g} a"
     axes.set_title(text, fontsize="small", loc="left")
     axes.legend(loc="upper right", ncols=2, frameon=False, **style.SMALL)
