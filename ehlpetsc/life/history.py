@@ -17,7 +17,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import check_space, extend, open_for_reading, plain
+from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_for_reading, plain
 from ehlpetsc.results.output_guard import os_reason, replacing
 
 BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
@@ -68,7 +68,7 @@ class LifeFile:
 
     def _create(self, history: LifeHistory) -> None:
         with replacing(self.path) as temporary:
-            file = self._file = h5py.File(temporary, "w", libver="latest")
+            file = self._file = h5py.File(temporary, "w", libver=LIBVER)
             attributes = {"kind": KIND, "case": history.case, "title": history.title}
             status = np.array(b"running", "S16")  # of fixed length, to be overwritten at the end
             file.attrs.update(attributes | {"format_version": FORMAT, "status": status})

@@ -15,6 +15,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import OutputError
 
+LIBVER = ("v110", "v110")  # the first with SWMR, that of Debian 12, which cannot read files of newer formats
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
 BEING_WRITTEN = "already open"  # in the message of HDF5 on a file of a live or killed writer
 

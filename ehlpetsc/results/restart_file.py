@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.results.hdf5_file import open_for_reading, plain
+from ehlpetsc.results.hdf5_file import LIBVER, open_for_reading, plain
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write, os_reason
 
 VERSION = 4  # of the format
@@ -26,7 +26,7 @@ SIGNATURE = b"ehlpetsc restart file %d\n" % VERSION
 def save_restart(path: Path, arrays: dict[str, np.ndarray], attrs: dict[str, Any]) -> None:
     """Save a state to a temporary file, synchronised to disk, then renamed; OutputError if that fails."""
     content = io.BytesIO()
-    with h5py.File(content, "w", libver="latest", userblock_size=HEADER_BYTES) as file:
+    with h5py.File(content, "w", libver=LIBVER, userblock_size=HEADER_BYTES) as file:
         file.attrs.update(attrs)
         for name, array in arrays.items():
             file[name] = array

@@ -21,7 +21,7 @@ import numpy as np
 from ehlpetsc.base.declarations import Field
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, of_every_case
-from ehlpetsc.results.hdf5_file import check_space, extend
+from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import os_reason, replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
@@ -162,7 +162,7 @@ class ResultWriter:
         self._max_frames = max(1, MAX_FIELD_BYTES // (8 * len(layout.x)))
 
     def _create(self, target: Path | BinaryIO, layout: Layout, attributes: dict[str, Any]) -> None:
-        self._file = file = h5py.File(target, "w", libver="latest")
+        self._file = file = h5py.File(target, "w", libver=LIBVER)
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
         common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
         # texts of fixed length, which may be overwritten while the file is read
