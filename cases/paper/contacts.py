@@ -72,6 +72,7 @@ def main(words: list[str] | None = None) -> None:
             length, highest = contact_length(result) / result.attrs["a"], 1e-9 * result.steps("p_max").max()
             print(f"{name:30} {means[0]:8.2f} {means[1]:8.2f} {means[2]:8.2f} {length:9.5f} {highest:9.3f}")
         style.save(draw(results), chosen.output)
+        print(chosen.output)
 
 
 if __name__ == "__main__":

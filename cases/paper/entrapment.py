@@ -99,6 +99,7 @@ def main(words: list[str] | None = None) -> None:
                 f"{chosen.result}: no pressure maximum between two contacts {MAX_GAP} a apart or less"
             )
         style.save(draw(result, found[0]), chosen.output)
+        print(chosen.output)
 
 
 if __name__ == "__main__":
