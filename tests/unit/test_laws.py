@@ -1,16 +1,22 @@
-"""Laws of the oil: check values, and derivatives against the complex step."""
+"""Laws of the oil and oils by name and grade: check values, derivatives by complex step, films."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support import CASES
 
-from ehlpetsc.base.compiled import compiled
-from ehlpetsc.physics import laws
+from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics import laws, oils
+from ehlpetsc.run.simulation import Simulation
 
 STEP = 1e-20
 V40, V100 = 220e-6, 19e-6
 GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
+T9 = oils.OILS["t9"].fluid
+YASUTOMI = [T9[name] for name in laws.YASUTOMI]
 
 
 def oil(**changes):
@@ -89,3 +95,191 @@ def test_walther_law_at_data_sheet_and_iso_vg_220():
 
 def test_gold_of_a_mineral_oil():
     assert laws.gold_pressure_viscosity(20.0) == pytest.approx(15.02e-9, rel=1e-3)
+
+
+def test_yasutomi_by_the_equation_in_degrees_celsius():
+    """lg(eta/1e12) = -C1 (T - Tg) F/(C2 + (T - Tg) F), values [Pa s] of a second program."""
+    p, celsius = np.array([1e5, 1e8, 3.5e8, 6e8]), np.array([20.0, 40.0, 80.0, 100.0])
+    found = 1e12 * np.exp(laws.yasutomi(p, celsius[:, None] + 273.15, *YASUTOMI, 0.0)[0])
+    expected = [
+        [0.01699, 0.1893, 69.55, 7.268e4],
+        [0.007946, 0.05947, 6.638, 1171.0],
+        [0.002879, 0.01305, 0.3672, 10.5],
+        [0.002018, 0.007728, 0.1413, 2.409],
+    ]
+    np.testing.assert_allclose(found, expected, rtol=6e-4)
+
+
+SQUALANE = {
+    "doolittle_b": 4.710,
+    "doolittle_occupied": 0.6568,
+    "doolittle_occupied_rise": -4.1e-4,
+    "tait_slope": 11.74,
+    "tait_modulus": 8.658e9,
+    "tait_decay": 6.332e-3,
+    "tait_expansion": 8.36e-4,
+    "doolittle_temperature": 313.15,
+}  # near those of squalane, 15.6 mPa s at 40 C
+
+
+def squalane(temperature):
+    fluid = SimpleNamespace(law="doolittle", temperature=temperature, pressure_viscosity=None, **SQUALANE)
+    fluid.pressure_viscosity = laws.LAWS["doolittle"].complete(fluid)["pressure_viscosity"]
+    return fluid
+
+
+def test_squalane():
+    fluid = squalane(313.15)
+    ln_eta = laws.viscosity(np.array([0.0, 0.5e9, 1e9]), fluid)[0]
+    assert ln_eta[0] == pytest.approx(0.0, abs=1e-14)
+    assert 16e-9 < fluid.pressure_viscosity < 24e-9
+    hot = laws.viscosity(0.0, fluid, T=373.15)[0]
+    assert 0.0156 * np.exp(hot) == pytest.approx(3.0e-3, rel=0.05)  # Pa s at 100 C
+
+
+FREE_VOLUME = {
+    "yasutomi": (laws.yasutomi, (*YASUTOMI, 0.9)),
+    "doolittle": (laws.doolittle, laws.viscosity_law(squalane(313.15)).constants[:9]),
+}
+
+
+@pytest.mark.parametrize("law, constants", FREE_VOLUME.values(), ids=FREE_VOLUME)
+@pytest.mark.parametrize(
+    "p, T", [(0.0, 313.15), (0.8e9, 340.0), (1.2e9, 330.0), (1.5e9, 390.0), (3e9, 313.0)]
+)
+def test_derivatives_of_free_volume_laws_also_beyond_the_glass_transition(law, constants, p, T):
+    value, by_p, by_t = law(p, T, *constants)
+    assert law(p + 1j * STEP, T, *constants)[0].imag / STEP == pytest.approx(by_p, rel=1e-10)
+    assert law(p, T + 1j * STEP, *constants)[0].imag / STEP == pytest.approx(by_t, rel=1e-10)
+    assert inlined(law)(p, T, *constants) == pytest.approx((value, by_p, by_t))
+    assert by_p > 0.0 > by_t
+
+
+def test_conductivity_about_doubles_in_a_gigapascal():
+    heat = {key.removeprefix("oil_"): value for key, value in oils.OILS["t9"].heat.items()}
+    constants = [heat[f"conductivity{part}"] for part in ("", "_pressure", "_saturation")]
+    value, by_p = laws.conductivity(1e9, *constants)
+    assert 2.0 < value / constants[0] < 2.2
+    assert laws.conductivity(1e9 + 1j * STEP, *constants)[0].imag / STEP == pytest.approx(by_p, rel=1e-12)
+
+
+CASE = CASES / "table1_smooth.toml"
+GRADE = {"fluid.grade": {"v40": 220e-6, "v100": 19e-6, "density": 880.0}}
+LEFT_OUT = {"fluid.viscosity": None, "fluid.pressure_viscosity": None}
+BARUS = {"fluid.law": "barus", "fluid.reference_viscosity": None, "fluid.roelands_pressure": None}
+ROELANDS = {"fluid.law": "roelands", "fluid.reference_viscosity": None}
+
+
+@pytest.mark.parametrize("name", oils.OILS)
+def test_named_oil_has_its_law_at_any_reference_temperature(name):
+    """The same viscosity of pressure and temperature from 40 as from 90 degrees C; left out: 40."""
+    given = LEFT_OUT | {"fluid.oil": name, "fluid.law": None, "fluid.density": None, "fluid.gamma": None}
+    given |= {"fluid.lambda": None, "fluid.roelands_pressure": None, "fluid.eyring_stress": None}
+    given |= ROELANDS | {"fluid.law": None}
+    p, T, found = np.array([0.0, 0.3e9, 1e9]), 350.0, []
+    for reference in (313.15, 363.15):
+        case = load(CASE, given | {"heat.bulk_temperature": 340.0, "heat.reference_temperature": reference})
+        ln_eta = laws.viscosity(p, case.fluid, case.heat, T)[0]
+        found.append(np.log(case.fluid.viscosity) + ln_eta)
+    np.testing.assert_allclose(*found, rtol=1e-6)
+    fluid = load(CASE, given).fluid
+    assert fluid.viscosity == pytest.approx(oils.OILS[name].fluid["viscosity"])
+    assert 14e-9 < fluid.pressure_viscosity < 25e-9
+
+
+@pytest.mark.parametrize("celsius, nu", [(40.0, 220e-6), (100.0, 19e-6)])
+def test_viscosity_of_a_grade(celsius, nu):
+    case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"fluid.temperature": celsius + 273.15})
+    assert case.fluid.viscosity == pytest.approx(880.0 * nu, rel=1e-10)
+    secant = 9.904e-9 * (1e6 * nu) ** 0.139  # over 2000 bar: the initial slope is steeper
+    assert laws.viscosity(2e8, case.fluid)[0] == pytest.approx(2e8 * secant, rel=1e-10)
+    assert 1.05 * secant < case.fluid.pressure_viscosity < 1.25 * secant
+    barus = load(CASE, GRADE | LEFT_OUT | BARUS | {"fluid.temperature": celsius + 273.15})
+    assert barus.fluid.pressure_viscosity == pytest.approx(secant, rel=1e-10)
+
+
+def test_keys_of_the_case_override_the_grade():
+    case = load(CASE, GRADE | {"fluid.temperature": 333.15})
+    assert case.fluid.viscosity == 0.005 and case.fluid.pressure_viscosity == 11.1e-9
+
+
+def test_grade_sets_the_thermal_law():
+    case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"heat.bulk_temperature": 373.15})
+    assert case.fluid.viscosity == pytest.approx(880.0 * 19e-6, rel=1e-10)
+    assert case.heat.oil_density == 880.0
+    kind, _, _, reference = laws.temperature_constants(case.fluid, case.heat)
+    assert kind == laws.WALTHER and reference == 373.15
+
+
+def test_faulty_temperature_of_a_grade_is_the_only_fault():
+    """The viscosity, which then does not follow, was reported as well."""
+    with pytest.raises(CaseError) as refused:
+        load(CASE, GRADE | LEFT_OUT | {"fluid.temperature": 80})
+    (fault,) = refused.value.faults
+    assert "fluid.temperature = 80: " in fault and fault.endswith('; "80 degC"?')
+
+
+def test_named_oil_has_the_viscosities_of_its_class():
+    named = {"fluid.grade": "ISO VG 220"} | LEFT_OUT | ROELANDS
+    for celsius, nu in ((40.0, 220e-6), (100.0, 19.4e-6)):
+        fluid = load(CASE, named | {"fluid.temperature": f"{celsius} degC"}).fluid
+        assert fluid.viscosity == pytest.approx(nu * 899.0 * (1 - 7e-4 * (celsius - 15.0)), rel=1e-9)
+    with pytest.raises(CaseError, match=r'fluid\.grade = "VG 220": .*ISO VG 220'):
+        load(CASE, named | {"fluid.grade": "VG 220", "fluid.temperature": 350.0})
+
+
+def test_faults():
+    with pytest.raises(CaseError, match=r"fluid\.viscosity .*missing"):
+        load(CASE, GRADE | LEFT_OUT)  # no temperature
+    with pytest.raises(
+        CaseError, match=r"fluid\.temperature = 350.*: needs fluid\.grade or oil.*reference_t"
+    ):
+        load(CASE, {"fluid.temperature": 350.0})  # would move the temperature of a viscosity that is given
+    with pytest.raises(CaseError, match="v100"):
+        load(CASE, {"fluid.grade": {"v40": 19e-6, "v100": 220e-6, "density": 880.0}})
+
+
+DOOLITTLE = {"law": "doolittle", "viscosity": 0.0156, **SQUALANE}
+T9_NEWTON = {key: value for key, value in T9.items() if "carreau" not in key and key != "limiting_shear"}
+CONDITIONS = {"motion.entrainment_speed": 1.0, "contact.load": 100e3}
+MESH = {"mesh.points_per_half_width": 64, "mesh.inlet": -3.0, "mesh.outlet": 1.4}
+NONE = dict.fromkeys(f"fluid.{key}" for key in ("eyring_stress", "roelands_pressure", "reference_viscosity"))
+OTHER = {"fluid.density": "dowson-higginson", "fluid.gamma": None, "fluid.lambda": None}
+
+
+def solved(fluid, **others):
+    keys = {f"fluid.{key}": value for key, value in fluid.items()}
+    simulation = Simulation(load(CASE, CONDITIONS | MESH | NONE | OTHER | keys | others))
+    (state,) = simulation
+    return state.film_thickness[np.argmin(np.abs(simulation.scales.x))], simulation
+
+
+@pytest.mark.parametrize(
+    "fluid, accuracy", [(DOOLITTLE, 0.04), (T9_NEWTON, 0.015)], ids=["doolittle", "yasutomi"]
+)
+def test_film_beside_that_of_the_asymptotic_isoviscous_pressure(fluid, accuracy):
+    """Barus' oil with alpha* = 1/integral(eta0/eta dp), by which films are compared (Blok 1963)."""
+    film, simulation = solved({"pressure_viscosity": None} | fluid)
+    p = np.linspace(0.0, 1.5e9, 30001)
+    alpha = 1.0 / (np.exp(-laws.viscosity(p, simulation.case.fluid)[0]).sum() * p[1])
+    of_barus, _ = solved({"law": "barus", "viscosity": fluid["viscosity"], "pressure_viscosity": alpha})
+    assert of_barus == pytest.approx(film, rel=accuracy)
+
+
+def test_film_of_doolittles_law_with_heat():
+    cold, _ = solved(DOOLITTLE | {"temperature": 313.15, "pressure_viscosity": None})
+    heat = {"heat.bulk_temperature": 333.15, "heat.reference_temperature": 313.15}
+    hot, _ = solved(DOOLITTLE | {"pressure_viscosity": None}, **heat)
+    assert 0.55 * cold < hot < 0.75 * cold
+
+
+@pytest.mark.parametrize("heat", [{}, {"heat.bulk_temperature": 313.15}], ids=["isothermal", "with heat"])
+def test_film_of_carreaus_law(heat):
+    """Newtonian for a high stress of the law; thinner for a low one."""
+    newton, films = {"pressure_viscosity": None} | T9_NEWTON, []
+    for stress in (None, 1e12, 1e5):
+        exponent = None if stress is None else 0.6
+        film, _ = solved(newton | {"carreau_stress": stress, "carreau_exponent": exponent}, **heat)
+        films.append(film)
+    assert films[1] == pytest.approx(films[0], rel=1e-4)
+    assert 0.75 < films[2] / films[0] < 0.9
