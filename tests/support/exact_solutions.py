@@ -52,19 +52,6 @@ def quartic_load(a, radius, modulus, quartic):
     return np.pi * modulus * a**2 / 8.0 * (1.0 / radius + 3.0 * quartic * a**2)
 
 
-def dowson_higginson(U, G, W):
-    r"""Least film over radius, :math:`h_{min}/R=2.65\,U^{0.7}G^{0.54}W^{-0.13}` (Dowson & Higginson 1966)."""
-    return 2.65 * U**0.7 * G**0.54 * W**-0.13
-
-
-def waviness_ratio(r):
-    r"""Amplitude left over initial amplitude of waviness in pure rolling, :math:`1/(1+0.17r+0.03r^2)`.
-
-    :math:`r=(\lambda/b)M^{3/4}L^{-1/2}`; Venner, Couhier, Lubrecht & Greenwood 1997, their fit.
-    """
-    return 1.0 / (1.0 + 0.17 * r + 0.03 * r**2)
-
-
 def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
     r"""Steady surface temperature by Jaeger's integral.
 

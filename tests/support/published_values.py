@@ -45,9 +45,6 @@ MOES_POINTS = (MoesPoint(20.0, 10.0, 3.966, 5.262), MoesPoint(100.0, 11.0, 3.488
 WAVINESS = {4.0: 0.030, 2.0: 0.073, 1.0: 0.183, 0.5: 0.394, 0.25: 0.660, 0.125: 0.839}
 """Wavelength/b -> amplitude ratio at M=100, L=11, Ai/Hc=0.1, pure rolling; Venner et al. 1997, table 1."""
 
-WAVINESS_LINEAR = {4.0: 0.0298, 2.0: 0.0708, 1.0: 0.179, 0.5: 0.391, 0.25: 0.677, 0.125: 0.887}
-"""The same by a linearised dense solution with their fluid; the shortest is mesh-sensitive."""
-
 
 class Bounds(NamedTuple):
     """A value and its uncertainty."""

@@ -7,7 +7,7 @@ from support import CASES
 
 petsc4py.init([])
 
-from support.published_values import SMOOTH_FILMS_BY_MESH
+from support.published_values import SMOOTH_FILMS, SMOOTH_FILMS_BY_MESH
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
@@ -19,39 +19,24 @@ def steady(name, *overrides):
     return simulation.scales, simulation.stepper.problem, state
 
 
-@pytest.mark.parametrize(
-    "eta0, u, xi, h_min, h_c",
-    [
-        (0.01, 5.0, 0.25, 0.22747, 0.26211),
-        (0.005, 5.0, 0.25, 0.14216, 0.16314),
-        (0.002, 5.0, 0.25, 0.07672, 0.08751),
-        (0.005, 25.0, 0.1, 0.43387, 0.50144),
-    ],
-)
-def test_table_1_film_within_0_3_percent(eta0, u, xi, h_min, h_c):
+def table_1(film, *more):
+    """The case of one of the published films."""
+    keys = f"fluid.viscosity={film.viscosity}", f"motion.entrainment_speed={film.speed}"
+    return steady("table1_smooth.toml", *keys, f"motion.slide_roll_ratio={film.slide_roll_ratio}", *more)
+
+
+@pytest.mark.parametrize("published", SMOOTH_FILMS)
+def test_table_1_film_within_0_3_percent(published):
     """The table's values are extrapolated: a/400."""
-    s, _, state = steady(
-        "table1_smooth.toml",
-        f"fluid.viscosity={eta0}",
-        f"motion.entrainment_speed={u}",
-        f"motion.slide_roll_ratio={xi}",
-        "mesh.points_per_half_width=400",
-    )
+    s, _, state = table_1(published, "mesh.points_per_half_width=400")
     film = state.h * s.h * 1e6
-    assert film.min() == pytest.approx(h_min, rel=3e-3)
-    assert film[np.argmin(np.abs(s.x))] == pytest.approx(h_c, rel=3e-3)
+    assert film.min() == pytest.approx(published.h_min, rel=3e-3)
+    assert film[np.argmin(np.abs(s.x))] == pytest.approx(published.h_central, rel=3e-3)
 
 
-@pytest.mark.parametrize(
-    "eta0, u, xi", [(0.01, 5.0, 0.25), (0.005, 5.0, 0.25), (0.002, 5.0, 0.25), (0.005, 25.0, 0.1)]
-)
-def test_default_start_converges_in_10_iterations(eta0, u, xi):
-    *_, state = steady(
-        "table1_smooth.toml",
-        f"fluid.viscosity={eta0}",
-        f"motion.entrainment_speed={u}",
-        f"motion.slide_roll_ratio={xi}",
-    )
+@pytest.mark.parametrize("published", SMOOTH_FILMS)
+def test_default_start_converges_in_10_iterations(published):
+    *_, state = table_1(published)
     assert state.newton <= 10
 
 
