@@ -52,37 +52,27 @@ def quartic_load(a, radius, modulus, quartic):
     return np.pi * modulus * a**2 / 8.0 * (1.0 / radius + 3.0 * quartic * a**2)
 
 
-def moving_band(x, flux, diffusivity, conductivity, speed, subdivisions=8):
-    r"""Steady surface temperature by Jaeger's integral.
+def moving_band(x, flux, diffusivity, conductivity, speed):
+    """Steady surface temperature [K] by `band_kernel` of a flux [W/m^2] at equally spaced x [m]."""
+    n = len(x)
+    kernel = band_kernel(n, x[1] - x[0], diffusivity, conductivity, speed)
+    return np.convolve(flux, kernel)[n - 1 : 2 * n - 1]
 
-    :math:`T(x)=\frac1{\pi k}\int q(s)e^{U(x-s)}K_0(U|x-s|)\,ds`, :math:`U=u/(2\chi)` (Jaeger 1942),
-    q constant over the cells of equally spaced x.
 
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-        [m]
-    flux : ndarray, shape (n,)
-        [W/m^2]
-    diffusivity, conductivity, speed : float
-    subdivisions : int
-        Gauss points in each half cell.
+def band_kernel(n, dx, diffusivity, conductivity, speed):
+    r"""Steady temperature by the flux of one cell [m^2 K/W] at distances of 1 - n to n - 1 cells [m].
 
-    Returns
-    -------
-    ndarray, shape (n,)
-        [K]
+    Jaeger 1942: :math:`T(x)=\frac1{\pi k}\int q(s)e^{U(x-s)}K_0(U|x-s|)\,ds`, :math:`U=u/(2\chi)`.
     """
-    dx, u = x[1] - x[0], speed / (2.0 * diffusivity)
-    points, weights = np.polynomial.legendre.leggauss(subdivisions)
+    u = speed / (2.0 * diffusivity)
+    points, weights = np.polynomial.legendre.leggauss(8)  # in each half cell
     s = 0.5 * (1.0 + points)  # s^3 clusters the points at the logarithm of K0
     offsets = 0.5 * dx * s**3
     lengths = 0.5 * dx * 0.5 * weights * 3.0 * s**2
-    n = len(x)
-    lag = np.arange(-(n - 1), n) * dx
+    lag = np.arange(1 - n, n) * dx
     kernel = np.zeros(2 * n - 1)
     for sign in (1.0, -1.0):
         for offset, length in zip(offsets, lengths, strict=True):
             r = lag + sign * offset
             kernel += length * np.exp(u * r - abs(u) * np.abs(r)) * k0e(abs(u) * np.abs(r))
-    return np.convolve(flux, kernel)[n - 1 : 2 * n - 1] / (np.pi * conductivity)
+    return kernel / (np.pi * conductivity)

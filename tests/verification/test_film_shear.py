@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from scipy.special import k0e
+from support.exact_solutions import band_kernel
 
 from ehlpetsc.physics import film_shear
 from ehlpetsc.physics.film_shear import film_stress
@@ -270,23 +270,6 @@ CELLS, HERTZ, HALF_WIDTH, LOAD = 200, 0.9995e9, 0.3357e-3, 527e3
 STEEL_CONDUCTIVITY, STEEL_CAPACITY = 46.0, 7850.0 * 470.0  # W/(m K), J/(m^3 K)
 
 
-def moving_source(speed: float) -> np.ndarray:
-    """Temperature of a surface by the flux of one cell [m^2 K/W], by distance (Jaeger 1942)."""
-    width = 2.0 * HALF_WIDTH / CELLS
-    rate = 0.5 * speed * STEEL_CAPACITY / STEEL_CONDUCTIVITY
-    points, weights = np.polynomial.legendre.leggauss(24)
-    t = 0.5 * (points + 1.0)
-    near = 0.5 * width * t**4  # away from the singular middle of the cell
-    total = np.zeros(2 * CELLS - 1)
-    for i, distance in enumerate(width * np.arange(1 - CELLS, CELLS)):
-        s, w = distance + 0.5 * width * points, 0.5 * width * weights
-        if distance == 0.0:
-            s, w = np.append(near, -near), np.tile(width * weights * t**3, 2)
-        z = rate * np.abs(s)
-        total[i] = np.sum(w * np.exp(rate * s - z) * k0e(z))
-    return total / (np.pi * STEEL_CONDUCTIVITY)
-
-
 def lumped_stress(eta: np.ndarray, rate: np.ndarray, heating: np.ndarray, eyring: float) -> np.ndarray:
     """Eyring stress at the mean temperature of a parabola, tau (u1 - u2) h/(12 k) above the walls."""
     stress = np.zeros_like(eta)
@@ -302,7 +285,11 @@ def friction(case: tuple, resolved: bool) -> float:
     x = (2.0 * np.arange(CELLS) + 1.0) / CELLS - 1.0
     pressure, sliding = HERTZ * np.sqrt(1.0 - x * x), slide_roll * speed
     ln_eta = np.log(eta0) + alpha * reference / z * ((1.0 + pressure / reference) ** z - 1.0)
-    responses = [moving_source(speed * (1.0 + sign * 0.5 * slide_roll)) for sign in (1.0, -1.0)]
+    cell, diffusivity = 2.0 * HALF_WIDTH / CELLS, STEEL_CONDUCTIVITY / STEEL_CAPACITY
+    responses = [
+        band_kernel(CELLS, cell, diffusivity, STEEL_CONDUCTIVITY, speed * (1.0 + sign * 0.5 * slide_roll))
+        for sign in (1.0, -1.0)
+    ]
     walls = np.full((2, CELLS), bulk)
     for _ in range(60):
         eta = np.exp(ln_eta - BETA * (walls.mean(axis=0) - bulk))
