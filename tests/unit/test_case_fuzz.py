@@ -1,19 +1,26 @@
-"""Corrupted case files: faults in words, never another exception.
+"""Corrupted case files and profiles: faults in words or values that a run can use, never another exception.
 
 EHL_FUZZ=10000 in the environment draws that many; EHL_FUZZ_SEED another series of them.
 """
 
 import random
 import re
+import tomllib
 from functools import partial
 
+import numpy as np
 import pytest
 from support import CASES
-from support.fuzzing import SEED, draws, faults_of
+from support.fuzzing import SEED, draws
 
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.explain import explain
+from ehlpetsc.surfaces.roughness import Roughness
 
-DRAWS = draws(400)
+DRAWS, PROFILE_DRAWS = draws(400), draws(300) // 2
+LARGE = 5000  # nodes of a mesh beyond which nothing is worked out on it
 KEYS = """contact.radius | fluid | surface.2.synthetic | series.values | petsc.x | x | . | time.travel | title
 surface.1.file | contact.radius.x | output.fields | contact.youngs_modulus | mesh..inlet |"""
 VALUES = r"""nan | -inf | 0 | -1 | 1e400 | -1e-300 | -0.0 | 5e-324 | 1_000 | +1 | 0b1 | 1. | _ | true | ""
@@ -21,6 +28,29 @@ VALUES = r"""nan | -inf | 0 | -1 | 1e400 | -1e-300 | -0.0 | 5e-324 | 1_000 | +1 
 { kind = 'ridge' } | { kind = [] } | { kind = 'ground', ra = nan, seed = -1 } | '../' | '/dev/zero'"""
 KEYS, VALUES = (re.split(r" ?\| ?|\n", text.strip()) for text in (KEYS, VALUES))
 VALUES += ["10" * 60, "0x" + "f" * 5000, "9" * 5000, "[" * 2000, "'''\n'''", "\t"]
+
+
+def faults_of(load, about):
+    """Fault messages of a case, none if a run can use it. Any other exception fails the test."""
+    try:
+        _used(load())
+    except CaseError as error:
+        assert error.faults and not any("\n" in line for line in error.faults)
+        return error.faults
+    except Exception as error:
+        pytest.fail(f"{type(error).__name__}: {error}\n{about()}")
+    return []
+
+
+def _used(case):
+    """Use a case as a run does before its first solve: no accepted value may raise."""
+    scales = Scales.of(case)
+    if case.mesh.nodes < LARGE:
+        rough = Roughness.of(case, scales)
+        for cell in (None, scales.dx) if rough else ():
+            assert np.isfinite(rough.phi(scales.x * scales.a, 0.5 * (scales.duration or 0.0), cell)).all()
+        assert explain(case)
+    tomllib.loads(case.text)
 
 
 def corrupted(text, rng):
@@ -103,3 +133,46 @@ def test_corrupted_overrides_raise_case_errors():
         ]
         refused += bool(faults_of(partial(load, CASES / "table1_rough.toml", words), partial(str, words)))
     assert refused > 0.7 * DRAWS
+
+
+WORDS = [*"nan -inf 1e308 1e-320 x 1_0 1,5 1.000,5 1;2 -- é".split(), "", "\0"]
+PROFILE_KEYS = """unit='um' | spacing=1e-6 | columns=[1] | columns=[2, 1] | columns=[9] | decimal=','
+header_lines=3 | header_lines=99999 | fill_gaps=1 | level=true | cutoff=80e-6 | short_cutoff=5e-6 | scale=0"""
+PROFILE_KEYS = re.split(r" \| |\n", PROFILE_KEYS)
+
+
+def corrupted_profile(lines, rng):
+    """One to four faults in words, lines, separators and bytes."""
+    for _ in range(rng.randint(1, 4)):
+        n, kind = rng.randrange(len(lines)), rng.randrange(5)
+        if kind == 0:
+            lines[n] = rng.choice(["", lines[n].split(",")[0] + ","]) + rng.choice(WORDS)
+        elif kind == 1:
+            lines = [*lines[:n], rng.choice(("", "# c", "text", "1", "1,2,3", lines[n])), *lines[n:]]
+        elif kind == 2:
+            lines = [line.replace(",", rng.choice(";;\t ")) for line in lines]
+        elif kind == 3:
+            lines = lines[::-1] if rng.random() < 0.5 else lines[: rng.randrange(1, 12)]
+        else:
+            lines = [line.replace(".", ",") for line in lines]
+    raw = bytearray("\n".join(lines).encode(rng.choice(("utf-8", "utf-16", "latin-1")), "replace"))
+    raw[rng.randrange(len(raw))] = rng.choice((raw[0], rng.randrange(256)))
+    return bytes(raw)
+
+
+@pytest.mark.filterwarnings("error")
+def test_corrupted_profiles_are_refused_or_finite(tmp_path):
+    rng = random.Random(SEED)
+    lines = (CASES / "profiles" / "alicona_meander_profile.csv").read_text().splitlines()[1:401]
+    text = (CASES / "table1_rough.toml").read_text().replace("profiles/alicona_meander_profile.csv", "p.csv")
+    case, refused = tmp_path / "c.toml", 0
+    case.write_text(text)
+    for draw in range(PROFILE_DRAWS):
+        (tmp_path / "p.csv").write_bytes(corrupted_profile(lines, rng))
+        keys = [f"surface.1.{key}" for key in rng.sample(PROFILE_KEYS, rng.choice((0, 0, 1, 2)))]
+        words = ["mesh.points_per_half_width=20", *keys]
+        drawn = partial("draw {}: {}\n{}".format, draw, keys, (tmp_path / "p.csv").read_bytes()[:300])
+        faults = faults_of(partial(load, case, words), drawn)
+        assert all(line.startswith(str(case)) for line in faults)
+        refused += bool(faults)
+    assert 0.3 * PROFILE_DRAWS < refused < PROFILE_DRAWS
