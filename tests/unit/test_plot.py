@@ -1,4 +1,4 @@
-"""Pictures of results: the drawn arrays, the instant that is chosen, formats and options, refusals."""
+"""Pictures of results and cases: drawn arrays, the chosen instant, formats and options, refusals."""
 
 from xml.etree import ElementTree
 
@@ -8,16 +8,19 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from PIL import Image as image
-from support import is_line_with
+from support import CASES, is_line_with
 from support.made_results import A, change_case, make_result, with_solids
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.scales import Scales, hertz_line, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing
 from ehlpetsc.pictures import over_time, style
+from ehlpetsc.pictures.case_profiles import draw_case, passing
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.surfaces.roughness import Roughness
 
 FRAME = ["pressure [GPa]", "film thickness [µm]"]
 MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
@@ -276,3 +279,26 @@ def test_plot_faults_are_reported(result, options, parts, capsys):
     assert draw(result, *options) == 2
     fault = capsys.readouterr().err
     assert fault.startswith("ehlpetsc plot: ") and is_line_with(fault, *parts)
+
+
+def test_passing_profile_length_follows_from_travel():
+    case = load(CASES / "fig1.toml")
+    scales = Scales.of(case)
+    profile = Roughness.of(case, scales).surface_1
+    begin, end = passing(profile, case, scales)
+    assert begin == profile.X[0]
+    assert end - begin == pytest.approx((case.time.travel - 1.5 - 2.0) * scales.a, rel=1e-9)
+    short = load(CASES / "fig1.toml", ["time.travel=3"])
+    scales = Scales.of(short)
+    assert np.ptp(passing(Roughness.of(short, scales).surface_1, short, scales)) == 0.0
+
+
+def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
+    out = tmp_path / "c.png"
+    assert draw(CASES / "table1_rough.toml", "-o", out) == 0
+    assert capsys.readouterr().out == f"{out}\n"
+    with image.open(out) as picture:
+        assert len(picture.convert("RGB").getcolors(picture.width * picture.height)) > 100
+    figure = draw_case(CASES / "table1_rough.toml", ["time.travel=5"])
+    title = figure.axes[0].get_title(loc="left")
+    assert title.startswith("Ra 0.079 µm") and "Rsk 0.08" in title and "travel 1.50 a of 5 a" in title

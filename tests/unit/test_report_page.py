@@ -1,9 +1,12 @@
-"""A result as one page: what is in it, and that it needs nothing else."""
+"""A result as one page: its content, that it needs nothing else, and what a browser shows."""
 
 import base64
 import html.parser
 import json
 import re
+import shutil
+import subprocess
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -115,3 +118,34 @@ def test_report_shows_damage_in_decades(tmp_path, page):
     np.testing.assert_allclose(unpacked(data["damage"]["s"]), [0.5, 1.0, 2.0])
     rows = [unpacked(row) for row in data["damage"]["surfaces"]["2"]]
     np.testing.assert_allclose(rows, [[-3, np.nan, -5], [np.nan, -7, -8]], rtol=1e-6)
+
+
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+FLAGS = """headless no-sandbox disable-gpu disable-quic no-first-run disable-background-networking
+disable-component-update disable-sync window-size=1200,2400 virtual-time-budget=9000 dump-dom""".split()
+VISITOR = (Path(__file__).parents[1] / "data" / "report_visitor.js").read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(BROWSER is None, reason="no browser is installed; the other tests read text and data")
+def test_slider_map_and_zoom_of_the_page(tmp_path, page):
+    """What a visitor sees who slides, clicks into the map and zooms, without a network."""
+    path = with_solids(make_result(tmp_path / "r.h5"))
+    page(path)
+    path = path.with_suffix(".html")
+    text = path.read_text(encoding="utf-8").replace("<head>", f"<head><script>{VISITOR}</script>")
+    path.write_text(text, encoding="utf-8")
+    options = [*FLAGS, f"user-data-dir={tmp_path / 'profile'}", "host-resolver-rules=MAP * ~NOTFOUND"]
+    command = [BROWSER, *(f"--{option}" for option in options), path.as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    (answer,) = re.findall("<output>(.*?)</output>", done.stdout)
+    found = json.loads(answer)
+    assert found["errors"] == []
+    assert found["first"]["pressure"] == pytest.approx(1.4)
+    assert found["first"]["when"] == "step 0, 0 µs, travel 0.00 a"
+    assert found["second"]["when"].startswith("step 1, ") and found["second"]["line"] == 1.0
+    assert found["second"]["pressure"] < found["first"]["pressure"]
+    assert found["clicked"]["when"].startswith("step 20, ") and found["clicked"]["line"] == 20.0
+    (low, high), (first, second) = found["zoomed"], found["linked"]
+    assert -1.0 < low < -0.5 < 0.5 < high < 1.0  # the middle half of -1.6 to 1.4
+    assert first == second and first == pytest.approx([10.0, 30.0], abs=1.0)
