@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from support import ROOT
-from support.running import run, settings
+from support.running import run, settings, whole_and_restarted
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.results.reader import read_result
@@ -25,16 +25,8 @@ def case(tmp_path_factory):
 
 
 def test_restart_gives_the_same_run(case, tmp_path):
-    whole, parts = tmp_path / "whole", tmp_path / "parts"
-    for folder in (whole, parts):
-        folder.mkdir()
-    words = [case, *settings(*QUICK)]
-    assert run(*words, cwd=whole).returncode == 0
-    stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, 40))
-    assert stopped.returncode == 4, stopped.stderr
-    done = run(*words, "--restart", "layer.restart.h5", cwd=parts)
-    assert done.returncode == 0, done.stderr
-    with read_result(whole / "layer.h5") as one, read_result(parts / "layer.h5") as other:
+    whole, parts = whole_and_restarted([case, *settings(*QUICK)], "layer", 40, tmp_path)
+    with read_result(whole) as one, read_result(parts) as other:
         assert len(one.time) == len(other.time) > 50
         for name in ("pressure", "contact_pressure", "film_thickness"):
             largest = np.abs(one[name][:]).max()

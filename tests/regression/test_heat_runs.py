@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import ROOT
-from support.running import PYTHON, called, run, settings
+from support.running import PYTHON, called, run, settings, whole_and_restarted
 
 from ehlpetsc.results.reader import read_result
 
@@ -14,16 +14,8 @@ FIELDS = ("pressure", "film_thickness", "film_temperature", "temperature_1", "he
 
 
 def test_restart_is_bitwise_identical(tmp_path):
-    whole, parts = tmp_path / "whole", tmp_path / "parts"
-    for folder in (whole, parts):
-        folder.mkdir()
-    words = [CASE, *settings(*QUICK)]
-    assert run(*words, cwd=whole).returncode == 0
-    stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, 30))
-    assert stopped.returncode == 4, stopped.stderr
-    done = run(*words, "--restart", "table1_heat.restart.h5", cwd=parts)
-    assert done.returncode == 0, done.stderr
-    with read_result(whole / "table1_heat.h5") as one, read_result(parts / "table1_heat.h5") as other:
+    whole, parts = whole_and_restarted([CASE, *settings(*QUICK)], "table1_heat", 30, tmp_path)
+    with read_result(whole) as one, read_result(parts) as other:
         assert len(one.time) == len(other.time) > 50
         for name in FIELDS:
             np.testing.assert_array_equal(one[name][:], other[name][:])

@@ -87,6 +87,19 @@ def _run_prepared(words, folder, environment):
         return subprocess.CompletedProcess(words, status, out.read_text(), err.read_text())
 
 
+def whole_and_restarted(words, name, step, folder):
+    """Result files of a run to its end, and of the same run stopped at a step and restarted."""
+    whole, parts = folder / "whole", folder / "parts"
+    for place in (whole, parts):
+        place.mkdir()
+    assert run(*words, cwd=whole).returncode == 0
+    stopped = run(*words, cwd=parts, tampered=("SIGTERM", 0, step))
+    assert stopped.returncode == 4, stopped.stderr
+    done = run(*words, "--restart", f"{name}.restart.h5", cwd=parts)
+    assert done.returncode == 0, done.stderr
+    return whole / f"{name}.h5", parts / f"{name}.h5"
+
+
 def wait_for(path, process):
     """Wait until the file exists or the process has ended, a minute at most."""
     for _ in range(1200):

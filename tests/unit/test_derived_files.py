@@ -15,6 +15,7 @@ from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.command import main as life
 from ehlpetsc.pictures.command import main as plot
+from ehlpetsc.post.command import main as post
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.restart_file import save_restart
 
@@ -96,8 +97,16 @@ def test_commands_write_files_of_their_endings_only(tmp_path, monkeypatch, capsy
     assert other.read_bytes() == before
 
 
-@pytest.mark.parametrize("command", [gears, life, summary])
-@pytest.mark.parametrize("name", ["", "sub", "a.png", "a.restart.h5", "none.h5", "/dev/zero"])
+NO_INPUTS = "", "sub", "a.png", "a.restart.h5", "none.h5", "/dev/zero"
+
+
+@pytest.mark.parametrize(
+    "command, name",
+    [
+        *((command, name) for command in (gears, life, summary) for name in NO_INPUTS),
+        *((post, name) for name in NO_INPUTS[1:]),
+    ],
+)
 def test_invalid_input_is_refused_in_one_line(tmp_path, monkeypatch, capsys, command, name):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sub").mkdir()

@@ -1,13 +1,12 @@
 """Every key as text: complete, equal to the page, and a template that is a case."""
 
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pytest
-from support import ROOT
+from support import ROOT, refused
 
+from ehlpetsc.__main__ import main
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case import key_page
 from ehlpetsc.case.key_page import template
@@ -60,13 +59,8 @@ def test_template_is_a_case(tmp_path, kind):
     assert case.fluid.grade.density < 860.0  # at the temperature of the oil, not at 15 C
 
 
-def test_commands_print_keys_and_template(tmp_path):
-    def run(*words):
-        command = [sys.executable, "-m", "ehlpetsc", *words]
-        return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=60)
-
-    assert run("keys").stdout == key_page.keys() + "\n"
-    assert run("keys", "mesh").stdout == key_page.keys("mesh") + "\n"
-    assert run("template").stdout == template()
-    wrong = run("keys", "mush")
-    assert (wrong.returncode, wrong.stdout) == (2, "") and "mush: " in wrong.stderr
+def test_commands_print_keys_and_template(capsys):
+    for words, text in ((["keys"], key_page.keys()), (["keys", "mesh"], key_page.keys("mesh"))):
+        assert main(words) == 0 and capsys.readouterr().out == text + "\n"
+    assert main(["template"]) == 0 and capsys.readouterr().out == template()
+    assert "mush: " in refused(capsys, main, "keys", "mush")

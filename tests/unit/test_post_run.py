@@ -104,15 +104,6 @@ with h5py.File({str(path)!r}) as old, h5py.File({str(path) + ".new"!r}, "w", lib
         assert 0 < cut["damage/2_complete"][:].sum() < whole["damage/2_complete"][:].sum()
 
 
-def test_not_a_result(tmp_path, capsys):
-    (tmp_path / "a.h5").write_text("no HDF5")
-    assert "a.h5: not an HDF5 " in refused(capsys, main, tmp_path / "a.h5")
-    assert "b.h5: no such" in refused(capsys, main, tmp_path / "b.h5")
-    with h5py.File(tmp_path / "c.h5", "w") as file:
-        file["x"] = [1.0]
-    assert "c.h5: an HDF5 " in refused(capsys, main, tmp_path / "c.h5")
-
-
 def test_steady_one_frame_and_short_travel(scene, tmp_path, capsys):
     assert "[time]" in refused(capsys, main, write(tmp_path / "a.h5", scene, steady=True, frames=1))
     assert "output.every = 1" in refused(capsys, main, write(tmp_path / "b.h5", scene, frames=1))
@@ -256,17 +247,11 @@ def test_few_asperities_have_no_weibull_fit(tmp_path, capsys):
     assert f"note: {found.height.size} asperities " in output.err and "weibull" not in output.out
 
 
-def test_interrupted_post_writes_nothing(result, tmp_path, monkeypatch):
-    def interrupted(*_):
-        os.kill(os.getpid(), signal.SIGINT)
-
-    monkeypatch.setattr(runner, "solve", interrupted)
-    with pytest.raises(KeyboardInterrupt):
+def test_interrupt_and_write_error_leave_nothing(result, tmp_path, monkeypatch, capsys):
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(runner, "solve", lambda *_: signal.raise_signal(signal.SIGINT))
         main([str(result)])
     assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
-
-
-def test_write_error_leaves_nothing(result, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(os, "fsync", lambda file: (_ for _ in ()).throw(OSError(28, "No space left")))
     message = refused(capsys, main, result, "--depths", "0.5")
     assert "run.post.h5: not written, No space left" in message
