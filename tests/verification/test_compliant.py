@@ -72,6 +72,7 @@ def test_rough_contacts_converge_at_every_speed(speed):
     assert found["load_error"].max() < 1e-10 and found["mass_error"].max() < 1e-6
 
 
+NODE_A_STEP = {"time.courant": 1.0}
 LIMITS = 0.07878, 0.7877  # friction and share of the load of stribeck.toml at 0.05 m/s
 SMOOTHED = {  # waves down to 100 um and a layer of 60 nm: what a/25 resolves
     "surface.1.short_cutoff": 100e-6,
@@ -83,11 +84,11 @@ SMOOTHED = {  # waves down to 100 um and a layer of 60 nm: what a/25 resolves
 
 @pytest.mark.slow
 def test_share_friction_and_lengths_converge():
-    """Second order on a/50, a/100 and a/200; the limit by Richardson's extrapolation.
+    """Second order on a/50, a/100 and a/200, a node a step; the limit by Richardson's extrapolation.
 
-    On a/100, a/200 and a/400 all orders are 1.98 and the limits .2948, .03367 and .0813.
+    On a/100, a/200 and a/400, half a node a step, all orders are 1.98 and the limits .2948, .03367 and .0813.
     """
-    meshes = [SMOOTHED | {"mesh.points_per_half_width": points} for points in (50, 100, 200)]
+    meshes = [SMOOTHED | NODE_A_STEP | {"mesh.points_per_half_width": points} for points in (50, 100, 200)]
     runs = [run(RESOLVED | mesh, {"snes_atol": 1e-9}, sigma=60e-9) for mesh in meshes]
     for found in runs:
         assert found["retries"].sum() == 0 and found["newton"][1:].mean() < 7.0
@@ -105,10 +106,10 @@ def test_share_friction_and_lengths_converge():
 
 def test_stribeck_case_converges_with_its_default_layer():
     """Measured height, default stiffness, 0.05 m/s; limits from a/200, a/400, a/800 (order 1.9)."""
-    errors = []
+    scene, errors = NODE_A_STEP | {"motion.entrainment_speed": 0.05, "series": None}, []
     for points in (50, 100, 200):
-        scene = {"mesh.points_per_half_width": points, "motion.entrainment_speed": 0.05, "series": None}
-        found = run(None, given=load(CASES / "stribeck.toml", scene))
+        mesh = {"mesh.points_per_half_width": points}
+        found = run(None, given=load(CASES / "stribeck.toml", scene | mesh))
         assert found["retries"].sum() == 0 and found["mass_error"].max() < 1e-6
         means = [found[name][found["filled"]].mean() for name in ("friction_coefficient", "contact_share")]
         errors.append(np.abs(np.divide(means, LIMITS) - 1.0))
