@@ -1,4 +1,4 @@
-"""Temperature of the film at a node: its equations and derivatives, and those of the Reynolds rows."""
+"""Temperature of the film at a node and its transport: equations, derivatives, order, bounds and balance."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +12,7 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, FilmLaw, film_law, film_temperature
+from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
 from ehlpetsc.physics.film_shear import film_stress, wall_exchange
 from ehlpetsc.physics.laws import EXPONENTIAL, ROELANDS, ln_viscosity, padded
 from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
@@ -256,3 +257,71 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     np.testing.assert_allclose(found, factor * cold[volumes.FLUIDITY, 19:21], rtol=1e-9)
     own = hot[volumes.THERMAL, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
     assert own[1] > own[0] and found[1] < found[0]
+
+
+INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
+STILL = FilmLaw(
+    (0, padded((0.0, 1.0, 1.0)), 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, 0.14, 0.0, 0.0, 0.0
+)
+
+
+def carried(profile, nodes, way=1.0, moving=False):
+    """Rise over INLET at the begin and the end, and the largest imbalance, of oil moved by TRAVEL.
+
+    At the begin the oil starts from rest, or it is moving already.
+    """
+    courant = 0.5
+    dx = LENGTH / nodes
+    x = dx * (np.arange(nodes) + 0.5)
+    dt, steps = courant * dx, round(TRAVEL / (courant * dx))
+    full, zero = np.ones(nodes), np.zeros(nodes)
+    stored, flow = CAPACITY / dt * full, way * CAPACITY / dx * np.ones(nodes + 1)
+    along = x if way > 0.0 else LENGTH - x
+    begin = profile(along)
+    change, t, worst = begin - profile(along + dx * courant) if moving else zero, INLET + begin, 0.0
+    kept = 0.5 * stored * change
+    for _ in range(steps):
+        film = zero, 1e-6 * full, full, t, stored, change, kept, flow
+        a, b = explicit_transport(stored, flow, t, INLET)
+        walls = [INLET * full] * 2 + [1e12 * full] * 2
+        of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
+        new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
+        assert transport(b / a, zero.copy(), b / a, *film, INLET, INLET, tuple(STILL), of_nodes, *out) == 1
+        taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
+        worst = max(worst, abs(taken + q1.sum() + q2.sum()))
+        change, t, kept = new - t, new, beyond
+    return begin, t - INLET, worst / (CAPACITY / dt * begin.sum())
+
+
+def hump(x):
+    return 50.0 * np.exp(-(((x - 0.3) / 0.08) ** 2))
+
+
+def block(x):
+    return 50.0 * (np.abs(x - 0.3) < 0.05)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_smooth_hump_is_carried_with_second_order(way):
+    errors = []
+    for nodes in (100, 200, 400):
+        x = (np.arange(nodes) + 0.5) / nodes
+        end = carried(hump, nodes, way, moving=True)[1]
+        exact = hump((x if way > 0.0 else LENGTH - x) - TRAVEL)
+        errors.append(np.sqrt(np.mean((end - exact) ** 2)))
+    assert np.log2(errors[1] / errors[2]) > 1.7
+    assert errors[2] < 0.5
+
+
+def test_a_block_has_no_new_extremes_and_loses_no_heat():
+    begin, end, imbalance = carried(block, 200)
+    assert end.min() >= 0.0
+    assert end.max() <= 50.0 * 1.01
+    assert imbalance < 1e-12
+    assert end[-1] < 1e-3  # nothing has left
+    assert end.sum() == pytest.approx(begin.sum(), rel=1e-3)
+
+
+def test_both_ways_are_mirror_images():
+    there, back = carried(block, 100)[1], carried(block, 100, way=-1.0)[1]
+    np.testing.assert_allclose(back[::-1], there, atol=1e-9)

@@ -88,18 +88,19 @@ import ehlpetsc
 from ehlpetsc.nonlinear import gmres
 
 def faulty(*arguments):
-    raise ValueError("of a callback")
+    raise ERROR("of a callback")
 
 gmres.iterations = faulty
 ehlpetsc.Simulation(ehlpetsc.load(CASE, {"mesh.points_per_half_width": 20})).advance()
 """
 
 
-def test_process_ends_after_an_error_inside_petsc():
+@pytest.mark.parametrize("error, status", [("ValueError", 1), ("KeyboardInterrupt", -2)])
+def test_process_ends_after_an_error_inside_petsc(error, status):
     """The traceback keeps PETSc's objects alive, which PetscFinalize would destroy after Python's end."""
-    script = FAULTY.replace("CASE", repr(str(CASES / "table1_smooth.toml")))
+    script = FAULTY.replace("CASE", repr(str(CASES / "table1_smooth.toml"))).replace("ERROR", error)
     process = called([PYTHON, "-c", script], CASES)
-    assert process.returncode == 1 and "ValueError: of a callback" in process.stderr
+    assert process.returncode == status and process.stderr.endswith(f"{error}: of a callback\n")
 
 
 def test_options_belong_to_their_call():

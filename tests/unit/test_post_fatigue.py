@@ -1,15 +1,19 @@
-"""Life and damage against the restored equations' values."""
+"""Life and damage against the restored equations; elastic-plastic rules and closed loops against theirs."""
 
 from functools import partial
 
 import numpy as np
 import pytest
 from support import ROOT
+from support.made_loads import Scene, write
 from support.running import PYTHON, called
 
 from ehlpetsc import post
 from ehlpetsc.post import Material, cycles_to_failure
-from ehlpetsc.post.fatigue.strain_life import life_table, look_up
+from ehlpetsc.post.command import main
+from ehlpetsc.post.fatigue.cycles import loop_of
+from ehlpetsc.post.fatigue.strain_life import STRAINS, life_table, log_local_range, look_up
+from ehlpetsc.results.post_result import PostResult
 
 STEEL = Material()
 damage = partial(post.damage, strain="direct")
@@ -65,14 +69,6 @@ def test_extremes_do_not_overflow():
     with np.errstate(all="raise"):
         lives = cycles_to_failure(np.array([0.0, 1e-300, 1e-30, 1e30, np.inf]), STEEL)
     assert lives[0] == lives[1] == np.inf and lives[2] > 1e300 and lives[3] < 1e-30 and lives[4] == 0
-
-
-def test_table_error_is_below_1e9():
-    table = life_table(STEEL, "direct")
-    ranges = np.exp(np.random.default_rng(0).uniform(np.log(1e2), np.log(1e12), 4000))  # wider than the table
-    exact = 1 / cycles_to_failure(ranges, STEEL)
-    found = np.array([look_up(value * value, table) for value in ranges])
-    assert found == pytest.approx(exact, rel=1e-9)
 
 
 def test_one_pulse_is_one_cycle():
@@ -148,3 +144,99 @@ def test_results_without_numba_are_bitwise_equal():
     scripts += [SCRIPT.format(block="sys.modules['numba'] = None", compiled=False)]
     outputs = [called([PYTHON, "-c", script], ROOT).stdout for script in scripts]
     assert outputs[0] == outputs[1] and len(outputs[0]) > 1000
+
+
+ELASTIC = np.logspace(7, 10.5, 30)
+
+
+def local_range(rule):
+    curve = STEEL.constants()[:3]
+    return np.exp([log_local_range(value, *curve, STRAINS.index(rule))[0] for value in np.log(ELASTIC)])
+
+
+def test_loop_extends_over_samples_equal_to_its_ends():
+    series = np.array([0.0, 1.0, 0.0, 3.0, 3.0, -1.0])
+    assert loop_of(series, series.size, 2, 3) == (0, 5)
+
+
+def test_neuber_rule_conserves_the_product():
+    local = local_range("neuber")
+    assert local * strain_range(local, STEEL) == pytest.approx(ELASTIC**2 / STEEL.youngs_modulus, rel=1e-12)
+
+
+def test_glinka_rule_conserves_the_strain_energy():
+    for elastic, local in zip(ELASTIC, local_range("glinka"), strict=True):
+        share = np.linspace(0, 1, 20001) ** 0.25  # fine where the curve bends
+        stress = local * share
+        strain = strain_range(stress, STEEL)
+        energy = np.sum((stress[1:] + stress[:-1]) / 4 * np.diff(strain))
+        # a strain of half the range on the plain curve is half of that on the doubled one
+        assert energy / 2 == pytest.approx((elastic / 2) ** 2 / (2 * STEEL.youngs_modulus), rel=1e-6)
+
+
+def test_damage_by_direct_entry_over_neuber_and_glinka():
+    """The figures of the README: the direct entry is too high against Neuber's rule and against Glinka's."""
+    ranges = np.array([1.0, 1.5, 2.0, 3.0]) * 1e9
+    direct = cycles_to_failure(ranges, STEEL)
+    neuber, glinka = (cycles_to_failure(ranges, STEEL, strain=rule) / direct for rule in ("neuber", "glinka"))
+    assert neuber == pytest.approx([1.104, 1.983, 6.048, 66.98], rel=1e-3)
+    assert glinka == pytest.approx([1.180, 2.685, 9.969, 129.6], rel=1e-3)
+
+
+@pytest.mark.parametrize("rule", STRAINS)
+def test_table_error_is_below_1e9(rule):
+    """Direct: also beyond the ends of the table."""
+    low, high = (1e2, 1e12) if rule == "direct" else (2e3, 2e11)
+    table = life_table(STEEL, rule)
+    ranges = np.exp(np.random.default_rng(0).uniform(np.log(low), np.log(high), 2000))
+    exact = 1 / cycles_to_failure(ranges, STEEL, strain=rule)
+    found = np.array([look_up(value * value, table) for value in ranges])
+    assert found == pytest.approx(exact, rel=1e-9)
+
+
+def test_strain_rules_apply_with_and_without_morrow():
+    sz = -2e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
+    parts, dsv = (0 * sz, sz, 0 * sz), 2e9 * np.sqrt(0.79)
+    for rule in ("neuber", "glinka"):
+        plain = post.damage(*parts, STEEL, strain=rule)
+        assert plain.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL, strain=rule), rel=1e-9)
+        morrow = post.damage(*parts, STEEL, strain=rule, mean_stress="morrow")
+        assert morrow.damage == pytest.approx(
+            1 / cycles_to_failure(dsv, STEEL, -dsv / 2, strain=rule), rel=1e-9
+        )
+
+
+def test_loop_of_an_inner_cycle_and_of_the_whole():
+    series = np.array([0.0, 10, 2, 6, 1, 12, 0])
+    assert loop_of(series, 7, 2, 3) == (2, 2)  # beyond 2 and 6 the next samples leave the range
+    series = np.array([0.0, 10, 5, 2, 4, 6, 3, 1, 12, 0])
+    assert loop_of(series, 10, 3, 5) == (2, 5)  # 5, 2, 4, 6, 3
+    assert loop_of(series, 10, 8, 0)[1] == 10
+    assert loop_of(series, 10, 9, 1)[1] == 9  # round the end: all but 12
+
+
+def test_command_overrides_rule_and_steel(tmp_path, capsys):
+    path, worst = str(write(tmp_path / "a.h5", Scene(per_width=20, travel=9.0), depths=(0.0,))), {}
+    for options in ((), ("--set", "post.strain=direct"), ("--set", "contact.material=16MnCr5")):
+        assert main([path, *options, "--overwrite"]) == 0
+        result = PostResult(tmp_path / "a.post.h5")
+        worst[options] = result.passed("2").max()
+        assert result.attrs["strain"] == ("direct" if "post.strain=direct" in options else "neuber")
+    assert result.attrs["material"] == "16MnCr5, 16MnCr5"
+    neuber, direct, hard = worst.values()
+    assert direct > 1.2 * neuber and hard < 0.1 * neuber
+    assert " SAE4340, " in capsys.readouterr().err
+    assert main([path, "--set", "mesh.inlet=-3"]) == 2
+    assert main([path, "--set", "post.b=0.3", "--overwrite"]) == 2
+    assert "post.b = 0.3: allowed: a number > -2 and < 0" in capsys.readouterr().err
+
+
+def test_few_points_are_a_warning(tmp_path, capsys):
+    """Of 6.05 half-widths of travel surface 2 covers 4.03: one node more than the mesh is wide."""
+    scene = Scene(per_width=20, ratio=0.4, travel=6.05)
+    path = write(tmp_path / "a.h5", scene, depths=(0.0,))
+    assert main([str(path)]) == 0
+    message = capsys.readouterr()
+    assert "only 1 point of surface 2 " in message.err
+    assert "raise time.travel" in message.err and "of surface 1 passed the" not in message.err
+    assert "nan" not in message.out

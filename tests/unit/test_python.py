@@ -201,26 +201,6 @@ def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):
     np.testing.assert_allclose(whole.pressure, result.pressure, rtol=0.0, atol=1e-9 * result.attrs["p0"])
 
 
-@pytest.mark.slow
-def test_interrupt_in_a_callback_ends_python_in_order(tmp_path):
-    """PETSc's objects in the frames of the traceback must not outlive Python."""
-    script = (
-        "import ehlpetsc\n"
-        f"case = ehlpetsc.load({str(CASES / 'table1_rough.toml')!r}, {QUICK!r})\n"
-        "simulation = ehlpetsc.Simulation(case)\n"
-        "from ehlpetsc.nonlinear import gmres\n"
-        "def interrupted(*_): raise KeyboardInterrupt\n"
-        "gmres.iterations = interrupted\n"
-        "try:\n"
-        "    simulation.advance()\n"
-        "except KeyboardInterrupt as error:\n"
-        "    kept = error\n"
-        "print('interrupted')\n"
-    )
-    done = called([PYTHON, "-c", script], tmp_path)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")
-
-
 def test_picture_shows_the_requested_frame(result):
     import matplotlib
 
