@@ -136,7 +136,8 @@ def test_steady_contacts_converge_with_the_default_stiffness(speed):
 
 def test_a_thin_layer_tends_to_rigid_contact():
     """A layer of vanishing height carries at a film of zero, rigid contact at 0.1 nm; on a/50 as on a/32."""
-    given = RESOLVED | {"mesh.points_per_half_width": 32, "time.travel": 3.0, "motion.entrainment_speed": 1.0}
+    given = {"mesh.points_per_half_width": 32, "time.travel": 3.0, "motion.entrainment_speed": 1.0}
+    given = RESOLVED | NODE_A_STEP | given
     *_, last = ehlpetsc.Simulation(
         load(CASES / "resolved_mixed.toml", given | {"contact.boundary_film": 1e-10})
     )
