@@ -104,6 +104,7 @@ def test_share_friction_and_lengths_converge():
         assert means[name][2] / A == pytest.approx(length, rel=0.005), name
 
 
+@pytest.mark.slow
 def test_stribeck_case_converges_with_its_default_layer():
     """Measured height, default stiffness, 0.05 m/s; limits from a/200, a/400, a/800 (order 1.9)."""
     scene, errors = NODE_A_STEP | {"motion.entrainment_speed": 0.05, "series": None}, []
