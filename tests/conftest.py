@@ -51,6 +51,17 @@ def coarse_pictures():
         yield
 
 
+@pytest.fixture
+def uncompiled(monkeypatch):
+    """Flow laws as Python code, for the complex step: no run needs them compiled for complex numbers."""
+    from ehlpetsc.physics import film_shear, rheology
+
+    for module in (film_shear, rheology):
+        for name, function in list(vars(module).items()):
+            if hasattr(function, "py_func"):
+                monkeypatch.setattr(module, name, function.py_func)
+
+
 def pytest_collection_modifyitems(items):
     """Every test in tests/mpi runs under mpirun, and no other does."""
     for item in items:

@@ -39,7 +39,7 @@ def test_wall_shear():
 
 
 @pytest.mark.parametrize("stress, limit", [(1e6, 5e7), (5e7, 5e7), (9e8, 5e7), (1e6, 2e6)])
-def test_limited_shear(stress, limit):
+def test_limited_shear(stress, limit, uncompiled):
     value, by_stress, by_limit = rheology.limited_shear(stress, limit)
     assert value <= min(stress, limit)
     if max(stress, limit) >= 2.0 * min(stress, limit):
@@ -53,7 +53,7 @@ def test_limited_shear(stress, limit):
 
 @pytest.mark.parametrize("stress", [10e6, np.inf])
 @pytest.mark.parametrize("sliding", [0.0, 1.25, 6.0])
-def test_derivatives_of_mobility(stress, sliding):
+def test_derivatives_of_mobility(stress, sliding, uncompiled):
     def mobility(h, gradient, fluidity, stress, slip):
         other = 3.0 * fluidity  # the oil on the other side must not matter
         both = np.vectorize(lambda *at: rheology.mobilities(*at, stress, slip)[0])

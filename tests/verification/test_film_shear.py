@@ -155,9 +155,7 @@ def test_sum_of_fluxes_is_the_heat_of_shear():
 
 @pytest.mark.parametrize("limit", [np.inf, 9e6])
 @pytest.mark.parametrize("name", LAWS)
-def test_derivatives_by_complex_step(name, limit, monkeypatch):
-    """Of the source of the compiled function: no run needs it compiled for complex numbers."""
-    monkeypatch.setattr(film_shear, "_resolve", film_shear._resolve.py_func)
+def test_derivatives_by_complex_step(name, limit, uncompiled):
     step = 1e-30
     for eta, sliding, t1 in ((0.5, 1.0, 0.0), (5.0, 10.0, 15.0), (500.0, 5.0, -40.0)):
         given = {"h": FILM, "eta": eta, "beta": BETA, "t1": t1, "t2": 0.0}
