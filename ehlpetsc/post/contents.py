@@ -57,7 +57,7 @@ def datasets_of(
             f"{MIN_ASPERITIES} or more"
         )
     if loads.is_heated(surface):
-        temperatures = point_temperatures(loads, surface, motion, prepared.s.size)
+        temperatures = point_temperatures(loads, surface, prepared.s, motion.complete)
         found |= {f"temperature/{surface}_{name}": array for name, array in temperatures._asdict().items()}
     return found
 

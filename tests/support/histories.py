@@ -4,7 +4,7 @@ import numpy as np
 
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.body_stress import BodyStress, histories
-from ehlpetsc.post.temperatures import temperatures_between_nodes
+from ehlpetsc.post.temperatures import temperatures
 
 
 def history_at(loads, surface, s, depth, quantum=0.0):
@@ -17,7 +17,6 @@ def history_at(loads, surface, s, depth, quantum=0.0):
 
 def temperature_history(loads, surface, s):
     """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
-    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
-    frames = np.arange(int(motion.enter[0]), int(motion.leave[0]) + 1)
-    rows = temperatures_between_nodes(loads, surface, frames, motion.offset[frames])
-    return rows[np.arange(frames.size), motion.shift[frames]]
+    places = s + loads.travelled[surface]
+    values = [temperatures(loads, surface, frame, place) for frame, place in enumerate(places)]
+    return np.array(values)[(places >= loads.x[0]) & (places <= loads.x[-1])]

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from ehlpetsc.post import out_of_plane, stress, von_mises
+from ehlpetsc.post import stress, von_mises
 from ehlpetsc.post.stresses import body_stress
 from ehlpetsc.post.stresses.body_stress import BodyStress, hermite_spectra, limited_slopes, offset_weights
 from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
@@ -167,7 +167,6 @@ def test_hertz_extremes():
     assert von_mises(sx, sz, txz, 0.3)[1, middle] == pytest.approx(0.5575162, abs=5e-5)
     assert np.abs(txz[0]).max() == pytest.approx(0.25, abs=2e-5)
     assert abs(x[np.abs(txz[0]).argmax()]) == pytest.approx(np.sqrt(3) / 2, abs=0.0026)
-    assert out_of_plane(sx, sz, 0.3) == pytest.approx(0.3 * (sx + sz))
 
 
 def test_surface_is_the_limit_from_inside():

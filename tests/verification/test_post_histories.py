@@ -10,7 +10,6 @@ from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, offset_weights
-from ehlpetsc.post.stresses.half_plane import StressField
 from ehlpetsc.results.post_result import PostResult
 
 FINE = 16  # elements of the reference a node spacing
@@ -44,9 +43,11 @@ def reference(scene, s, frames):
     """Histories (3, nz, frames) at body point s from the continuous pressure on a mesh FINE times finer."""
     fine = np.arange(scene.x[0], scene.x[-1] + scene.dx / 2 / FINE, scene.dx / FINE)
     n = fine.size
-    field, one = StressField(2 * n - 1, scene.dx / FINE, np.array(DEPTHS) * A), np.zeros(2 * n - 1)
+    x, one = scene.dx / FINE * np.arange(2 * n - 1), np.zeros(2 * n - 1)
     one[n - 1] = 1.0
-    influence = np.array(field(one, 0.05 * one))  # stresses round a node with a load of 1
+    influence = np.array(
+        stress(x, np.array(DEPTHS) * A, one, 0.05 * one, 0.3)
+    )  # stresses round a node with a load of 1
     out = np.empty((3, len(DEPTHS), frames.size))
     for k, frame in enumerate(frames):
         place = s + scene.u2 * scene.time[frame]

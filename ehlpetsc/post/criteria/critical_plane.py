@@ -26,6 +26,7 @@ about the tolerance.
 from __future__ import annotations
 
 from functools import partial
+from itertools import product
 from math import cos, exp, log, pi, sin, sqrt
 from typing import NamedTuple
 
@@ -39,14 +40,7 @@ from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material, interpol
 
 GRID_STEP = pi / 12  # between the planes and directions of the coarse grid
 TOLERANCE = 0.02  # of the widest of the three axes
-DIRECTIONS = np.array(
-    [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    + [[1, s, 0] for s in (1, -1)]
-    + [[1, 0, s] for s in (1, -1)]
-    + [[0, 1, s] for s in (1, -1)]
-    + [[1, s, t] for s in (1, -1) for t in (1, -1)],
-    float,
-)
+DIRECTIONS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if way > (0.0, 0.0, 0.0)])
 DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 

@@ -23,7 +23,7 @@ from math import sqrt
 
 import numpy as np
 
-from ehlpetsc.base.compiled import ZERO, compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.fatigue.accumulate import evaluate
 from ehlpetsc.post.fatigue.cycles import equivalent_points
@@ -33,97 +33,52 @@ BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 
 
 @compiled(nogil=True)
-def _dot(a: tuple, b: tuple) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+def _circumcentre(corners: np.ndarray) -> np.ndarray:
+    """Centre of the smallest sphere through 1 to 4 corners (count, 3); nan or infinite if degenerate."""
+    centre, basis = corners[0].copy(), np.zeros((len(corners), 3))
+    for k in range(1, len(corners)):
+        edge, outer, inner = corners[k] - corners[0], corners[k] - centre, corners[0] - centre
+        for unit in basis[: k - 1]:
+            edge = edge - (edge * unit).sum() * unit
+        height = sqrt((edge * edge).sum())
+        basis[k - 1] = edge / height
+        centre += ((outer * outer).sum() - (inner * inner).sum()) / (2 * height) * basis[k - 1]
+    return centre
 
 
 @compiled(nogil=True)
-def _cross(a: tuple, b: tuple) -> tuple:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+def _around(support: np.ndarray, new: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Radius, centre and support of the smallest ball about the support of another and a point outside it.
 
-
-@compiled(nogil=True)
-def _sum(x: float, a: tuple, y: float, b: tuple) -> tuple:
-    return x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2]
-
-
-@compiled(nogil=True)
-def _from(origin: tuple, points: np.ndarray, k: int) -> tuple:
-    return points[0, k] - origin[0], points[1, k] - origin[1], points[2, k] - origin[2]
-
-
-@compiled(nogil=True)
-def _centre(points: np.ndarray, corners: np.ndarray, count: int) -> tuple:
-    """Centre of the smallest sphere through 1 to 4 points; nan or infinite if they are degenerate."""
-    origin = _from((0.0, 0.0, 0.0), points, corners[0])
-    if count == 1:
-        return origin
-    a = _from(origin, points, corners[1])
-    if count == 2:
-        return _sum(1.0, origin, 0.5, a)
-    b = _from(origin, points, corners[2])
-    aa, bb, normal = _dot(a, a), _dot(b, b), _cross(a, b)
-    if count == 3:
-        return _sum(1.0, origin, 0.5 / _dot(normal, normal), _cross(_sum(aa, b, -bb, a), normal))
-    c = _from(origin, points, corners[3])
-    far = _sum(1.0, _sum(_dot(c, c), normal, aa, _cross(b, c)), bb, _cross(c, a))
-    return _sum(1.0, origin, 0.5 / _dot(normal, c), far)
-
-
-@compiled(nogil=True)
-def _max_distance(points: np.ndarray, corners: np.ndarray, count: int, centre: tuple) -> float:
-    reach = 0.0
-    for k in range(count):
-        away = _from(centre, points, corners[k])
-        squared = _dot(away, away)
-        if not squared <= reach:  # also nan
-            reach = squared
-    return sqrt(reach)
-
-
-@compiled(nogil=True)
-def _smallest_of_few(
-    points: np.ndarray, indices: np.ndarray, count: int
-) -> tuple[float, tuple, np.ndarray, int]:
-    """Smallest ball about up to 5 points, and the subset of points that defines it."""
-    best, best_centre = np.inf, _centre(points, indices, 1)
-    best_subset, best_count = indices.copy(), count
-    subset = np.empty(5, np.int64)
-    for mask in range(1, 1 << count):
-        size = ZERO
-        for k in range(count):
-            if mask >> k & 1:
-                subset[size] = indices[k]
-                size += 1
-        if size > 4:
-            continue
-        centre = _centre(points, subset, size)
-        radius = _max_distance(points, indices, count, centre)
-        if radius < best:
-            best, best_centre, best_count = radius, centre, int(size)
-            best_subset[:size] = subset[:size]
-    return best, best_centre, best_subset, best_count
+    The new point is on its surface.
+    """
+    points = np.concatenate((new.reshape(1, 3), support))
+    best, best_centre, best_support = np.inf, new, support
+    for mask in range(1 << len(support)):
+        chosen = np.array([0] + [k + 1 for k in range(len(support)) if mask >> k & 1])
+        if len(chosen) <= 4:
+            centre = _circumcentre(points[chosen])
+            radius = np.sqrt(((points - centre) ** 2).sum(axis=1)).max()
+            if radius < best:
+                best, best_centre, best_support = radius, centre, points[chosen]
+    return best, best_centre, best_support
 
 
 @compiled(error_model="python", nogil=True)
-def smallest_ball(points: np.ndarray) -> tuple[tuple, float]:
+def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     """Centre and radius of the smallest ball about points (3, n).
 
     The farthest point outside is added to the points that define the ball until no point is outside; the
     radius increases in every round, so that no subset occurs twice.
     """
-    indices = np.zeros(5, np.int64)
-    count, radius, centre = 1, 0.0, _centre(points, indices, 1)
+    centre, radius = points[:, 0].copy(), 0.0
+    support = centre.copy().reshape(1, 3)
     for _ in range(MAX_ROUNDS):
-        farthest, squared = 0, 0.0
-        for k in range(points.shape[1]):
-            away = _from(centre, points, k)
-            if _dot(away, away) > squared:
-                farthest, squared = k, _dot(away, away)
-        if sqrt(squared) <= radius * (1 + BALL_TOLERANCE):
+        away = (points[0] - centre[0]) ** 2 + (points[1] - centre[1]) ** 2 + (points[2] - centre[2]) ** 2
+        farthest = away.argmax()
+        if sqrt(away[farthest]) <= radius * (1 + BALL_TOLERANCE):
             break
-        indices[count] = farthest
-        larger, new_centre, indices, count = _smallest_of_few(points, indices, count + 1)
+        larger, new_centre, support = _around(support, points[:, farthest].copy())
         if not larger > radius:
             break
         radius, centre = larger, new_centre

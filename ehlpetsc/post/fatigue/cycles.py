@@ -27,11 +27,9 @@ from ehlpetsc.base.compiled import ZERO, compiled
 
 
 @compiled(error_model="python", nogil=True)
-def _close(
-    series: np.ndarray, stack: np.ndarray, bottom: int, top: int, cycles: np.ndarray, n: int
-) -> tuple[int, int]:
+def _close(series: np.ndarray, stack: np.ndarray, top: int, cycles: np.ndarray, n: int) -> tuple[int, int]:
     """Count and remove closed cycles, whose range is within both neighbouring ranges of four reversals."""
-    while top - bottom >= 4:
+    while top >= 4:
         b, c = series[stack[top - 3]], series[stack[top - 2]]
         inner = abs(c - b)
         if inner > abs(b - series[stack[top - 4]]) or inner > abs(series[stack[top - 1]] - c):
@@ -44,32 +42,23 @@ def _close(
 
 
 @compiled(error_model="python", nogil=True)
-def _close_residue(series: np.ndarray, stack: np.ndarray, top: int, cycles: np.ndarray, n: int) -> int:
-    """Count the residue stack[:top] as one period of a repeated history."""
-    start = 0
-    for i in range(1, top):
-        if series[stack[i]] > series[stack[start]]:
-            start = i
-    bottom = top
-    last = stack[start]
-    stack[bottom] = last
-    end = bottom + 1
-    rising = False  # the start is the highest
-    for i in range(1, top + 1):
-        new = stack[(start + i) % top]
-        if series[new] == series[last]:
-            continue
-        if (series[new] > series[last]) != rising:
-            stack[end] = last
-            end, n = _close(series, stack, bottom, end + 1, cycles, n)
-            rising = not rising
-        last = new
-    stack[end] = last
-    end, n = _close(series, stack, bottom, end + 1, cycles, n)
-    if end - bottom == 3:  # highest, lowest, highest: one cycle
-        cycles[n, 0], cycles[n, 1] = stack[bottom], stack[bottom + 1]
-        n += 1
-    return n
+def _count(
+    series: np.ndarray, order: np.ndarray, stack: np.ndarray, cycles: np.ndarray, n: int
+) -> tuple[int, int]:
+    """Count the closed cycles of samples in an order; numbers of reversals left in `stack` and of cycles."""
+    last, top, sign = order[0], 1, 0.0
+    stack[0] = last
+    for new in order[1:]:
+        step = series[new] - series[last]
+        if sign * step < 0:
+            stack[top] = last
+            top, n = _close(series, stack, top + 1, cycles, n)
+        if step != 0:
+            last, sign = new, np.sign(step)
+    if sign != 0:
+        stack[top] = last
+        top, n = _close(series, stack, top + 1, cycles, n)
+    return top, n
 
 
 @compiled(error_model="python", nogil=True)
@@ -79,38 +68,19 @@ def find_cycles(series: np.ndarray, stack: np.ndarray, cycles: np.ndarray) -> in
     `series` must be finite; the arrays are those of :func:`workspace`. The first sample of a plateau is the
     reversal.
     """
-    size = series.shape[0]
-    n = ZERO
-    stack[0] = 0
-    top = 1
-    last = 0
-    value = series[0]
-    for i in range(1, size):  # up to the first sample that differs
-        if series[i] != value:
-            break
-    else:
-        return ZERO
-    rising = series[i] > value
-    for k in range(i, size):
-        new = series[k]
-        if new == value:
-            continue
-        if (new > value) != rising:
-            stack[top] = last
-            top += 1
-            if top >= 4:
-                top, n = _close(series, stack, ZERO, top, cycles, n)
-            rising = not rising
-        value = new
-        last = k
-    stack[top] = last
-    top, n = _close(series, stack, ZERO, top + 1, cycles, n)
-    return _close_residue(series, stack, top, cycles, n)
+    top, n = _count(series, np.arange(series.size), stack, cycles, ZERO)
+    residue = stack[:top].copy()
+    start = series[residue].argmax()
+    top, n = _count(series, np.concatenate((residue[start:], residue[: start + 1])), stack, cycles, n)
+    if top == 3:  # highest, lowest, highest: one cycle
+        cycles[n, 0], cycles[n, 1] = stack[0], stack[1]
+        n += 1
+    return n
 
 
 def workspace(size: int) -> tuple[np.ndarray, np.ndarray]:
     """Arrays stack and cycles (n, 2) of :func:`find_cycles` for up to `size` samples."""
-    return np.empty(2 * size + 4, np.int64), np.empty((size + 2, 2), np.int64)
+    return np.empty(size + 2, np.int64), np.empty((size + 2, 2), np.int64)
 
 
 def rainflow(series: np.ndarray) -> np.ndarray:

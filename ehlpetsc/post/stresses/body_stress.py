@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import fft
+from scipy.interpolate import BarycentricInterpolator
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.body_points import Passage
@@ -119,11 +120,7 @@ PARITY = np.array([1, -1, 1, -1, -1, 1, -1, 1])[:, None]  # of the kernels under
 
 def offset_weights(offset: np.ndarray) -> np.ndarray:
     """Lagrange weights (frames, 6) of `OFFSETS` at offsets (frames,) from the nodes."""
-    weights = np.ones((offset.size, OFFSETS.size))
-    for k, node in enumerate(OFFSETS):
-        for other in np.delete(OFFSETS, k):
-            weights[:, k] *= (offset - other) / (node - other)
-    return weights
+    return BarycentricInterpolator(OFFSETS, np.eye(OFFSETS.size))(offset)
 
 
 def low_pass(nx: int, depth: float) -> np.ndarray:

@@ -109,56 +109,10 @@ def padded_length(nx: int) -> int:
     return fft.next_fast_len(2 * nx, real=True)
 
 
-def kernel_spectra(nx: int, z: float) -> np.ndarray:
-    """Spectra of the hat kernels, -2/pi included; z in elements.
-
-    Shape (4, padded_length // 2 + 1), order A, B, C, E of :mod:`ehlpetsc.post.stresses.half_plane`.
-    """
-    n = padded_length(nx)
-    distance = np.arange(-(nx - 1), nx)
-    kernels = np.zeros((4, n))
-    kernels[:, distance] = -2 / np.pi * hat(distance, z)
-    return fft.rfft(kernels)
-
-
-class StressField:
-    """Stress operator for nx nodes with the spacing dx [m] and a set of depths z (nz,) [m]."""
-
-    def __init__(self, nx: int, dx: float, z: np.ndarray) -> None:
-        z = np.atleast_1d(np.asarray(z, float))
-        if not (np.isfinite(z).all() and (z >= 0).all()):
-            raise ValueError("depths must be finite and not negative")
-        self.nx, self.n = nx, padded_length(nx)
-        self.depths = z / dx
-        self.normal, self.cross, self.along, self.shear = np.stack(
-            [kernel_spectra(nx, depth) for depth in self.depths], axis=1
-        )
-
-    def __call__(
-        self, pressure: np.ndarray, shear: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Stresses (sx, sz, txz), each (..., nz, nx), under pressure and traction (..., nx), all in Pa."""
-        p = fft.rfft(pressure, self.n)[..., None, :]
-        spectra = np.stack([self.along * p, self.normal * p, self.cross * p])
-        if shear is not None:
-            q = fft.rfft(shear, self.n)[..., None, :]
-            spectra += np.stack([self.shear * q, self.cross * q, self.along * q])
-        fields = fft.irfft(spectra, self.n, overwrite_x=True)[..., : self.nx]
-        self._cut_ends(fields, np.asarray(pressure), None if shear is None else np.asarray(shear))
-        return fields[0], fields[1], fields[2]
-
-    def _cut_ends(self, fields: np.ndarray, pressure: np.ndarray, shear: np.ndarray | None) -> None:
-        """Subtract the outer halves of the end nodes' hats if the load is not zero there."""
-        for node in (0, -1):
-            p, q = pressure[..., node], 0.0 if shear is None else shear[..., node]
-            if not (np.any(p) or np.any(q)):
-                continue
-            kernels = -2 / np.pi * np.stack([half_hat(np.arange(self.nx), z) for z in self.depths], axis=1)
-            normal, cross, along, tangential = PARITY[..., None] * kernels[..., ::-1] if node else kernels
-            p, q = np.asarray(p)[..., None, None], np.asarray(q)[..., None, None]
-            fields[0] -= along * p + tangential * q
-            fields[1] -= normal * p + cross * q
-            fields[2] -= cross * p + along * q
+def _combined(kernels: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Stresses sx, sz, txz from kernels A, B, C, E times pressure and traction."""
+    a, b, c, e = kernels
+    return np.stack([c * p + e * q, a * p + b * q, b * p + c * q])
 
 
 def stress(
@@ -180,27 +134,33 @@ def stress(
     `x`: uniform nodes [m], shape (nx,).
     `z`: depth, or depths (nz,) [m].
     `pressure`, `shear`: pressure and traction in +x on this solid [Pa], shape (..., nx).
-    `poisson_ratio`: checked, but the three in-plane stresses do not depend on it; see :func:`out_of_plane`
-        for the fourth.
+    `poisson_ratio`: checked, but the three in-plane stresses do not depend on it; the fourth is
+        :math:`\sigma_y=\nu(\sigma_x+\sigma_z)`.
 
     Returns sx, sz, txz [Pa], shape (..., nz, nx), without the axis nz if z is a number.
     """
-    x, pressure = np.asarray(x, float), np.asarray(pressure, float)
-    shear = None if shear is None else np.asarray(shear, float)
-    if pressure.shape[-1:] != x.shape or shear is not None and shear.shape != pressure.shape:
+    x, z, pressure = (np.asarray(values, float) for values in (x, z, pressure))
+    shear = np.zeros_like(pressure) if shear is None else np.asarray(shear, float)
+    if pressure.shape[-1:] != x.shape or shear.shape != pressure.shape:
         raise ValueError("pressure and shear must have one value a node, and the same shape")
     if not -1 < poisson_ratio <= 0.5:
         raise ValueError("Poisson's ratio must lie between -1 and 0.5")
-    sx, sz, txz = StressField(x.size, spacing(x), z)(pressure, shear)
-    return (sx[..., 0, :], sz[..., 0, :], txz[..., 0, :]) if np.ndim(z) == 0 else (sx, sz, txz)
-
-
-def out_of_plane(sx: np.ndarray, sz: np.ndarray, poisson_ratio: float) -> np.ndarray:
-    """sigma_y = nu (sigma_x + sigma_z), plane strain."""
-    return poisson_ratio * (sx + sz)
+    if not (np.isfinite(z).all() and (z >= 0).all()):
+        raise ValueError("depths must be finite and not negative")
+    nx, n, depths = x.size, padded_length(x.size), np.atleast_1d(z) / spacing(x)
+    distance = np.arange(1 - nx, nx)
+    kernels = np.zeros((4, depths.size, n))
+    kernels[..., distance] = np.stack([hat(distance, depth) for depth in depths], axis=1)
+    p, q = (fft.rfft(load, n)[..., None, :] for load in (pressure, shear))
+    fields = fft.irfft(_combined(fft.rfft(kernels), p, q), n)[..., :nx]
+    # the hats of the end nodes lack their outer halves
+    left = np.stack([half_hat(np.arange(nx), depth) for depth in depths], axis=1)
+    for node, half in ((0, left), (-1, PARITY[..., None] * left[..., ::-1])):
+        fields -= _combined(half, pressure[..., node, None, None], shear[..., node, None, None])
+    sx, sz, txz = -2 / np.pi * (fields if z.ndim else fields[..., 0, :])
+    return sx, sz, txz
 
 
 def von_mises(sx: np.ndarray, sz: np.ndarray, txz: np.ndarray, poisson_ratio: float) -> np.ndarray:
     """Von Mises stress under plane strain, Pa."""
-    sy = out_of_plane(sx, sz, poisson_ratio)
-    return np.sqrt(von_mises_squared(sx, sy, sz, txz))
+    return np.sqrt(von_mises_squared(sx, poisson_ratio * (sx + sz), sz, txz))
