@@ -115,7 +115,7 @@ def _means(file: Path) -> dict[str, float]:
 def _damage(file: Path) -> list[tuple]:
     """Points s, depths [m] and damage of both surfaces, of the points that passed the whole contact."""
     with Loads(file) as loads:
-        job, prepared = Job(str(file), "").of_case(loads.case), prepare(loads, SIDES, lambda text: None)
+        job, prepared = Job(str(file), ""), prepare(loads, SIDES, lambda text: None)
         damages = []
         for side in SIDES:
             motion, depths = prepared.motions[side], prepared.settings.depths

@@ -81,12 +81,6 @@ def _say(text: str) -> None:
     print(f"ehlpetsc post: {text}", file=sys.stderr)
 
 
-def _progress(text: str) -> None:
-    """Rewrite the progress in place, on terminals only."""
-    if sys.stderr.isatty():
-        print(text, end="\r", file=sys.stderr, flush=True)
-
-
 def _output(path: str, chosen: argparse.Namespace) -> str:
     return chosen.output or str(post_path(path))
 
@@ -97,18 +91,17 @@ def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> No
         path,
         output,
         SURFACES if chosen.surface == "both" else (chosen.surface,),
-        None if chosen.depths is None else tuple(chosen.depths),
         chosen.mean_stress,
         jobs=chosen.jobs,
-        criteria=tuple(name for name in CRITERIA if name in chosen.criterion),
-        settings=tuple(chosen.set),
+        criteria=tuple(sorted(chosen.criterion)),
+        settings=(*chosen.set, *([f"post.depths={chosen.depths}"] if chosen.depths else ())),
     )
     start = time.perf_counter()
     if not chosen.overwrite and job.is_done():
         _say(f"{output}: already there, of the same file and options")
     else:
         _check_output(Path(output), inputs, chosen.overwrite)
-        run(job, lambda text: _say(f"{path}: {text}"), _progress)
+        run(job, lambda text: _say(f"{path}: {text}"))
     _summary(output, time.perf_counter() - start)
 
 

@@ -71,8 +71,8 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
     mean = (loads.speeds["1"] + loads.speeds["2"]) / 2
     passed = [name for name, motion in prepared.motions.items() if motion.complete.any()]
     return {
-        "title": loads.title,
-        "case": loads.case_text,
+        "title": loads.attrs["title"],
+        "case": loads.attrs["case"],
         "source": str(loads.path),
         "surface": next((name for name in passed if loads.profiles[name] is not None), passed[0]),
         "a": loads.a,
@@ -82,6 +82,7 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
         "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
         "every": prepared.every,
         "material": ", ".join(case.contact.material or (DEFAULT,)),
+        "strain": case.post.strain,
         "residual_stress": np.array(case.post.residual_stress or (), float).reshape(-1, 2),
         **{f"speed_{name}": loads.speeds[name] for name in prepared.motions},
     }

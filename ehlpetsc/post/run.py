@@ -19,7 +19,6 @@ from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import count_damage
-from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared, prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, histories, runs_of_points
@@ -32,24 +31,16 @@ DEPTHS_AT_ONCE = 4  # with common reading and transforms of the loads
 class Job(NamedTuple):
     """One result file and the settings of its processing.
 
-    `depths` overrides the depths of the case, `settings` ("table.key=value") other keys; `strain`
-    is that of the case, whose criterion is added to `criteria`.
+    `settings` ("table.key=value") override keys of the case, whose criterion is added to `criteria`.
     """
 
     path: str
     output: str
     surfaces: tuple[str, ...] = SURFACES
-    depths: tuple[float, ...] | None = None
     mean_stress: str = "none"
-    strain: str = DEFAULT_STRAIN
     jobs: int = 1
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
-
-    def of_case(self, case: Case) -> Job:
-        """The job with the strain rule and the criterion of a case."""
-        criteria = tuple(name for name in CRITERIA if name in (*self.criteria, case.post.criterion))
-        return self._replace(strain=case.post.strain, criteria=criteria)
 
     def fingerprint(self) -> str:
         """Hash of the settings and of the version of the result file."""
@@ -65,19 +56,13 @@ class Job(NamedTuple):
             return False
 
 
-def run(
-    job: Job,
-    report: Callable[[str], None] = lambda text: None,
-    progress: Callable[[str], None] = lambda text: None,
-) -> None:
+def run(job: Job, report: Callable[[str], None] = lambda text: None) -> None:
     """Compute damage and statistics of one result file and write them to `job.output`, replacing it.
 
-    `report` is called with warnings and notes, `progress` with the finished part.
+    `report` is called with warnings and notes.
     """
-    depths = () if job.depths is None else (("post.depths", list(job.depths)),)
-    with Loads(job.path, [*job.settings, *depths]) as loads:
+    with Loads(job.path, job.settings) as loads:
         identity = job.fingerprint()
-        job = job.of_case(loads.case)
         try:
             prepared = prepare(loads, job.surfaces, report)
         except PostError as fault:
@@ -86,10 +71,10 @@ def run(
             report(note)
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.settings.depths}
         for surface in prepared.motions:
-            datasets |= solve(prepared, surface, job, progress)
+            datasets |= solve(prepared, surface, job)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
-        attributes = attributes_of(prepared) | {"mean_stress": job.mean_stress, "strain": job.strain}
-        attributes |= {"settings": "\n".join(job.settings), "fingerprint": identity}
+        provenance = {"settings": "\n".join(job.settings), "fingerprint": identity}
+        attributes = attributes_of(prepared) | {"mean_stress": job.mean_stress} | provenance
         write_result(job.output, datasets, attributes)
 
 
@@ -98,7 +83,7 @@ def _notes(job: Job, loads: Loads) -> Iterator[str]:
     case = loads.case
     if case.contact.material is None and all(getattr(case.post, key) is None for key in FATIGUE_KEYS):
         yield f"note: fatigue constants of {DEFAULT}, as in the paper; contact.material names another steel"
-    if "dang-van" in job.criteria:
+    if "dang-van" in _criteria(job, case):
         yield (
             "note: dang-van holds where the steel has shaken down to elastic cycles; torsion_limit and "
             "bending_limit left out are those of bearing steel (ISO 281)"
@@ -108,16 +93,16 @@ def _notes(job: Job, loads: Loads) -> Iterator[str]:
             names = ", ".join(f'"temperature_{surface}"' for surface in cold)
             yield f"note: no surface temperatures in it: list {names} in output.fields of the case for them"
         yield "note: thermal stresses are not computed: damage is that of pressure and shear stress alone"
-    if case.post.residual_stress and job.mean_stress == "none" and not job.criteria:
+    if case.post.residual_stress and job.mean_stress == "none" and not _criteria(job, case):
         yield "note: residual_stress changes nothing without --mean-stress morrow or --criterion"
 
 
-def solve(
-    prepared: Prepared,
-    surface: str,
-    job: Job,
-    progress: Callable[[str], None] = lambda text: None,
-) -> dict[str, np.ndarray]:
+def _criteria(job: Job, case: Case) -> set[str]:
+    """Criteria beside the paper's damage."""
+    return {*job.criteria, case.post.criterion} & {*CRITERIA}
+
+
+def solve(prepared: Prepared, surface: str, job: Job) -> dict[str, np.ndarray]:
     """Damage, cycles, peak range and criteria of a surface (depths, points) by name in the file.
 
     nan for incomplete points.
@@ -125,10 +110,7 @@ def solve(
     depths = prepared.settings.depths
     blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(job.jobs, len(depths))))
     work = partial(_solve_depths, prepared, surface, job)
-    found = []
-    for values in ThreadPoolExecutor(job.jobs).map(work, blocks) if job.jobs > 1 else map(work, blocks):
-        found.append(values)
-        progress(f"surface {surface}: {len(found)} of {len(blocks)} layers")
+    found = list(ThreadPoolExecutor(job.jobs).map(work, blocks) if job.jobs > 1 else map(work, blocks))
     return {name: np.concatenate([values[name] for values in found]) for name in found[0]}
 
 
@@ -151,17 +133,21 @@ def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray
 
 def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str], Callable]]:
     """Names of results and function of histories of the paper's damage and of each criterion."""
-    material, constants = prepared.settings.materials[surface], prepared.settings.criteria
+    material, constants, case = (
+        prepared.settings.materials[surface],
+        prepared.settings.criteria,
+        prepared.loads.case,
+    )
     names = [f"damage/{surface}", f"damage/{surface}_cycles", f"damage/{surface}_peak_range"]
-    count = partial(count_damage, material=material, mean_stress=job.mean_stress, strain=job.strain)
+    count = partial(count_damage, material=material, mean_stress=job.mean_stress, strain=case.post.strain)
     counts: list[tuple[list[str], Callable]] = [(names, count)]
-    if "fatemi-socie" in job.criteria:  # slow to compile: only if requested
+    if "fatemi-socie" in _criteria(job, case):  # slow to compile: only if requested
         from ehlpetsc.post.criteria.critical_plane import PlaneDamage, count_on_planes
 
         names = [f"criteria/fatemi_socie/{surface}_{column}" for column in PlaneDamage._fields]
-        count = partial(count_on_planes, material=material, constants=constants, strain=job.strain)
+        count = partial(count_on_planes, material=material, constants=constants, strain=case.post.strain)
         counts.append((names, count))
-    if "dang-van" in job.criteria:
+    if "dang-van" in _criteria(job, case):
         from ehlpetsc.post.criteria.dang_van import count_utilisation
 
         count = partial(count_utilisation, poisson_ratio=material.poisson_ratio, constants=constants)

@@ -237,6 +237,6 @@ def test_few_points_are_a_warning(tmp_path, capsys):
     path = write(tmp_path / "a.h5", scene, depths=(0.0,))
     assert main([str(path)]) == 0
     message = capsys.readouterr()
-    assert "only 1 point of surface 2 " in message.err
-    assert "raise time.travel" in message.err and "of surface 1 passed the" not in message.err
+    assert "surface 2 that passed the whole contact: 1;" in message.err
+    assert "raise time.travel" in message.err and "of surface 1 that passed" not in message.err
     assert "nan" not in message.out

@@ -38,7 +38,7 @@ def test_history_contains_every_sample_of_every_point(scene, tmp_path):
     from support.histories import history_at
 
     path = write(tmp_path / "a.h5", scene)
-    run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("2",), depths=(0.0,)))
+    run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("2",), settings=("post.depths=[0.0]",)))
     result = PostResult(tmp_path / "o.h5")
     with Loads(path) as loads:
         motion = prepare(loads, ("2",), print).motions["2"]
@@ -70,7 +70,7 @@ def test_points_follow_surface_positions_under_changing_speeds(scene, tmp_path):
     paths = [write(tmp_path / "a.h5", scene), write(tmp_path / "b.h5", scene, edit=edit)]
     found = []
     for path in paths:
-        run(Job(str(path), f"{path}.post", depths=(0.0, 0.5)))
+        run(Job(str(path), f"{path}.post", settings=("post.depths=[0.0, 0.5]",)))
         found.append(PostResult(f"{path}.post").damage)
     for side in ("2", "1"):
         np.testing.assert_allclose(found[1][side], found[0][side], rtol=1e-9)
@@ -104,7 +104,7 @@ def test_gear_flanks_have_damage_along_the_path_of_contact(tmp_path):
             file[name] = np.arange(len(time))
         file["steps/load_given"] = [now.load for now in conditions]
         file["steps/displacement_1"], file["steps/displacement_2"] = ways.T
-    run(Job(str(tmp_path / "a.h5"), str(tmp_path / "o.h5"), depths=(0.5,)))
+    run(Job(str(tmp_path / "a.h5"), str(tmp_path / "o.h5"), settings=("post.depths=[0.5]",)))
     found = PostResult(tmp_path / "o.h5")
     for side in found.surfaces:
         damage = found.passed(side)

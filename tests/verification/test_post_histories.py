@@ -170,6 +170,7 @@ def test_no_point_passes_at_rest(scene):
 def test_counting_settings_change_the_result(loads, tmp_path):
     values = {}
     for name in ("none", "morrow"):
-        run(Job(str(loads.path), str(tmp_path / "o.h5"), ("2",), depths=(0.05,), mean_stress=name))
+        depths = ("post.depths=[0.05]",)
+        run(Job(str(loads.path), str(tmp_path / "o.h5"), ("2",), mean_stress=name, settings=depths))
         values[name] = np.nanmax(PostResult(tmp_path / "o.h5").damage["2"])
     assert values["morrow"] < values["none"]

@@ -66,10 +66,8 @@ def weibull_fit(values: np.ndarray) -> WeibullFit:
     if used.sum() < 2 or not np.ptp(values[used]) > MIN_SPREAD * values[used].max():
         return WeibullFit(np.nan, np.nan, np.nan)
     x, y = np.log(values[used]), np.log(-np.log1p(-benard_ranks(values.size)[used]))
-    dx, dy = x - x.mean(), y - y.mean()
-    beta = (dy @ dy) / (dx @ dy)
-    alpha = np.exp(x.mean() - y.mean() / beta)
-    return WeibullFit(float(alpha), float(beta), float((dx @ dy) ** 2 / ((dx @ dx) * (dy @ dy))))
+    slope, intercept = np.polyfit(y, x, 1)
+    return WeibullFit(float(np.exp(intercept)), float(1 / slope), float(np.corrcoef(x, y)[0, 1] ** 2))
 
 
 def log_life(damage: np.ndarray) -> np.ndarray:

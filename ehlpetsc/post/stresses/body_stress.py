@@ -187,8 +187,8 @@ class BodyStress:
         """
         loads = np.empty((len(pressure), 4, pressure.shape[1]))
         loads[:, 0], loads[:, 1] = pressure, shear
-        limited_slopes(loads[:, 0], loads[:, 2])
-        limited_slopes(loads[:, 1], loads[:, 3])
+        for k in range(2):
+            limited_slopes(loads[:, k], loads[:, k + 2])
         return fft.rfft(loads, self.n)
 
     def __call__(self, depth: int, spectra: np.ndarray, weights: np.ndarray) -> np.ndarray:
