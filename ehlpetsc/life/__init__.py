@@ -3,8 +3,19 @@
 >>> from ehlpetsc.life import run_life, read_life, run_regimes
 """
 
-from ehlpetsc.life.driver import run_life
+from importlib import import_module
+
+from ehlpetsc.api import need_solver
 from ehlpetsc.life.history import LifeHistory, read_life
-from ehlpetsc.life.regimes import run_regimes
 
 __all__ = ["LifeHistory", "read_life", "run_life", "run_regimes"]
+
+
+SOLVING = {"run_life": "driver", "run_regimes": "regimes"}  # modules that import PETSc, unlike reading a life
+
+
+def __getattr__(name: str) -> object:
+    if name not in SOLVING:
+        raise AttributeError(f"module 'ehlpetsc.life' has no attribute {name!r}")
+    need_solver()
+    return getattr(import_module(f"ehlpetsc.life.{SOLVING[name]}"), name)

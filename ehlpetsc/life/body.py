@@ -83,12 +83,10 @@ class LifeBody(NamedTuple):
 
     @property
     def pits(self) -> int:
-        """Number of pits."""
-        return laws.number_of_pits(self.is_pitted)
+        """Number of pits, runs of neighbouring pitted columns."""
+        from scipy.ndimage import label
 
-    def broken_out_since(self, other: LifeBody) -> int:
-        """Number of columns that have broken out since another state of the body."""
-        return int(np.count_nonzero(self.pit > other.pit))
+        return int(label(self.is_pitted)[1])
 
     @property
     def is_there(self) -> np.ndarray:

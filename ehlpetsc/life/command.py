@@ -9,6 +9,7 @@ continues a life. A case with [series] runs a life for each member and writes th
 from __future__ import annotations
 
 from argparse import Namespace
+from functools import partial
 from pathlib import Path
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
@@ -37,32 +38,32 @@ def main(words: list[str]) -> int:
 
 def _run(chosen: Namespace) -> None:
     """Run a life or a series of them, where a case is given; draw a life on the first rank."""
-    path, is_root = Path(chosen.case), True
-    if path.suffix != ".h5":
-        path, is_root = _run_lives(chosen)
-    elif not chosen.no_picture:
-        _check_picture(path, [path])
-    if is_root and path.suffix == ".h5" and not chosen.no_picture:
-        _draw(path)
+    path = Path(chosen.case)
+    if path.suffix == ".h5":
+        _draw(_picture(path, [path]), path)
+    else:
+        _run_lives(chosen)
 
 
-def _draw(path: Path) -> None:
+def _picture(path: Path, inputs: list[Path]) -> Path:
+    """Checked path of the picture of a life."""
+    from ehlpetsc.results.output_guard import PICTURES, check_derived
+
+    target = path.with_suffix(".png")
+    check_derived(target, inputs, PICTURES)
+    return target
+
+
+def _draw(target: Path, path: Path) -> None:
     from ehlpetsc.life.history import read_life
     from ehlpetsc.pictures.lives import draw
 
-    target = path.with_suffix(".png")
     draw(read_life(path), target)
     print(target)
 
 
-def _check_picture(path: Path, inputs: list[Path]) -> None:
-    from ehlpetsc.results.output_guard import PICTURES, check_derived
-
-    check_derived(path.with_suffix(".png"), inputs, PICTURES)
-
-
-def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
-    """Run a life or a series of lives; returns its file or index, and whether this is the first rank."""
+def _run_lives(chosen: Namespace) -> None:
+    """Run a life and draw it, or a series of lives."""
     from ehlpetsc.api import need_solver
     from ehlpetsc.case.loading import load
 
@@ -77,20 +78,16 @@ def _run_lives(chosen: Namespace) -> tuple[Path, bool]:
 
     comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)
     output = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
-
-    def show(text: str) -> None:
-        if comm.rank == 0:
-            print(text, flush=True)
-
-    options = {name: getattr(chosen, name) for name in ("overwrite", "unresolved")}
+    show = partial(print, flush=True) if comm.rank == 0 else lambda text: None
+    options = {"overwrite": chosen.overwrite, "unresolved": chosen.unresolved}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
     if case.series:
         if chosen.after:
             raise UsageError("--after: of a life; allowed with a series: left out")
-        output = run_regimes(case, output, **options)
-    else:
-        if output.name and not chosen.no_picture:
-            on_root(comm, _check_picture, output, inputs_of(case))
-        run_life(case, output, after=chosen.after, **options)
+        return show(str(run_regimes(case, output, **options)))
+    draws = output.name and not chosen.no_picture
+    target = on_root(comm, _picture, output, inputs_of(case)) if draws else None
+    run_life(case, output, after=chosen.after, **options)
     show(str(output))
-    return output, comm.rank == 0
+    if target and comm.rank == 0:
+        _draw(target, output)

@@ -6,34 +6,29 @@ import time as clock
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
+from mpi4py import MPI
 
 from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.effects.effect import Scene, flat, unflat
+from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, check_files, check_resolution, pass_file, stored_or_new
-from ehlpetsc.life.history import LifeFile
+from ehlpetsc.life.history import LifeFile, LifeHistory
 from ehlpetsc.life.jumps import Jumps
+from ehlpetsc.life.one_pass import Pass, run_pass
 from ehlpetsc.life.positions import Positions
+from ehlpetsc.life.rounds import Ranks, Round
+from ehlpetsc.physics import operation_of
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
 from ehlpetsc.run.outputs.progress import duration
+from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
-
-if TYPE_CHECKING:
-    from mpi4py import MPI
-
-    from ehlpetsc.effects.effect import Scene
-    from ehlpetsc.effects.plastic_deformation import PlasticRecord
-    from ehlpetsc.life.body import LifeBody
-    from ehlpetsc.life.history import LifeHistory
-    from ehlpetsc.life.one_pass import Pass
-    from ehlpetsc.life.rounds import Round
-    from ehlpetsc.physics.scales import Scales
-
-
-def opening(case: Case, scales: Scales, scene: Scene, positions: int) -> str:
-    """Line before the first round: passes of a round, one a position of surface 2, and expected time."""
-    seconds, steps = work_time(case, scales, scene.roughness), scene.operation.step_count(scales.dt)
-    return f"passes of a round: {positions}, each of {steps} steps and {duration(seconds)} on one rank"
 
 
 def line_of(history: LifeHistory, seconds: float) -> str:
@@ -81,14 +76,6 @@ def run_life(
     most
         Number of rounds to solve in this call.
     """
-    from ehlpetsc.api import need_solver
-
-    need_solver()
-    from mpi4py import MPI
-
-    from ehlpetsc.results.output_guard import Lock
-    from ehlpetsc.run.ranks import on_root
-
     case = case if isinstance(case, Case) else load(case)
     check_case(case)
     comm = comm or MPI.COMM_SELF
@@ -108,11 +95,6 @@ class _Life:
     def __init__(
         self, case: Case, path: Path, comm: MPI.Comm, history: LifeHistory, show: Callable, unresolved: bool
     ) -> None:
-        from ehlpetsc.effects.effect import Scene
-        from ehlpetsc.life.rounds import Ranks
-        from ehlpetsc.physics import operation_of
-        from ehlpetsc.physics.scales import Scales
-
         self.case, self.path, self.comm, self.history, self.show = case, path, comm, history, show
         self.scales = Scales.of(case)
         operation = operation_of(case, self.scales)
@@ -144,23 +126,26 @@ class _Life:
         if not self.history.rows:
             for line in mesh_warnings(self._scene.roughness, self.scales):
                 self.show(f"warning: {line}")
-            self.show(opening(self.case, self.scales, self._scene, self.positions.count))
-        while self._is_living and (max_rounds is None or rounds < max_rounds):
+            seconds = duration(work_time(self.case, self.scales, self._scene.roughness))
+            steps, count = self._scene.operation.step_count(self.scales.dt), self.positions.count
+            self.show(f"passes of a round: {count}, each of {steps} steps and {seconds} on one rank")
+        while not self._is_over and rounds != max_rounds:
             begun = clock.monotonic()
             solved_round = self._solve(stop)
-            bodies = self.history.bodies[-1] if self.history.rows else None
-            self._jump(solved_round, bodies or self.positions.new_bodies(solved_round.passes[0]))
+            if self.history.rows:
+                bodies = self.history.bodies[-1]
+            else:
+                bodies = tuple(map(self.positions.new_body, solved_round.passes[0].bodies, range(2)))
+            self._jump(solved_round, bodies)
             self.show(line_of(self.history, clock.monotonic() - begun))
             rounds += 1
 
     @property
-    def _is_living(self) -> bool:
-        return self.history.done < self.jumps.passes and self.history.solved < self.case.life.max_solved
+    def _is_over(self) -> bool:
+        return self.history.done >= self.jumps.passes or self.history.solved >= self.case.life.max_solved
 
     def _solve(self, stop: Callable | None) -> Round:
         """The next round: of a single position while passes yield, as each changes the next."""
-        from ehlpetsc.life.rounds import Round
-
         solve = partial(self._solve_pass, self._plastic())
         every, rows = list(range(self.positions.count)), self.history.rows
         yields = self.case.contact.yield_pressure is not None
@@ -176,9 +161,6 @@ class _Life:
     def _solve_pass(
         self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: Callable | None
     ) -> Pass:
-        from ehlpetsc.life.one_pass import run_pass
-        from ehlpetsc.run.simulation import Simulation
-
         records = {}
         if self.history.rows:
             records = self.positions.records(self.history.bodies[-1], position, plastic)
@@ -187,28 +169,17 @@ class _Life:
 
     def _plastic(self) -> PlasticRecord | None:
         """Record of the plastic deformation after the last row; None without."""
-        from ehlpetsc.effects.effect import unflat
-        from ehlpetsc.effects.plastic_deformation import PlasticRecord
-
         fields = self.history.plastic[-1] if self.history.rows else None
         return unflat(PlasticRecord, fields, "plastic_deformation") if fields else None
 
     def _jump(self, solved_round: Round, bodies: tuple[LifeBody, ...]) -> None:
         """Jump with the rates of a solved round, and store the row."""
-        from ehlpetsc.effects.effect import flat
-        from ehlpetsc.run.ranks import on_root
-
         done = self.history.done
         after, jump, rates = self.jumps.jump(bodies, solved_round, done, self._smooth_since(solved_round))
-        row = {
-            "passes": done + jump,
-            "jump": jump,
-            "solved": len(solved_round.passes),
-            "yielded": solved_round.yielded,
-        }
-        row["broken_out"] = sum(new.broken_out_since(old) for new, old in zip(after, bodies, strict=True))
-        row |= solved_round.figures()
-        for k, (body, rate) in enumerate(zip(after, rates, strict=True), 1):
+        row: dict[str, float] = {"passes": done + jump, "jump": jump, "solved": len(solved_round.passes)}
+        row |= solved_round.figures() | {"yielded": solved_round.yielded, "broken_out": 0}
+        for k, (body, rate, old) in enumerate(zip(after, rates, bodies, strict=True), 1):
+            row["broken_out"] += int(np.count_nonzero(body.pit > old.pit))
             row[f"damage_ahead_{k}"] = body.damage_ahead(rate.wear, rate.damage)
             row |= {f"pits_{k}": body.pits, f"pitted_share_{k}": body.pitted_share, f"ra_{k}": body.ra}
             row |= {f"wear_volume_{k}": body.volume, f"damage_{k}": body.largest_damage}

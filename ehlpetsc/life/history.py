@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -35,12 +34,6 @@ class LifeFile:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: h5py.File | None = None
-
-    def __enter__(self) -> LifeFile:
-        return self
-
-    def __exit__(self, kind: type | None, *_: Any) -> None:
-        self.close("stopped" if kind else "done")
 
     def store(self, history: LifeHistory) -> None:
         """Append the last row of a life, or write all rows if the file is not open yet.
@@ -158,17 +151,12 @@ class LifeHistory:
         self.bodies.append(bodies)
         self.plastic.append(plastic)
 
-    def up_to(self, count: int, case: str | None = None) -> LifeHistory:
-        """Copy of the life up to a row, by default with its own case."""
-        life = LifeHistory(case or self.case, self.title)
+    def up_to(self, count: int, case: str) -> LifeHistory:
+        """Copy of the life up to a row, with this case."""
+        life = LifeHistory(case, self.title)
         for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
             life.add(*values)
         return life
-
-    def save(self, path: Path) -> None:
-        """Write all rows to `path`, replacing it; OutputError."""
-        with LifeFile(Path(path)) as file:
-            file.store(self)
 
 
 def read_life(path: str | Path) -> LifeHistory:

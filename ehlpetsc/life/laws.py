@@ -127,11 +127,3 @@ def with_walls(bottom: np.ndarray, recession: np.ndarray, width: float) -> np.nd
     breaks = np.flatnonzero(bottom > recession)
     rise = WALL_SLOPE * width * np.abs(number[:, None] - breaks)
     return np.maximum(recession, np.max(bottom[breaks] - rise, axis=1, initial=0.0))
-
-
-def number_of_pits(is_pitted: np.ndarray) -> int:
-    """Number of runs of neighbouring pitted columns.
-
-    `is_pitted`: shape (columns,).
-    """
-    return int(np.count_nonzero(np.diff(np.append(False, is_pitted).astype(int)) > 0))

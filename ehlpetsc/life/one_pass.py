@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.errors import ExitStatus, OutputError, PostError, Stopped
+from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
-from ehlpetsc.results.reader import read_result
 from ehlpetsc.run.outputs.recorder import Recorder
+from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
@@ -70,51 +70,30 @@ def run_pass(simulation: Simulation, before: dict[str, tuple], file: Path, stop:
         raise failure
     if status is ExitStatus.STOPPED:
         raise Stopped
-    comm, records = simulation.comm, simulation.solution.records
-    outcome = fault = None
-    if comm.rank == 0:
-        Path(recorder.restart).unlink(missing_ok=True)
-        try:
-            outcome = _damage(file), _means(file)
-        except (PostError, OutputError) as error:
-            fault = error
-    outcome, fault = comm.bcast((outcome, fault))
-    if fault:
-        raise fault
-    damage, figures = outcome
-    offsets = simulation.scene.mesh_on_bodies.offsets
-    worn = [_depths(before, records, "wear", k) for k in range(2)]
-    set_ = [_depths(before, records, "plastic_deformation", k) for k in range(2)]
+    damage, figures = on_root(simulation.comm, _evaluated, file, recorder.restart)
+    records, offsets = simulation.solution.records, simulation.scene.mesh_on_bodies.offsets
     bodies = tuple(
         OfBody(s + offset, z, d, depth)
-        for (s, z, d), offset, depth in zip(damage, offsets, worn, strict=True)
+        for (s, z, d), offset, depth in zip(damage, offsets, _depths(before, records, "wear"), strict=True)
     )
-    return Pass(bodies, figures, records.get("plastic_deformation"), max(map(_largest_increase, set_)))
+    yielded = 0.0
+    for old, new in _depths(before, records, "plastic_deformation"):
+        yielded = max(yielded, float(np.max(new.depth - old.means(new.edges), initial=0.0)))
+    return Pass(bodies, figures, records.get("plastic_deformation"), yielded)
 
 
-def _depths(before: dict[str, Any], after: dict, name: str, k: int) -> tuple[BodyField, ...]:
-    """Depths of body k before and after; zero where there is no record."""
-    depths = (records[name].depth[k] if name in records else NO_DEPTH for records in (before, after))
-    return tuple(depths)
+def _depths(before: dict[str, Any], after: dict, name: str) -> list[tuple[BodyField, BodyField]]:
+    """Depths of both bodies before and after; zero where there is no record."""
+    none = NO_DEPTH, NO_DEPTH
+    old, new = (records[name].depth if name in records else none for records in (before, after))
+    return list(zip(old, new, strict=True))
 
 
-def _largest_increase(depths: tuple[BodyField, ...]) -> float:
-    before, after = depths
-    if not len(after.depth):
-        return 0.0
-    return float(np.max(after.depth - before.means(after.edges)))
-
-
-def _means(file: Path) -> dict[str, float]:
-    with read_result(file) as result:
-        figures = means(result)
-        figures["p_max"] = float(result.steps("p_max").max())
-    return figures
-
-
-def _damage(file: Path) -> list[tuple]:
-    """Points s, depths [m] and damage of both surfaces, of the points that passed the whole contact."""
+def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]]:
+    """Points s, depths [m] and damage of both surfaces, of the points that passed; figures of the run."""
+    Path(restart).unlink(missing_ok=True)
     with Loads(file) as loads:
+        figures = means(loads) | {"p_max": float(loads.steps("p_max").max())}
         job, prepared = Job(str(file), ""), prepare(loads, SIDES, lambda text: None)
         damages = []
         for side in SIDES:
@@ -127,4 +106,4 @@ def _damage(file: Path) -> list[tuple]:
             values = solve(prepared, side, job)
             criterion = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
             damages.append((prepared.s[passed], loads.a * depths, criterion[:, passed]))
-    return damages
+    return damages, figures

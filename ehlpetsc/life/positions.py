@@ -22,7 +22,7 @@ from ehlpetsc.surfaces.roughness import directed_speeds
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.effects.plastic_deformation import PlasticRecord
-    from ehlpetsc.life.one_pass import OfBody, Pass
+    from ehlpetsc.life.one_pass import OfBody
     from ehlpetsc.physics.scales import Scales
 
 
@@ -56,13 +56,6 @@ class Positions:
             pinion, wheel = case.gears.pair.teeth
             self.passes_2 = self.count * pinion / wheel
 
-    def new_bodies(self, first: Pass) -> tuple[LifeBody, ...]:
-        """Columns of both bodies, of body 2 in all of its positions.
-
-        `first`: solved in position 0.
-        """
-        return tuple(self._new(first.bodies[k], k) for k in range(2))
-
     def records(
         self, bodies: tuple[LifeBody, ...], position: int, plastic: PlasticRecord | None
     ) -> dict[str, tuple]:
@@ -72,20 +65,17 @@ class Positions:
 
         scene = self._scenes[position]
         ends = scene.operation.travelled(0.0), scene.operation.travelled(scene.operation.duration)
-        averaged = FLANK_END_LENGTH * self.scales.a if self._are_flanks else np.inf
+        are_flanks = self.case.conditions and self.case.conditions.profile_offsets
+        averaged = FLANK_END_LENGTH * self.scales.a if are_flanks else np.inf
         fields = []
         for k, body in enumerate(bodies):
             faces = np.concatenate([scene.mesh_on_bodies.faces(travelled)[k][[0, -1]] for travelled in ends])
             stretch = self._stretch(body, k, position)
-            spec = (self.case.surface.body_1, self.case.surface.body_2)[k]
+            spec = self.case.surface.side("12"[k])
             cutoff = spec.short_cutoff if spec else None
             fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged, cutoff))
         records = {"wear": WearRecord(BodyFields(*fields), BodyFields.zero(self.scales.dx))}
         return records | ({"plastic_deformation": plastic} if plastic else {})
-
-    @property
-    def _are_flanks(self) -> bool:
-        return self.case.conditions is not None and self.case.conditions.profile_offsets is not None
 
     def _offset(self, position: int, k: int) -> float:
         return self._scenes[position].mesh_on_bodies.offsets[k]
@@ -109,7 +99,8 @@ class Positions:
         """Direction in which the positions of body 2 follow each other on it."""
         return -1.0 if (directed_speeds(self.case, self.scales)[1] > 0.0) == (self._shift > 0.0) else 1.0
 
-    def _new(self, of_pass: OfBody, k: int) -> LifeBody:
+    def new_body(self, of_pass: OfBody, k: int) -> LifeBody:
+        """Columns of a body after a pass in position 0, of body 2 in all of its positions."""
         s, dx, offset = of_pass.s, self.scales.dx, self._offset(0, k)
         roughness = self._scenes[0].roughness
         profile = roughness and roughness.side("12"[k])

@@ -8,22 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 
 from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
-
-if TYPE_CHECKING:
-    from mpi4py import MPI
-
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.life.history import LifeHistory
-    from ehlpetsc.run.ranks import PollingStop
-    from ehlpetsc.run.stop import StopRequest
-
-
-WEAR, FATIGUE, NEITHER = "wear", "fatigue", "neither"
+from ehlpetsc.case.tables import Case
+from ehlpetsc.life.checks import check_case
+from ehlpetsc.life.driver import run_life
+from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.run.ranks import PollingStop, on_root
+from ehlpetsc.run.series import WAITING, compute_rows, index_of, members_of
+from ehlpetsc.run.stop import StopRequest
 
 
 def winner(life: LifeHistory) -> str:
@@ -34,9 +31,9 @@ def winner(life: LifeHistory) -> str:
     damage would reach 1 after the end of the life.
     """
     if any(life(f"pits_{k}")[-1] for k in (1, 2)):
-        return FATIGUE
+        return "fatigue"
     ahead = max(life(f"damage_ahead_{k}")[-1] for k in (1, 2))
-    return WEAR if ahead < 1.0 else NEITHER
+    return "wear" if ahead < 1.0 else "neither"
 
 
 def outcome(life: LifeHistory) -> dict:
@@ -78,17 +75,6 @@ def run_regimes(
     completed life, on the first rank. Options are `overwrite` and `unresolved` of `run_life`. CaseError,
     OutputError, Stopped.
     """
-    from ehlpetsc.api import need_solver
-
-    need_solver()
-    from mpi4py import MPI
-
-    from ehlpetsc.life.checks import check_case
-    from ehlpetsc.run.ranks import on_root
-
-    # imports PETSc, which starts on all ranks together, before they split
-    from ehlpetsc.run.series import WAITING, compute_rows, index_of, members_of
-
     comm, path = comm or MPI.COMM_SELF, Path(f"{Path(case.path).stem}.h5" if output is None else output)
     stem = path.with_name(path.name.removesuffix(".h5").removesuffix(".life") + ".h5")
     members = members_of(case, stem)
@@ -117,9 +103,6 @@ def run_regimes(
 
 def _run_life(case: Case, path: Path, **options: Any) -> dict:
     """Run the life of a member; returns its state and figures."""
-    from ehlpetsc.life.driver import run_life
-    from ehlpetsc.life.history import read_life
-
     try:
         return {"state": "done"} | outcome(run_life(case, path, **options))
     except Stopped:

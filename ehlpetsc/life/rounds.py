@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from mpi4py import MPI
 
 from ehlpetsc.base.errors import NotConverged, OutputError, PostError, Stopped, UsageError
+from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.jumps import Rates
+from ehlpetsc.life.one_pass import Pass
 from ehlpetsc.run.ranks import WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
-
-if TYPE_CHECKING:
-    from mpi4py import MPI
-
-    from ehlpetsc.effects.plastic_deformation import PlasticRecord
-    from ehlpetsc.life.body import LifeBody
-    from ehlpetsc.life.one_pass import Pass
-
 
 FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
 
@@ -44,21 +40,18 @@ class Ranks:
             try:
                 return solve(position, group, stop)
             except FAULTS as fault:
-                return type(fault), str(fault)
+                return type(fault)(str(fault))
 
         queue = WorkQueue(
             self.comm, self.each, positions, lambda report: outcomes.update([report]), self._group
         )
         outcomes = queue.compute(outcome, stop, lambda: outcomes)
-        for kind, text in filter(_is_fault, outcomes.values()):
-            raise kind(text)
+        for found in outcomes.values():
+            if not isinstance(found, Pass):
+                raise found
         if len(outcomes) < len(positions):
             raise Stopped
         return [outcomes[position] for position in positions]
-
-
-def _is_fault(outcome: tuple) -> bool:
-    return isinstance(outcome[0], type)
 
 
 class Round(NamedTuple):

@@ -10,7 +10,7 @@ import time as clock
 from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.base.errors import CaseError, OutputError, PostError, UsageError
 from ehlpetsc.run.stop import StopRequest
 
 if TYPE_CHECKING:
@@ -21,12 +21,12 @@ POLL_SECONDS = 0.01  # between two polls of a waiting rank
 
 
 def on_root(comm: MPI.Comm, action: Callable, *arguments: Any) -> Any:
-    """Result of `action` on rank 0, on every rank; so is its CaseError or OutputError."""
+    """Result of `action` on rank 0, on every rank; so is a fault of the user's input."""
     answer = fault = None
     if comm.rank == 0:
         try:
             answer = action(*arguments)
-        except (CaseError, OutputError) as error:
+        except (CaseError, OutputError, PostError, UsageError) as error:
             fault = error
     answer, fault = comm.bcast((answer, fault))
     if fault:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.effects.quantities import FIELDS, of_every_case
+from ehlpetsc.life.history import LifeFile
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 
 A, P0, RADIUS = 3.357e-4, 1e9, 0.0191
@@ -148,3 +149,10 @@ def with_solids(path, share=0.3, coefficient=0.08, scatter=0.2):
                 del steps[name]
             steps.create_dataset(name, data=value * swing, maxshape=(None,))
     return path
+
+
+def save_life(life, path):
+    """Write all rows of a life."""
+    file = LifeFile(path)
+    file.store(life)
+    file.close("done")
