@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.gears.path import gear_loss_factor, loss, mean_friction, path_of_contact
+from ehlpetsc.gears.path import gear_loss_factor, hertz, loss, mean_friction, path_of_contact
 from ehlpetsc.gears.standards import STANDARDS, values_of
-from ehlpetsc.gears.table import hertz
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.reader import read_result
@@ -121,7 +120,13 @@ def lines(runs: list[GearRun]) -> list[str]:
             text += f" {entry.unit}" if entry.unit else ""
             text += f"; {', '.join(f'{value:.4g}' for value in beside)} by {entry.source}" if beside else ""
         texts.append(text)
-    return texts + [line for run in runs if run.damage for line in run.damage.lines()]
+    return texts + [
+        f"maximum damage of the {flank}: {damage:.3g} at an arc length of {1e3 * arc:.3f} mm from A, "
+        f"{1e6 * depth:.1f} µm deep"
+        for run in runs
+        if run.damage
+        for flank, (damage, arc, depth) in run.damage.maxima().items()
+    ]
 
 
 def panels(runs: list[GearRun]) -> dict[str, list[str]]:
@@ -157,11 +162,3 @@ class FlankDamage:
                 depth, point = np.unravel_index(np.nanargmax(damage), damage.shape)
                 found[flank] = float(damage[depth, point]), float(arc[point]), float(self.depths[depth])
         return found
-
-    def lines(self) -> list[str]:
-        """Lines of text: maximum damage of each flank with its position and depth."""
-        return [
-            f"maximum damage of the {flank}: {damage:.3g} at an arc length of {1e3 * arc:.3f} mm from A, "
-            f"{1e6 * depth:.1f} µm deep"
-            for flank, (damage, arc, depth) in self.maxima().items()
-        ]

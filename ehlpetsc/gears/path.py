@@ -47,14 +47,15 @@ class Path:
         """Sliding over entrainment speed, positive where flank 1 is the faster."""
         return (self.speed_1 - self.speed_2) / self.entrainment
 
-    def time_at(self, point: str) -> float:
-        """Time [s] at which the contact passes A, B, C, D or E."""
-        points = self.pair.points
-        return (points[point] - points["A"]) / self.pair.base_speed
-
     def index(self, point: str) -> int:
         """Index of the sample at A, B, C, D or E."""
         return int(np.argmin(np.abs(self.rho - self.pair.points[point])))
+
+
+def hertz(path: Path, modulus: float) -> tuple[np.ndarray, np.ndarray]:
+    """Half-width [m] and Hertz pressure [Pa] along a path; `modulus`: reduced modulus E' [Pa]."""
+    a = np.sqrt(8.0 * path.load * path.radius / (np.pi * modulus))
+    return a, 0.25 * modulus * a / path.radius
 
 
 def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.gears.geometry import GearPair
-from ehlpetsc.gears.path import Path, loss
+from ehlpetsc.gears.path import Path, hertz, loss
 from ehlpetsc.physics.flash_temperature import STEEL, blok_flash_temperature
 from ehlpetsc.physics.friction_correlations import hoehn_michaelis
 
@@ -41,11 +41,6 @@ class Rating:
     oil: float
     effusivities: tuple[float, float] = (STEEL.effusivity, STEEL.effusivity)
 
-    @property
-    def half_width(self) -> np.ndarray:
-        """Of Hertz's contact along the path [m]."""
-        return np.sqrt(8.0 * self.path.load * self.path.radius / (np.pi * self.modulus))
-
 
 def friction(rating: Rating) -> float:
     """Mean coefficient of friction along the path, by load, speed and radius at the pitch point."""
@@ -57,7 +52,7 @@ def friction(rating: Rating) -> float:
 
 def flash(rating: Rating, coefficient: float | np.ndarray | None = None) -> np.ndarray:
     """Flash temperature of Blok along the path [K], with the mean friction of ISO/TR 14179-2."""
-    path, a = rating.path, rating.half_width
+    path, a = rating.path, hertz(rating.path, rating.modulus)[0]
     coefficient = friction(rating) if coefficient is None else coefficient
     speeds = path.speed_1 - path.speed_2, path.speed_1, path.speed_2
     conditions = path.load, *speeds, np.maximum(a, 1e-9), rating.effusivities

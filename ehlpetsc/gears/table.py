@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import math
 
 import numpy as np
 
 from ehlpetsc.gears.load_sharing import edge_contact
-from ehlpetsc.gears.path import Path, describe, gear_loss_factor
+from ehlpetsc.gears.path import Path, describe, gear_loss_factor, hertz
 from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
 from ehlpetsc.physics.scales import hertz_line
-
-COLUMNS = ("time", "load", "radius", "speed 1", "speed 2")
-
-
-def hertz(path: Path, modulus: float) -> tuple[np.ndarray, np.ndarray]:
-    """Half-width [m] and Hertz pressure [Pa] along a path."""
-    a = np.sqrt(8.0 * path.load * path.radius / (np.pi * modulus))
-    return a, 0.25 * modulus * a / path.radius
 
 
 def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
@@ -87,5 +80,6 @@ def csv(path: Path) -> str:
     loaded = path.load > 0.0
     values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[loaded]
     values[:, 0] -= values[0, 0]
-    lines = [", ".join(COLUMNS)] + [", ".join(f"{value:.12g}" for value in row) for row in values]
-    return "\n".join(lines) + "\n"
+    text = io.StringIO()
+    np.savetxt(text, values, "%.12g", ", ", header="time, load, radius, speed 1, speed 2", comments="")
+    return text.getvalue()

@@ -9,16 +9,11 @@ from typing import TYPE_CHECKING
 from ehlpetsc.base.errors import CaseError, OutputError, UsageError
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.surfaces.profile import WAVE_NODES
-from ehlpetsc.surfaces.profile_checks import needed_points
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.roughness import Roughness
 
 
-MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
 ENDS = ("passes", "max_solved")  # keys of [life] that may change between calls
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
 
@@ -66,26 +61,6 @@ def _tables_of_surfaces(text: str) -> dict:
     tables.pop("title", None)
     tables["life"] = {name: value for name, value in tables["life"].items() if name not in ENDS}
     return tables
-
-
-def check_resolution(roughness: Roughness | None, scales: Scales, path: str | Path) -> None:
-    """Refuse a life on a mesh that does not carry the profiles: its figures would be those of the mesh.
-
-    `path`: of the case, for the message. Raises `CaseError`.
-    """
-    faults = []
-    for side in ("1", "2"):
-        profile = roughness.side(side) if roughness else None
-        fraction = profile.unresolved_variance(scales.dx) if profile else 0.0
-        if fraction > MAX_UNRESOLVED:
-            faults.append(
-                f"{path}: surface.{side}: {fraction:.1%} of the height variance lies in wavelengths under "
-                f"{WAVE_NODES} nodes, and the life would depend on the mesh; allowed: {MAX_UNRESOLVED:.0%}, "
-                f"as with mesh.points_per_half_width = {needed_points(profile, scales, MAX_UNRESOLVED)} or a "
-                "longer short_cutoff; or --unresolved"
-            )
-    if faults:
-        raise CaseError(faults)
 
 
 def stored_or_new(case: Case, path: Path, overwrite: bool, after: int | None) -> LifeHistory:

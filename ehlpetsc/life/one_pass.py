@@ -97,13 +97,12 @@ def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]
         job, prepared = Job(str(file), ""), prepare(loads, SIDES, lambda text: None)
         damages = []
         for side in SIDES:
-            motion, depths = prepared.motions[side], prepared.settings.depths
-            passed = motion.complete
+            passed = prepared.motions[side].complete
             if np.count_nonzero(passed) < 2:
                 raise PostError(
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
             values = solve(prepared, side, job)
             criterion = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
-            damages.append((prepared.s[passed], loads.a * depths, criterion[:, passed]))
+            damages.append((prepared.s[passed], loads.a * prepared.depths, criterion[:, passed]))
     return damages, figures

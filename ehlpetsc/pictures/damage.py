@@ -15,7 +15,6 @@ from matplotlib.ticker import FuncFormatter
 from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import read_settings
 from ehlpetsc.post.stresses.half_plane import stress, von_mises
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 
@@ -191,7 +190,7 @@ def field_picture(path: str, result: PostResult) -> Figure:
     with Loads(path, result.attrs["settings"].splitlines()) as loads:
         frame = loads.time.size // 2
         p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = read_settings(loads.case).materials[surface].poisson_ratio
+        nu = loads.case.contact.poisson_ratio[int(surface) - 1]
         z = FIELD_DEPTH * np.linspace(0.0, 1.0, 121) ** 2
         stresses = stress(loads.x, z * loads.a, p, q, nu)
         x, time, a = loads.x / loads.a, loads.time[frame], loads.a

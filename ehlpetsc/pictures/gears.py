@@ -14,8 +14,8 @@ from ehlpetsc.analysis.gear_run import FLANKS, SCALARS, GearRun
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES, share
 from ehlpetsc.gears.path import Path as ContactPath
+from ehlpetsc.gears.path import hertz
 from ehlpetsc.gears.standards import Rating, values_of
-from ehlpetsc.gears.table import hertz
 from ehlpetsc.pictures import style
 
 WIDTH, PANEL, FONT, DPI = 3.35, 0.95, 8, 300  # inches, points, dots per inch: one column

@@ -26,7 +26,7 @@ def datasets_of(
     prepared: Prepared, surface: str, damage: np.ndarray, report: Callable[[str], None]
 ) -> dict[str, np.ndarray]:
     """Datasets of a surface that follow from its damage (depths, points), by name."""
-    loads, depths, motion = prepared.loads, prepared.settings.depths, prepared.motions[surface]
+    loads, depths, motion = prepared.loads, prepared.depths, prepared.motions[surface]
     profile = loads.profiles[surface]
     peaks = asperities(profile, prepared.s, motion.complete)
     under = damage[:, peaks.point]
@@ -80,7 +80,7 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
         "outlet": loads.x[-1],
         "p0": loads.p0,
         "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
-        "every": prepared.every,
+        "every": case.output.every,
         "material": ", ".join(case.contact.material or (DEFAULT,)),
         "strain": case.post.strain,
         "residual_stress": np.array(case.post.residual_stress or (), float).reshape(-1, 2),

@@ -20,56 +20,40 @@ MIN_REPRESENTATIVE_POINTS = 30  # of a surface
 END_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
 
 
-class Settings(NamedTuple):
-    """Depths z/a, material by surface, constants of the criteria, residual stress (z/a, Pa)."""
-
-    depths: np.ndarray
-    materials: dict[str, Material]
-    criteria: Criteria = Criteria()
-    residual_stress: tuple[tuple[float, float], ...] = ()
-
-    def residual(self, depth: float) -> float:
-        """Residual stress along the surface at a depth z/a [Pa], linearly interpolated."""
-        return float(np.interp(depth, *np.array(self.residual_stress).T)) if self.residual_stress else 0.0
-
-
 class Prepared(NamedTuple):
-    """Data of a result file for all tasks: body points s (ns,) [m], passages by surface.
+    """Data of a result file for all tasks.
 
-    `every` is the number of steps between stored frames.
+    `s`: body points (ns,) [m]. `motions`: passages by surface. `materials`: by surface. `criteria`: their
+    constants. `depths`: z/a.
     """
 
     loads: Loads
-    settings: Settings
-    every: int
     s: np.ndarray
     motions: dict[str, Passage]
+    materials: dict[str, Material]
+    criteria: Criteria
+    depths: np.ndarray
 
 
-def read_settings(case: Case) -> Settings:
-    """Settings of `[post]`; PostError if the fatigue limits contradict each other."""
-    post, contact = case.post, case.contact
+def materials_of(case: Case) -> dict[str, Material]:
+    """Constants of the fatigue curves of each surface."""
+    contact, given = case.contact, case.post.as_dict()
     bodies = zip(contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True)
-    materials = {
-        surface: Material(modulus, ratio, **fatigue_constants(steel, post.as_dict()))
-        for surface, (modulus, ratio, steel) in zip(("1", "2"), bodies, strict=True)
-    }
-    constants = {name: getattr(post, name) for name in Criteria.__dataclass_fields__}
-    try:
-        criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
-    except ValueError as fault:
-        raise PostError(f"post.{fault}") from None
-    depths = np.unique(post.depths or DEPTHS).astype(float)
-    return Settings(depths, materials, criteria, tuple(map(tuple, post.residual_stress or ())))
+    one, two = (Material(*elastic, **fatigue_constants(steel, given)) for *elastic, steel in bodies)
+    return {"1": one, "2": two}
 
 
 def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> Prepared:
-    """Find the body points whose damage can be computed, and report what limits it."""
-    settings = read_settings(loads.case)
+    """Find the body points whose damage can be computed, and report what limits it.
+
+    PostError if there are none, or if the fatigue limits contradict each other.
+    """
+    post = loads.case.post
+    constants = {name: getattr(post, name) for name in Criteria.__dataclass_fields__}
+    criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
     loads.check(surfaces)
-    every = max(int(np.median(np.diff(loads.step))), 1)
-    s, motions = _motions(loads, surfaces)
-    prepared = Prepared(loads, settings, every, s, motions)
+    depths = np.unique(post.depths or DEPTHS).astype(float)
+    prepared = Prepared(loads, *_motions(loads, surfaces), materials_of(loads.case), criteria, depths)
     for warning in _warnings(prepared):
         report(f"warning: {warning}")
     return prepared
@@ -106,8 +90,8 @@ def _flank(loads: Loads, surface: str) -> tuple[float, float]:
 def _warnings(prepared: Prepared) -> Iterator[str]:
     if (status := prepared.loads.attrs["status"]) != "done":
         yield f'the run\'s status is "{status}": only its stored frames are used'
-    if prepared.every > 1:
-        yield f"stored with output.every = {prepared.every}: peaks between frames are lost, too little damage"
+    if (every := prepared.loads.case.output.every) > 1:
+        yield f"stored with output.every = {every}: peaks between frames are lost, too little damage"
     for surface, motion in prepared.motions.items():
         passed = np.count_nonzero(motion.complete)
         if passed < MIN_REPRESENTATIVE_POINTS:

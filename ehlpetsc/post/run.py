@@ -69,7 +69,7 @@ def run(job: Job, report: Callable[[str], None] = lambda text: None) -> None:
             raise PostError(f"{job.path}: {fault}") from None
         for note in _notes(job, loads):
             report(note)
-        datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.settings.depths}
+        datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.depths}
         for surface in prepared.motions:
             datasets |= solve(prepared, surface, job)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
@@ -107,7 +107,7 @@ def solve(prepared: Prepared, surface: str, job: Job) -> dict[str, np.ndarray]:
 
     nan for incomplete points.
     """
-    depths = prepared.settings.depths
+    depths = prepared.depths
     blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(job.jobs, len(depths))))
     work = partial(_solve_depths, prepared, surface, job)
     found = list(ThreadPoolExecutor(job.jobs).map(work, blocks) if job.jobs > 1 else map(work, blocks))
@@ -115,7 +115,7 @@ def solve(prepared: Prepared, surface: str, job: Job) -> dict[str, np.ndarray]:
 
 
 def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray) -> dict[str, np.ndarray]:
-    loads, motion = prepared.loads, prepared.motions[surface]
+    loads, motion, table = prepared.loads, prepared.motions[surface], prepared.loads.case.post.residual_stress
     counts = _counts(prepared, surface, job)
     names = [name for columns, _ in counts for name in columns]
     out = {name: np.full((len(depths), prepared.s.size), np.nan) for name in names}
@@ -123,7 +123,7 @@ def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray
     stress = BodyStress(loads.x.size, depths * loads.a / loads.dx)
     for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, len(depths)):
         for k, stresses in enumerate(histories(loads, surface, motion, stress, points, QUANTUM * loads.p0)):
-            residual = prepared.settings.residual(depths[k])
+            residual = float(np.interp(depths[k], *np.transpose(table))) if table else 0.0
             for columns, count in counts:
                 values = count(stresses, lengths[points], residual)
                 for name, column in zip(columns, values.T, strict=True):
@@ -134,8 +134,8 @@ def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray
 def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str], Callable]]:
     """Names of results and function of histories of the paper's damage and of each criterion."""
     material, constants, case = (
-        prepared.settings.materials[surface],
-        prepared.settings.criteria,
+        prepared.materials[surface],
+        prepared.criteria,
         prepared.loads.case,
     )
     names = [f"damage/{surface}", f"damage/{surface}_cycles", f"damage/{surface}_peak_range"]

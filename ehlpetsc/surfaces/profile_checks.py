@@ -50,29 +50,25 @@ def _um(length: float) -> str:
 MAX_UNRESOLVED = 0.01  # of the height variance: more in unresolved wavelengths causes a warning
 
 
-def mesh_warnings(rough: Roughness | None, scales: Scales) -> list[str]:
-    """Warnings of height variance that the mesh does not resolve, with values."""
-    notes = []
-    for side in ("1", "2"):
-        profile = rough.side(side) if rough else None
-        if profile is None:
-            continue
+def mesh_warnings(rough: Roughness | None, scales: Scales, limit: float = MAX_UNRESOLVED) -> list[str]:
+    """Messages on profiles of which the mesh does not resolve more than a share of the height variance."""
+    notes, shortest = [], 1e6 * WAVE_NODES * scales.dx
+    for side, profile in (rough.sides if rough else {}).items():
         fraction = profile.unresolved_variance(scales.dx)
-        if fraction > MAX_UNRESOLVED:
-            shortest = 1e6 * WAVE_NODES * scales.dx
+        if fraction > limit:
             notes.append(
                 f"surface.{side}: the mesh is too coarse for the profile: {100 * fraction:.1f} % of its "
                 f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
-                f"points_per_half_width = {needed_points(profile, scales, MAX_UNRESOLVED)} brings that under "
-                f"{100 * MAX_UNRESOLVED:.0f} %"
+                f"points_per_half_width = {_needed_points(profile, scales, limit)} brings that under "
+                f"{100 * limit:.0f} %"
             )
     return notes
 
 
-def needed_points(profile: Profile, scales: Scales, unresolved: float) -> int:
-    """Nodes per half-width that leave at most a share `unresolved` of the height variance unresolved."""
+def _needed_points(profile: Profile, scales: Scales, limit: float) -> int:
+    """Nodes per half-width that leave at most a share `limit` of the height variance unresolved."""
     points = scales.a / scales.dx
-    while profile.unresolved_variance(scales.a / points) > unresolved:
+    while profile.unresolved_variance(scales.a / points) > limit:
         points *= 1.1
     return int(np.ceil(points))
 
@@ -97,10 +93,9 @@ def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
 def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[str]:
     """Warnings of profiles that do not fill the contact before the end of the run, one line each."""
     notes = []
-    for side in ("1", "2"):
-        profile = rough.side(side) if rough else None
-        arrives = entry_times(profile, scales) if profile else None
-        if not profile or not arrives or case.time.travel >= arrives[1]:
+    for side, profile in (rough.sides if rough else {}).items():
+        arrives = entry_times(profile, scales)
+        if not arrives or case.time.travel >= arrives[1]:
             continue
         reaches, fills = arrives
         last = ("fills" if profile.repeats else "is with its middle in the centre of", fills)

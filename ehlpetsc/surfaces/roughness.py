@@ -53,9 +53,15 @@ class Roughness:
     surface_1: Profile | None
     surface_2: Profile | None
 
+    @property
+    def sides(self) -> dict[str, Profile]:
+        """Profiles of the rough surfaces, "1" and "2"."""
+        sides = {"1": self.surface_1, "2": self.surface_2}
+        return {name: profile for name, profile in sides.items() if profile}
+
     def side(self, name: str) -> Profile | None:
         """Profile of surface "1" or "2"."""
-        return {"1": self.surface_1, "2": self.surface_2}[name]
+        return self.sides.get(name)
 
     @classmethod
     def of(cls, case: Case, scales: Scales, positions: SurfacePositions | None = None) -> Roughness | None:
@@ -70,18 +76,13 @@ class Roughness:
             sides[side] = spec and _profile(case, scales, spec, speeds[k], k, positions)
         return cls(sides["1"], sides["2"]) if any(sides.values()) else None
 
-    def phi(self, x: np.ndarray, t: float, cell: float | None = None) -> np.ndarray:
-        """Contribution of both roughnesses to the gap [m], minus both heights, at time t [s].
+    def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
+        """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2).
 
         `x`: positions [m], with `cell` equally spaced by it, shape (n,).
         `cell`: cell width of the mesh [m] over which means are taken: waves shorter than a cell, which a mesh
             does not resolve, are damped instead of aliased. Without it values at x.
         """
-        travelled = [profile.speed * t if profile else 0.0 for profile in (self.surface_1, self.surface_2)]
-        return self.phi_after(x, travelled, cell)
-
-    def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
-        """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2)."""
         phi = np.zeros_like(x)
         at = x if cell is None else np.append(x - 0.5 * cell, x[-1] + 0.5 * cell)
         for profile, distance in zip((self.surface_1, self.surface_2), travelled, strict=True):
@@ -93,8 +94,7 @@ class Roughness:
     @property
     def rq(self) -> float:
         """Combined root mean square height [m]."""
-        rq_1, rq_2 = (profile.rq if profile else 0.0 for profile in (self.surface_1, self.surface_2))
-        return float(np.hypot(rq_1, rq_2))
+        return float(np.linalg.norm([profile.rq for profile in self.sides.values()]))
 
 
 def _profile(

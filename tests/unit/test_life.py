@@ -268,7 +268,7 @@ def test_longer_or_annotated_life_is_continued(change, tmp_path):
 
 
 def test_life_on_an_unresolved_profile_is_refused(tmp_path):
-    with pytest.raises(CaseError, match=r"surface.1: 95.8%.*points_per_half_width = 98"):
+    with pytest.raises(CaseError, match=r"surface.1: .*95.8 %.*points_per_half_width = 98"):
         run_life(COARSE_LIFE, tmp_path / "a.life.h5")
     assert not list(tmp_path.iterdir())
 

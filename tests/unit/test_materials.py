@@ -11,7 +11,7 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.case.tables.outputs import POST
 from ehlpetsc.post import Material
-from ehlpetsc.post.prepare import read_settings
+from ehlpetsc.post.prepare import materials_of
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 
@@ -77,15 +77,15 @@ def test_single_keys_override_the_steel():
     keys = {"contact.material": "100Cr6", "contact.yield_pressure": "material", "post.cyclic_strength": 2e9}
     case = load(RUNNING_IN, keys)
     assert case.contact.yield_pressure[0] == pytest.approx(flow_pressure(2e9, 0.09 / 0.56))
-    assert read_settings(case).materials["2"].hardening_coefficient == 2e9
+    assert materials_of(case)["2"].hardening_coefficient == 2e9
     strength = load(RUNNING_IN, {"contact.material": "100Cr6", "post.fatigue_strength": 1e9})
-    assert read_settings(strength).materials["2"].hardening_coefficient == pytest.approx(
+    assert materials_of(strength)["2"].hardening_coefficient == pytest.approx(
         1e9 / STEELS["100Cr6"].fatigue_ductility ** (0.09 / 0.56)
     )
 
 
 def test_default_fatigue_constants_are_those_of_the_reference():
-    material = read_settings(load(RUNNING_IN)).materials["1"]
+    material = materials_of(load(RUNNING_IN))["1"]
     assert material == Material(207e9, 0.3, cyclic_strength=Material().hardening_coefficient)
 
 

@@ -10,7 +10,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales, hertz_line
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import prepare, read_settings
+from ehlpetsc.post.prepare import DEPTHS, prepare
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 
@@ -29,8 +29,7 @@ def test_missing_field_is_refused(name, scene, tmp_path):
 
 def test_default_depths_reach_the_stresses_of_the_smooth_contact():
     """The largest von Mises stress of a line contact is at 0.7 a."""
-    depths = read_settings(load("cases/dry_hertz.toml")).depths
-    assert (depths[0], depths[-2], depths[-1]) == (0.0, 0.7, 1.0)
+    assert (DEPTHS[0], DEPTHS[-2], DEPTHS[-1]) == (0.0, 0.7, 1.0)
 
 
 def test_history_contains_every_sample_of_every_point(scene, tmp_path):

@@ -63,7 +63,7 @@ def test_flank_profile_is_indexed_by_arc_length():
     path, roughness = path_of_contact(FZG), simulation.roughness
     started = np.interp(0.05 * path.load.max(), path.load[:50], path.time[:50])
     for point in "BCD":
-        time = path.time_at(point) - started
+        time = path.time[path.index(point)] - started
         arcs = path.pair.flank_arcs(path.pair.points[point])
         heights = [1e-7 * np.cos(2 * np.pi * arc / 3e-4) for arc in arcs]
         middle = roughness.phi_after(np.zeros(1), simulation.operation.travelled(time))

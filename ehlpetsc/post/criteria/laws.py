@@ -22,6 +22,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 
+from ehlpetsc.base.errors import PostError
 from ehlpetsc.post.fatigue.strain_life import Material
 
 PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
@@ -43,9 +44,9 @@ class Criteria:
 
     def __post_init__(self) -> None:
         if self.torsion_limit < self.bending_limit / 2:
-            raise ValueError(
-                f"torsion_limit = {self.torsion_limit}: must be half of bending_limit or more (Dang Van's "
-                "constant a would be negative)"
+            raise PostError(
+                f"post.torsion_limit = {self.torsion_limit}: must be half of bending_limit or more "
+                "(Dang Van's constant a would be negative)"
             )
 
     @property
