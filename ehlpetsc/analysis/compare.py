@@ -46,10 +46,6 @@ class Difference:
         """Whether the maximum difference is allowed."""
         return bool(self.max <= rtol * self.scale)
 
-    def relative(self, value: float) -> float:
-        """Norm over the scale of the quantity."""
-        return value / self.scale if self.scale else value
-
 
 def common(one: np.ndarray, other: np.ndarray, name: str) -> list[np.ndarray]:
     """Indices of the values that both of two increasing grids have; OutputError if there are none."""
@@ -107,10 +103,11 @@ def table(differences: Iterable[Difference], a: float, rtol: float) -> str:
         f" {'at t/us':>10}"
     ]
     for d in differences:
+        largest, rms = (norm / (d.scale or 1.0) for norm in (d.max, d.rms))
         x, time = ("" if np.isnan(value) else f"{value:.4f}" for value in (d.x / a, 1e6 * d.time))
         lines.append(
-            f"{d.name:<20} {d.units:<6} {d.scale:>11.4e} {d.relative(d.max):>10.2e}"
-            f" {d.relative(d.rms):>10.2e} {x:>8} {time:>10}  {'same' if d.same(rtol) else 'DIFFERENT'}"
+            f"{d.name:<20} {d.units:<6} {d.scale:>11.4e} {largest:>10.2e} {rms:>10.2e}"
+            f" {x:>8} {time:>10}  {'same' if d.same(rtol) else 'DIFFERENT'}"
         )
     return "\n".join(lines)
 

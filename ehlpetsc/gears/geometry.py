@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
-EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
 
 
 def involute(angle: float) -> float:
@@ -83,21 +82,17 @@ class GearPair:
         return sum(self.base_radii) / math.cos(angle_of(value)) if value > 0.0 else math.nan
 
     @property
-    def play_free_tip_diameter(self) -> tuple[float, float]:
+    def play_free_tip_diameter(self) -> tuple[float, ...]:
         """Tips that leave the tip clearance to the root of the other gear [m]."""
         clearance = self.tip_clearance * self.module
-        first, second = (2.0 * (self.centre_distance - clearance) - d for d in reversed(self.root_diameters))
-        return first, second
+        return tuple(2.0 * (self.centre_distance - clearance) - d for d in reversed(self.root_diameters))
 
     @property
     def root_diameters(self) -> tuple[float, float]:
         """By profile shift and basic rack [m]."""
         dedendum = self.addendum + self.tip_clearance
-        first, second = (
-            self.transverse_module * z + 2.0 * self.module * (x - dedendum)
-            for z, x in zip(self.teeth, self.shifts, strict=True)
-        )
-        return first, second
+        teeth = zip(self.teeth, self.shifts, strict=True)
+        return tuple(self.transverse_module * z + 2.0 * self.module * (x - dedendum) for z, x in teeth)
 
     @property
     def shifts(self) -> tuple[float, float]:
@@ -174,11 +169,6 @@ class GearPair:
         return omega, omega * self.teeth[0] / self.teeth[1]
 
     @property
-    def power(self) -> float:
-        """Transmitted power [W]."""
-        return self.torque * self.angular_speeds[0]
-
-    @property
     def normal_load(self) -> float:
         r"""Load of the mesh per length of contact across the face [N/m], :math:`T_1/(r_{b1}b)`.
 
@@ -225,11 +215,6 @@ class GearPair:
         """
         a, (r_1, r_2), length = self.points["A"], self.base_radii, self.line_of_action
         return (rho**2 - a**2) / (2.0 * r_1), ((length - a) ** 2 - (length - rho) ** 2) / (2.0 * r_2)
-
-    @property
-    def edge_radius(self) -> float:
-        """Radius of the tip edges [m]."""
-        return self.tip_radius or EDGE_RADIUS * self.module
 
     @property
     def partners(self) -> int:

@@ -12,6 +12,8 @@ from ehlpetsc.gears.path import Path, describe, gear_loss_factor, hertz
 from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
 from ehlpetsc.physics.scales import hertz_line
 
+EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
+
 
 def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
     """Lines of text: data of the pair, a table of A to E, mean values of the standards."""
@@ -59,10 +61,11 @@ def edge_pressures(path: Path, modulus: float) -> list[str]:
     flanks = {"A": pair.points["A"], "E": pair.line_of_action - pair.points["E"]}
     for name, (way, carried) in edge_contact(pair).items():
         if way > 0.0:
-            radius = 1.0 / (1.0 / pair.edge_radius + 1.0 / flanks[name])
+            edge = pair.tip_radius or EDGE_RADIUS * pair.module
+            radius = 1.0 / (1.0 / edge + 1.0 / flanks[name])
             pressure = hertz_line(carried * pair.normal_load, radius, modulus)[1]
             lines.append(
-                f"Hertz pressure of an edge of radius {1e3 * pair.edge_radius:.3g} mm with the load at "
+                f"Hertz pressure of an edge of radius {1e3 * edge:.3g} mm with the load at "
                 f"{name}: {1e-9 * pressure:.2f} GPa"
             )
     return lines

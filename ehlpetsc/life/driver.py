@@ -12,7 +12,7 @@ from mpi4py import MPI
 
 from ehlpetsc.base.errors import CaseError, NotConverged
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.effects.effect import Scene, flat, unflat
+from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
@@ -21,7 +21,6 @@ from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import Pass, run_pass
 from ehlpetsc.life.positions import Positions
 from ehlpetsc.life.rounds import Ranks, Round
-from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
@@ -99,12 +98,10 @@ class _Life:
     ) -> None:
         self.case, self.path, self.comm, self.history, self.show = case, path, comm, history, show
         self.scales = Scales.of(case)
-        operation = operation_of(case, self.scales)
-        scene = partial(Scene.of_pass, case, self.scales, operation)
-        self.positions = Positions(case, self.scales, lambda position: scene(position + 1))
+        self.positions = Positions(case, self.scales)
         self.jumps = Jumps(case.life, self.positions.rq)
         self.ranks, self.file = Ranks(comm, self.positions.count), LifeFile(path)
-        self._scene = scene(1)
+        self._scene = self.positions.scenes[0]
         faults = mesh_warnings(self._scene.roughness, self.scales, MAX_UNRESOLVED)
         if faults and not unresolved:
             advice = "the life would depend on the mesh; allowed also: a longer short_cutoff, --unresolved"

@@ -10,13 +10,14 @@ meets N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.effects.effect import Scene
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
+from ehlpetsc.physics import operation_of
 from ehlpetsc.surfaces.roughness import directed_speeds
 
 if TYPE_CHECKING:
@@ -40,16 +41,17 @@ def number_of_positions(case: Case) -> int:
 class Positions:
     """Positions of surface 2.
 
-    `scene`: `effects.effect.Scene` of a position, from 0.
+    `scenes`: `effects.effect.Scene` of each position.
 
     `rq`: combined root mean square roughness [m]. `passes_2`: passes of body 2 for each one of body 1, over
     the positions together.
     """
 
-    def __init__(self, case: Case, scales: Scales, scene: Callable) -> None:
+    def __init__(self, case: Case, scales: Scales) -> None:
         self.case, self.scales, self.count = case, scales, number_of_positions(case)
-        self._scenes = [scene(position) for position in range(self.count)]
-        self.rq = self._scenes[0].rq
+        operation = operation_of(case, scales)
+        self.scenes = [Scene.of_pass(case, scales, operation, k + 1) for k in range(self.count)]
+        self.rq = self.scenes[0].rq
         self._shift = case.time.pass_shift if self.count > 1 else 0.0
         self.passes_2 = 1.0
         if case.gears:
@@ -63,7 +65,7 @@ class Positions:
         from ehlpetsc.effects.wear import WearRecord
         from ehlpetsc.surfaces.body_field import BodyFields
 
-        scene = self._scenes[position]
+        scene = self.scenes[position]
         ends = scene.operation.travelled(0.0), scene.operation.travelled(scene.operation.duration)
         are_flanks = self.case.conditions and self.case.conditions.profile_offsets
         averaged = FLANK_END_LENGTH * self.scales.a if are_flanks else np.inf
@@ -78,7 +80,7 @@ class Positions:
         return records | ({"plastic_deformation": plastic} if plastic else {})
 
     def _offset(self, position: int, k: int) -> float:
-        return self._scenes[position].mesh_on_bodies.offsets[k]
+        return self.scenes[position].mesh_on_bodies.offsets[k]
 
     def _stretch(self, body: LifeBody, k: int, position: int) -> tuple[float, float]:
         """Abscissas of the first and last column of body k in a position."""
@@ -102,7 +104,7 @@ class Positions:
     def new_body(self, of_pass: OfBody, k: int) -> LifeBody:
         """Columns of a body after a pass in position 0, of body 2 in all of its positions."""
         s, dx, offset = of_pass.s, self.scales.dx, self._offset(0, k)
-        roughness = self._scenes[0].roughness
+        roughness = self.scenes[0].roughness
         profile = roughness and roughness.side("12"[k])
         if profile and profile.is_moving:  # not where its heights come in over the ramp
             inlet, outlet = self.scales.x[0] * self.scales.a, self.scales.x[-1] * self.scales.a

@@ -56,13 +56,12 @@ def main(words: Sequence[str]) -> int:
 def _run(chosen: argparse.Namespace) -> int:
     files = [str(file) for path in chosen.results for file in files_of(path)]
     _check(chosen, files)
-    statuses = [
-        exit_status("post", partial(_process, path, chosen, files), output=_output(path, chosen))
-        for path in files
-    ]
-    done = [path for path, status in zip(files, statuses, strict=True) if status == ExitStatus.DONE]
+    jobs = [_job(path, chosen) for path in files]
+    work = [partial(_process, job, files, chosen.overwrite) for job in jobs]
+    statuses = [exit_status("post", one, output=job.output) for one, job in zip(work, jobs, strict=True)]
+    done = [job for job, status in zip(jobs, statuses, strict=True) if status == ExitStatus.DONE]
     if chosen.pictures is not None and done:
-        statuses.append(exit_status("post", partial(_draw, done, chosen), output="pictures"))
+        statuses.append(exit_status("post", partial(_draw, done, chosen.pictures), output="pictures"))
     return max(statuses)
 
 
@@ -81,28 +80,26 @@ def _say(text: str) -> None:
     print(f"ehlpetsc post: {text}", file=sys.stderr)
 
 
-def _output(path: str, chosen: argparse.Namespace) -> str:
-    return chosen.output or str(post_path(path))
-
-
-def _process(path: str, chosen: argparse.Namespace, inputs: Sequence[str]) -> None:
-    output = _output(path, chosen)
-    job = Job(
+def _job(path: str, chosen: argparse.Namespace) -> Job:
+    return Job(
         path,
-        output,
+        chosen.output or str(post_path(path)),
         SURFACES if chosen.surface == "both" else (chosen.surface,),
         chosen.mean_stress,
         jobs=chosen.jobs,
         criteria=tuple(sorted(chosen.criterion)),
         settings=(*chosen.set, *([f"post.depths={chosen.depths}"] if chosen.depths else ())),
     )
+
+
+def _process(job: Job, inputs: Sequence[str], overwrite: bool) -> None:
     start = time.perf_counter()
-    if not chosen.overwrite and job.is_done():
-        _say(f"{output}: already there, of the same file and options")
+    if not overwrite and job.is_done():
+        _say(f"{job.output}: already there, of the same file and options")
     else:
-        _check_output(Path(output), inputs, chosen.overwrite)
-        run(job, lambda text: _say(f"{path}: {text}"))
-    _summary(output, time.perf_counter() - start)
+        _check_output(Path(job.output), inputs, overwrite)
+        run(job, lambda text: _say(f"{job.path}: {text}"))
+    _summary(job.output, time.perf_counter() - start)
 
 
 def _check_output(output: Path, inputs: Sequence[str], overwrite: bool) -> None:
@@ -143,9 +140,8 @@ def _summary(output: str, wall: float) -> None:
     )
 
 
-def _draw(paths: Sequence[str], chosen: argparse.Namespace) -> None:
+def _draw(jobs: Sequence[Job], folder: str) -> None:
     from ehlpetsc.pictures.damage import draw
 
-    outputs = [_output(path, chosen) for path in paths]
-    for name in draw(paths, outputs, chosen.pictures):
+    for name in draw([job.path for job in jobs], [job.output for job in jobs], folder):
         print(name)

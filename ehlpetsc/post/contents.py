@@ -12,10 +12,10 @@ import numpy as np
 
 from ehlpetsc.base.materials import DEFAULT
 from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
+from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared
-from ehlpetsc.post.temperatures import point_temperatures
 from ehlpetsc.results.output_guard import atomic_write
-from ehlpetsc.results.post_result import SURFACES, WeibullFit, stored_names
+from ehlpetsc.results.post_result import SURFACES, PointTemperatures, WeibullFit, stored_names
 
 FORMAT_VERSION = 1
 MIN_ASPERITIES = 10  # for a distribution
@@ -60,6 +60,27 @@ def datasets_of(
         temperatures = point_temperatures(loads, surface, prepared.s, motion.complete)
         found |= {f"temperature/{surface}_{name}": array for name, array in temperatures._asdict().items()}
     return found
+
+
+def point_temperatures(loads: Loads, surface: str, s: np.ndarray, complete: np.ndarray) -> PointTemperatures:
+    r"""Highest and mean surface temperature of body points s and their flash temperature.
+
+    The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
+    over the stored frames; the flash temperature is the highest temperature minus that of the body.
+    nan for points that are not `complete`: they did not pass the whole contact.
+    """
+    highest, sums, times = np.full(s.size, np.nan), np.zeros(s.size), np.zeros(s.size)
+    step = np.diff(loads.time)
+    for frame, duration in enumerate(0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))):
+        x = s + loads.travelled[surface][frame]
+        values, is_inside = loads.temperatures(surface, frame, x), np.abs(x) <= loads.a
+        highest = np.fmax(highest, values)
+        sums[is_inside] += duration * values[is_inside]
+        times[is_inside] += duration
+    highest[~complete] = np.nan
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean = np.where(complete, sums / times, np.nan)
+    return PointTemperatures(highest, mean, highest - loads.bulk_temperature(surface))
 
 
 def attributes_of(prepared: Prepared) -> dict[str, Any]:

@@ -7,11 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.loading import stored_case
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.post.stresses.body_stress import limited_slopes
 from ehlpetsc.post.stresses.half_plane import spacing
 from ehlpetsc.results.post_result import SURFACES
 from ehlpetsc.results.reader import Result, open_result
@@ -83,3 +85,10 @@ class Loads(Result):
         if name not in self._stored:  # remains open with HDF5's cache of chunks
             self._stored[name] = self[name]
         return self._stored[name][first:last].astype(float, copy=False)
+
+    def temperatures(self, surface: str, frame: int, x: np.ndarray) -> np.ndarray:
+        """Surface temperatures at positions x [m] in a frame by limited cubics; nan beyond the nodes."""
+        row = self.rows(f"temperature_{surface}", frame, frame + 1)
+        slopes = np.empty_like(row)
+        limited_slopes(row, slopes)
+        return CubicHermiteSpline(self.x, row[0], slopes[0] / self.dx, extrapolate=False)(x)

@@ -146,12 +146,9 @@ class Profile:
     def s(self) -> np.ndarray:
         """Body points [m] that enter during the run, at least two, with the spacing of the samples."""
         step = np.diff(self.X).mean()
-        if self._ends:
-            count = int((self._ends[1] - self._ends[0]) / step) + 1
-            return self._ends[0] + np.arange(min(max(count, 2), MAX_SAMPLES)) * step
-        count = int(self.travelled / step * (1 + 1e-12)) + 1
-        X = np.arange(min(max(count, 2), MAX_SAMPLES)) * step
-        return np.sort(self._origin + self._sign * X)
+        length = self._ends[1] - self._ends[0] if self._ends else self.travelled * (1 + 1e-12)
+        X = np.arange(min(max(int(length / step) + 1, 2), MAX_SAMPLES)) * step
+        return self._ends[0] + X if self._ends else np.sort(self._origin + self._sign * X)
 
     @cached_property
     def z(self) -> np.ndarray:

@@ -25,11 +25,13 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
     if spec.kind in SINGLE_FEATURES:
         return *bump(spec), False
-    x = np.linspace(0.0, spec.wavelength / 2, POINTS_PER_WAVE // 2 + 1)
+    is_square = spec.kind == "square"
+    x = np.linspace(
+        0.0, spec.wavelength / 2, (4 * POINTS_PER_WAVE if is_square else POINTS_PER_WAVE // 2) + 1
+    )
     wave = np.cos(2 * np.pi * x / spec.wavelength)
-    if spec.kind == "square":
-        x = np.linspace(0.0, spec.wavelength / 2, 4 * POINTS_PER_WAVE + 1)
-        wave = np.tanh(np.cos(2 * np.pi * x / spec.wavelength) / FLANK_WIDTH) / np.tanh(1 / FLANK_WIDTH)
+    if is_square:
+        wave = np.tanh(wave / FLANK_WIDTH) / np.tanh(1 / FLANK_WIDTH)
     return x, spec.amplitude * wave, True
 
 

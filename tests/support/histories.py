@@ -4,7 +4,6 @@ import numpy as np
 
 from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.body_stress import BodyStress, histories
-from ehlpetsc.post.temperatures import temperatures
 
 
 def history_at(loads, surface, s, depth, quantum=0.0):
@@ -18,5 +17,5 @@ def history_at(loads, surface, s, depth, quantum=0.0):
 def temperature_history(loads, surface, s):
     """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
     places = s + loads.travelled[surface]
-    values = [temperatures(loads, surface, frame, place) for frame, place in enumerate(places)]
+    values = [loads.temperatures(surface, frame, place) for frame, place in enumerate(places)]
     return np.array(values)[(places >= loads.x[0]) & (places <= loads.x[-1])]

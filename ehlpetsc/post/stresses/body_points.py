@@ -27,10 +27,6 @@ class Passage(NamedTuple):
     leave: np.ndarray
     complete: np.ndarray
 
-    def samples(self) -> int:
-        """Maximum number of frames of a complete point inside the nodes."""
-        return int((self.leave - self.enter + 1)[self.complete].max(initial=0))
-
 
 def body_points(x: np.ndarray, dx: float, travelled: Iterable[np.ndarray]) -> np.ndarray:
     """Body coordinates s, with the spacing dx, of all points that were ever among the nodes x [m].

@@ -220,7 +220,8 @@ def _collect(
 def runs_of_points(motion: Passage, memory: float, depths: int) -> list[np.ndarray]:
     """Split the complete points into ranges of consecutive points whose histories fit in `memory` bytes."""
     points = np.flatnonzero(motion.complete)
-    room = max(1, int(memory / (SAMPLE_BYTES * depths * (motion.samples() + 2))))
+    samples = (motion.leave - motion.enter + 3)[points].max(initial=1)
+    room = max(1, int(memory / (SAMPLE_BYTES * depths * samples)))
     runs: list[np.ndarray] = []
     for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
         runs += np.array_split(stretch, -(-stretch.size // room)) if stretch.size else []
