@@ -114,8 +114,7 @@ def table(differences: Iterable[Difference], a: float, rtol: float) -> str:
 
 def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status."""
-    description = "Compare two result files field by field."
-    parser = CommandParser("compare", description, "")
+    parser = CommandParser("compare", __doc__, "")
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
     parser.add_argument("--rtol", type=float, default=RTOL, help="tolerance over the scale [%(default)s]")

@@ -66,12 +66,6 @@ def _damage(post: PostResult) -> dict[str, float]:
     return found
 
 
-def _units(name: str) -> str:
-    if name.startswith("flash_temperature"):
-        return "K"
-    return STEP_SCALARS[name].units if name in STEP_SCALARS else "1"
-
-
 def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
     """Scalars of the runs whose cases differ only in keys named seed, shape (runs,), by the other conditions.
 
@@ -98,7 +92,9 @@ def table(results: list[Result], _chosen: argparse.Namespace | None = None) -> l
         for name, values in scalars.items():
             deviation = values.std(ddof=1) if values.size > 1 else np.nan
             reduced = values.mean(), deviation, values.min(), values.max()
-            rows.append((ensemble, name, _units(name), values.size, *(f"{v:.6g}" for v in reduced)))
+            others = "K" if name.startswith("flash_temperature") else "1"
+            unit = STEP_SCALARS[name].units if name in STEP_SCALARS else others
+            rows.append((ensemble, name, unit, values.size, *(f"{v:.6g}" for v in reduced)))
     return rows
 
 

@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.path import gear_loss_factor, hertz, loss, mean_friction, path_of_contact
-from ehlpetsc.gears.standards import STANDARDS, values_of
+from ehlpetsc.gears.standards import STANDARDS, Rating, values_of
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.reader import read_result
-
-if TYPE_CHECKING:
-    from ehlpetsc.gears.standards import Rating
 
 SCALARS = (  # scalar of the steps, factor, label
     ("p_max", 1e-9, "maximum\npressure [GPa]"),

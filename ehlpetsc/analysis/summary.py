@@ -81,8 +81,7 @@ def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:
 
 def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    description = "Means, percentiles and extremes of every scalar of runs, all steps or one frame, as CSV."
-    parser = table_parser("summary", description)
+    parser = table_parser("summary", __doc__)
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--steps", action="store_true", help="scalars of every step of one result, over time")
     kinds.add_argument("--frame", type=int, metavar="STEP", help="fields of one result at a stored step")

@@ -13,14 +13,18 @@ from __future__ import annotations
 import argparse
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ehlpetsc.analysis.gear_run import GearRun, lines, panels
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
+from ehlpetsc.case.derived import modulus_of, rating_of
+from ehlpetsc.case.loading import load
+from ehlpetsc.gears.path import path_of_contact
+from ehlpetsc.gears.standards import bulk_temperatures
+from ehlpetsc.gears.table import csv, rows
+from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
-
-if TYPE_CHECKING:
-    from ehlpetsc.analysis.gear_run import GearRun
+from ehlpetsc.results.reader import read_result
 
 MAX_RUNS = 6
 MAX_CHANGE = 1.0  # K, of the bulk temperatures by the last run
@@ -29,9 +33,7 @@ MAX_CHANGE = 1.0  # K, of the bulk temperatures by the last run
 def arguments() -> CommandParser:
     """Parse the command line."""
     parser = CommandParser("gears", __doc__)
-    parser.add_argument(
-        "files", nargs="+", help="case file with a [gears] table; results of one; their index"
-    )
+    parser.add_argument("files", nargs="+", help="case file with a [gears] table; its results; their index")
     parser.add_argument("-o", "--output", help="picture [CASE.path.png, RESULT.gears.png]")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="the path as a table for [operation]")
@@ -49,11 +51,6 @@ def main(words: list[str]) -> int:
 
 def run(chosen: argparse.Namespace) -> None:
     """Print the table, write picture and CSV file."""
-    from ehlpetsc.case.derived import modulus_of, rating_of
-    from ehlpetsc.case.loading import load
-    from ehlpetsc.gears.path import path_of_contact
-    from ehlpetsc.gears.table import csv, rows
-
     file = Path(chosen.files[0])
     if file.suffix in (".h5", ".json"):
         return _compare(chosen)
@@ -79,9 +76,7 @@ def run(chosen: argparse.Namespace) -> None:
 
 def _compare(chosen: argparse.Namespace) -> None:
     """Print and draw results along their paths of contact, those of an index over the torque."""
-    from ehlpetsc.analysis.gear_run import lines, panels
     from ehlpetsc.pictures.gears import draw_damage, draw_runs, draw_stages
-    from ehlpetsc.results.index import files_of
 
     if chosen.csv is not None:
         raise OutputError(f"{chosen.files[0]}: a result; allowed for --csv: a case with a [gears] table")
@@ -110,10 +105,6 @@ def _compare(chosen: argparse.Namespace) -> None:
 
 
 def _run_of(file: Path) -> GearRun:
-    from ehlpetsc.analysis.gear_run import GearRun
-    from ehlpetsc.case.derived import rating_of
-    from ehlpetsc.results.reader import read_result
-
     with read_result(file) as result:
         try:
             rating = rating_of(result.case, file.parent)
@@ -125,8 +116,6 @@ def _run_of(file: Path) -> GearRun:
 def _iterate(chosen: argparse.Namespace, file: Path) -> None:
     """Run a case until the bulk temperatures are those of its computed friction."""
     from ehlpetsc.api import solve
-    from ehlpetsc.case.loading import load
-    from ehlpetsc.gears.standards import bulk_temperatures
 
     case = load(file, chosen.set)
     if case.gears is None or case.heat is None:

@@ -238,7 +238,11 @@ class GearPair:
         missing = [name for name in ("centre_distance", "tip_diameter") if getattr(self, name) is None]
         if missing:
             return [f"gears.{' and '.join(missing)} missing; allowed: a length, or profile_shift for both"]
-        faults = self._faults_of_the_rule()
+        faults = []
+        if self.load_sharing == "tip-relief" and self.tip_relief == 0.0:
+            faults.append('tip_relief is missing; load_sharing = "tip-relief" needs its depth')
+        if self.load_sharing == "thirds" and self.helix_angle:
+            faults.append('load_sharing = "thirds": of spur gears; allowed with helix_angle: "stiffness"')
         r_b = self.base_radii
         if not self.centre_distance > sum(r_b):
             faults.append(
@@ -253,13 +257,6 @@ class GearPair:
                 )
         faults = faults or self._faults_of_the_path() or self._faults_of_the_shift()
         return [f"gears.{fault}" for fault in faults]
-
-    def _faults_of_the_rule(self) -> list[str]:
-        if self.load_sharing == "tip-relief" and self.tip_relief == 0.0:
-            return ['tip_relief is missing; load_sharing = "tip-relief" needs its depth']
-        if self.load_sharing == "thirds" and self.helix_angle:
-            return ['load_sharing = "thirds": of spur gears; allowed with helix_angle: "stiffness"']
-        return []
 
     def _faults_of_the_shift(self) -> list[str]:
         """The first given length that is not that of the profile shift."""

@@ -58,7 +58,10 @@ def share(pair: GearPair, rho: np.ndarray) -> np.ndarray:
     if pair.load is not None:
         at = np.asarray(pair.path) + pair.points["C"]
         return np.interp(rho, at, pair.load, left=0.0, right=0.0) / pair.normal_load
-    return _thirds(pair, rho) if pair.rule == "thirds" else _equilibrium(pair, rho)
+    if pair.rule == "thirds":
+        return _thirds(pair, rho)
+    loads, own = pair_loads(pair, rho)
+    return loads[:, own] * (SLICES if pair.helix_angle else 1)
 
 
 def gap(pair: GearPair, rho: np.ndarray) -> np.ndarray:
@@ -118,11 +121,6 @@ def pair_loads(pair: GearPair, rho: np.ndarray) -> tuple[np.ndarray, int]:
     approach = (pair.normal_load + np.cumsum(ranked_k * ranked_g, axis=1)) / np.cumsum(ranked_k, axis=1)
     loads = k * np.maximum(approach.min(axis=1)[:, None] - g, 0.0)
     return loads / pair.normal_load, int(np.flatnonzero(offsets == 0.0)[0])
-
-
-def _equilibrium(pair: GearPair, rho: np.ndarray) -> np.ndarray:
-    loads, own = pair_loads(pair, rho)
-    return loads[:, own] * (SLICES if pair.helix_angle else 1)
 
 
 def _thirds(pair: GearPair, rho: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.gears.geometry import GearPair
-from ehlpetsc.gears.load_sharing import edge_contact, share, single_stiffness
+from ehlpetsc.gears.load_sharing import share, single_stiffness
 
 PATH_INTERVALS = 2000  # equal intervals of the path, in addition to its points
 
@@ -95,7 +95,7 @@ def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
 
 
 def describe(path: Path) -> list[str]:
-    """Lines of text about a path: angle, ratios, lengths, sharing, edges, hunting."""
+    """Lines of text about a path: angle, ratios, lengths, sharing, hunting."""
     pair = path.pair
     overlap = f", overlap ratio {pair.overlap_ratio:.3f}" if pair.helix_angle else ""
     tips = " and ".join(f"{1e3 * d:.3f}" for d in pair.tip_diameter)
@@ -114,14 +114,6 @@ def describe(path: Path) -> list[str]:
     if pair.tip_relief > 0.0:
         kappa = single_stiffness(pair) * pair.tip_relief / pair.normal_load
         lines.append(f"tip relief {1e6 * pair.tip_relief:.1f} µm, c' C_a/w' = {kappa:.2f}")
-    for (name, (way, carried)), where, gear in zip(
-        edge_contact(pair).items(), ("before", "after"), ("wheel", "pinion"), strict=True
-    ):
-        if way > 0.0:
-            lines.append(
-                f"contact {1e3 * way:.2f} mm {where} {name}, on the tip edge of the {gear}, with up to "
-                f"{1e-3 * carried * pair.normal_load:.1f} kN/m"
-            )
     return lines
 
 

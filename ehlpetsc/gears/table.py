@@ -13,6 +13,7 @@ from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
 from ehlpetsc.physics.scales import hertz_line
 
 EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
+EDGES = {"A": "before A, on the tip edge of the wheel", "E": "after E, on the tip edge of the pinion"}
 
 
 def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
@@ -35,7 +36,7 @@ def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
     ]
     a, p0 = hertz(path, modulus)
     quantities += [("a, mm", 1e3 * a), ("p0, GPa", 1e-9 * p0)]
-    lines = [*describe(path), *edge_pressures(path, modulus)]
+    lines = [*describe(path), *edges(path, modulus)]
     own, standard = gear_loss_factor(path), loss_factor(pair)
     lines.append(f"loss factor H_V {own:.4f} of this load sharing, {standard:.4f} of Niemann and Winter")
     names, values = {}, values_of(rating) if rating is not None else {}
@@ -55,19 +56,19 @@ def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
     return lines
 
 
-def edge_pressures(path: Path, modulus: float) -> list[str]:
-    """Bound of the pressure of the tip edges before A and after E, elastic and as round as `tip_radius`."""
+def edges(path: Path, modulus: float) -> list[str]:
+    """Contact of the tip edges before A and after E, and bound of its pressure: of an elastic round edge."""
     pair, lines = path.pair, []
+    edge = pair.tip_radius or EDGE_RADIUS * pair.module
     flanks = {"A": pair.points["A"], "E": pair.line_of_action - pair.points["E"]}
     for name, (way, carried) in edge_contact(pair).items():
         if way > 0.0:
-            edge = pair.tip_radius or EDGE_RADIUS * pair.module
-            radius = 1.0 / (1.0 / edge + 1.0 / flanks[name])
-            pressure = hertz_line(carried * pair.normal_load, radius, modulus)[1]
-            lines.append(
-                f"Hertz pressure of an edge of radius {1e3 * edge:.3g} mm with the load at "
-                f"{name}: {1e-9 * pressure:.2f} GPa"
-            )
+            load, where = carried * pair.normal_load, EDGES[name]
+            pressure = hertz_line(load, 1.0 / (1.0 / edge + 1.0 / flanks[name]), modulus)[1]
+            lines += [
+                f"contact {1e3 * way:.2f} mm {where}, with up to {1e-3 * load:.1f} kN/m: Hertz pressure of "
+                f"an edge of radius {1e3 * edge:.3g} mm {1e-9 * pressure:.2f} GPa"
+            ]
     return lines
 
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ehlpetsc.base.errors import CaseError, OutputError, UsageError
+from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.case.tables import Case
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
-
-if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-
+from ehlpetsc.results.output_guard import check_derived, check_output_path, inputs_of
 
 ENDS = ("passes", "max_solved")  # keys of [life] that may change between calls
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
@@ -47,8 +45,6 @@ def check_files(path: Path, case: Case) -> None:
 
     `path`: the life. Raises `OutputError`.
     """
-    from ehlpetsc.results.output_guard import check_derived, check_output_path, inputs_of
-
     check_derived(path, inputs_of(case), (".h5",))
     positions = number_of_positions(case)
     for position in range(positions):
@@ -63,23 +59,11 @@ def _tables_of_surfaces(text: str) -> dict:
     return tables
 
 
-def stored_or_new(case: Case, path: Path, overwrite: bool, after: int | None) -> LifeHistory:
-    """Life stored at `path`, up to the row `after` if given, or a new life.
-
-    Raises
-    ------
-    OutputError
-        It is the life of another case.
-    UsageError
-        It has no such row.
-    """
+def stored_or_new(case: Case, path: Path, overwrite: bool) -> LifeHistory:
+    """Life stored at `path`, or a new one; OutputError if it is the life of another case."""
     if overwrite or not path.exists():
-        if after:
-            raise UsageError(f"--after {after}: {path} has no row; allowed: a life to continue")
         return LifeHistory(case.text, case.title)
     history = read_life(path)
     if _tables_of_surfaces(history.case) != _tables_of_surfaces(case.text):
         raise OutputError(f"{path}: the life of another case; give another -o, or --overwrite to lose it")
-    if after is not None and not 1 <= after <= len(history.rows):
-        raise UsageError(f"--after {after}: allowed: 1 to {len(history.rows)}, the rows of {path}")
-    return history.up_to(after or len(history.rows), case.text)  # the case may extend the life
+    return replace(history, case=case.text)  # which may extend the life

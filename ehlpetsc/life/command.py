@@ -13,7 +13,9 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
-from ehlpetsc.base.errors import UsageError
+from ehlpetsc.case.loading import load
+from ehlpetsc.life.history import read_life
+from ehlpetsc.results.output_guard import PICTURES, check_derived, inputs_of
 
 
 def arguments() -> CommandParser:
@@ -22,10 +24,7 @@ def arguments() -> CommandParser:
     parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 to draw")
     parser.add_argument("-o", "--output", metavar="FILE.h5", help="default: CASE.life.h5")
     parser.add_argument("--overwrite", action="store_true", help="start again")
-    parser.add_argument(
-        "--unresolved", action="store_true", help="run also on a mesh too coarse for the profiles"
-    )
-    parser.add_argument("--after", type=int, metavar="ROW", help="continue after this row, from 1")
+    parser.add_argument("--unresolved", action="store_true", help="also on a mesh too coarse for profiles")
     parser.add_argument("--no-picture", action="store_true", help="do not draw")
     return parser
 
@@ -47,15 +46,12 @@ def _run(chosen: Namespace) -> None:
 
 def _picture(path: Path, inputs: list[Path]) -> Path:
     """Checked path of the picture of a life."""
-    from ehlpetsc.results.output_guard import PICTURES, check_derived
-
     target = path.with_suffix(".png")
     check_derived(target, inputs, PICTURES)
     return target
 
 
 def _draw(target: Path, path: Path) -> None:
-    from ehlpetsc.life.history import read_life
     from ehlpetsc.pictures.lives import draw
 
     draw(read_life(path), target)
@@ -64,30 +60,24 @@ def _draw(target: Path, path: Path) -> None:
 
 def _run_lives(chosen: Namespace) -> None:
     """Run a life and draw it, or a series of lives."""
-    from ehlpetsc.api import need_solver
-    from ehlpetsc.case.loading import load
+    from ehlpetsc.life import run_life, run_regimes
 
-    need_solver()
+    case = load(chosen.case, chosen.set)
     from mpi4py import MPI
 
-    from ehlpetsc.life.driver import run_life
-    from ehlpetsc.life.regimes import run_regimes
-    from ehlpetsc.results.output_guard import inputs_of
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.stop import StopRequest
 
-    comm, case = MPI.COMM_WORLD, load(chosen.case, chosen.set)
+    comm = MPI.COMM_WORLD
     output = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
     show = partial(print, flush=True) if comm.rank == 0 else lambda text: None
     options = {"overwrite": chosen.overwrite, "unresolved": chosen.unresolved}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
     if case.series:
-        if chosen.after:
-            raise UsageError("--after: of a life; allowed with a series: left out")
         return show(str(run_regimes(case, output, **options)))
     draws = output.name and not chosen.no_picture
     target = on_root(comm, _picture, output, inputs_of(case)) if draws else None
-    run_life(case, output, after=chosen.after, **options)
+    run_life(case, output, **options)
     show(str(output))
     if target and comm.rank == 0:
         _draw(target, output)

@@ -47,7 +47,6 @@ def run_life(
     output: str | Path | None = None,
     *,
     overwrite: bool = False,
-    after: int | None = None,
     unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
@@ -56,7 +55,7 @@ def run_life(
 ) -> LifeHistory:
     """Run the life of a case's surfaces, or continue it.
 
-    Raises `CaseError`, `UsageError`, `OutputError`, `PostError`, `NotConverged`, `Stopped`.
+    Raises `CaseError`, `OutputError`, `PostError`, `NotConverged`, `Stopped`.
 
     Parameters
     ----------
@@ -66,8 +65,6 @@ def run_life(
         By default ``CASE.life.h5`` in the current folder. An existing life of the same case is continued.
     overwrite
         Whether to start again and replace an existing file.
-    after
-        Row of the life, from 1, after which to continue; later rows are dropped. By default the last.
     unresolved
         Whether to run also on a mesh that does not resolve the profiles.
     comm
@@ -85,7 +82,7 @@ def run_life(
     lock = Lock(path)
     on_root(comm, lock.acquire)
     try:
-        history = on_root(comm, stored_or_new, case, path, overwrite, after)
+        history = on_root(comm, stored_or_new, case, path, overwrite)
         life = _Life(case, path, comm, history, show or (lambda text: None), unresolved)
         return life.run(stop, most)
     finally:
@@ -109,15 +106,13 @@ class _Life:
 
     def run(self, stop: Callable | None, max_rounds: int | None) -> LifeHistory:
         """Solve rounds until the end of the life."""
-        status = "stopped"
         try:
             self._run(stop, max_rounds)
-            status = "done" if self.history.done >= self.jumps.passes else status
         except NotConverged:
-            status = "not converged"
+            self.file.close("not converged")
             raise
         finally:
-            self.file.close(status)
+            self.file.close("done" if self.history.done >= self.jumps.passes else "stopped")
         if self.history.done < self.jumps.passes and self.history.solved >= self.case.life.max_solved:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
         return self.history

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
@@ -112,6 +113,7 @@ def _lay_out(file: h5py.File, history: LifeHistory) -> None:
         file[f"records/{name}"].attrs["is_number"] = int(not np.ndim(value))
 
 
+@dataclass
 class LifeHistory:
     """All solved rounds of a life.
 
@@ -120,11 +122,11 @@ class LifeHistory:
     deformation after each jump, flat; empty without.
     """
 
-    def __init__(self, case: str, title: str) -> None:
-        self.case, self.title = case, title
-        self.rows: list[dict] = []
-        self.bodies: list[tuple[LifeBody, ...]] = []
-        self.plastic: list[dict] = []
+    case: str
+    title: str
+    rows: list[dict] = field(default_factory=list)
+    bodies: list[tuple[LifeBody, ...]] = field(default_factory=list)
+    plastic: list[dict] = field(default_factory=list)
 
     @property
     def done(self) -> int:
@@ -150,13 +152,6 @@ class LifeHistory:
         self.rows.append(row)
         self.bodies.append(bodies)
         self.plastic.append(plastic)
-
-    def up_to(self, count: int, case: str) -> LifeHistory:
-        """Copy of the life up to a row, with this case."""
-        life = LifeHistory(case, self.title)
-        for values in zip(self.rows[:count], self.bodies, self.plastic, strict=False):
-            life.add(*values)
-        return life
 
 
 def read_life(path: str | Path) -> LifeHistory:

@@ -10,22 +10,19 @@ meets N wheel teeth, each wheel tooth meets N z1/z2 pinion teeth; they are taken
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ehlpetsc.case.tables import Case
 from ehlpetsc.effects.effect import Scene
+from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.effects.wear import WearRecord
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.physics import operation_of
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.surfaces.body_field import BodyFields
 from ehlpetsc.surfaces.roughness import directed_speeds
-
-if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.effects.plastic_deformation import PlasticRecord
-    from ehlpetsc.life.one_pass import OfBody
-    from ehlpetsc.physics.scales import Scales
-
 
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
 FLANK_END_LENGTH = 1.0  # half-widths at either end of a flank whose mean wear is that of the points beyond
@@ -62,9 +59,6 @@ class Positions:
         self, bodies: tuple[LifeBody, ...], position: int, plastic: PlasticRecord | None
     ) -> dict[str, tuple]:
         """Records of the effects with which a pass begins."""
-        from ehlpetsc.effects.wear import WearRecord
-        from ehlpetsc.surfaces.body_field import BodyFields
-
         scene = self.scenes[position]
         ends = scene.operation.travelled(0.0), scene.operation.travelled(scene.operation.duration)
         are_flanks = self.case.conditions and self.case.conditions.profile_offsets

@@ -122,12 +122,8 @@ class MeshOnBodies:
 
         `travelled`: distances travelled by both bodies [m].
         """
-        return BodyFields(
-            *(
-                field.add(faces, depth)
-                for field, faces, depth in zip(fields, self.faces(travelled), depths, strict=True)
-            )
-        )
+        bodies = zip(fields, self.faces(travelled), depths, strict=True)
+        return BodyFields(*(field.add(faces, depth) for field, faces, depth in bodies))
 
     def at_points(self, fields: BodyFields, points: Sequence[np.ndarray | None]) -> list[np.ndarray | None]:
         """Mean depths [m] around equally spaced points s of each body [m]; None without points."""

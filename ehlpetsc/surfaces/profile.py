@@ -130,9 +130,8 @@ class Profile:
     @cached_property
     def _level(self) -> float:
         """Mean height of a mirrored profile [m]; 0 if the heights are 0 beyond the samples."""
-        return (
-            self._spline.integrate(self.X[0], self.X[-1]) / (self.X[-1] - self.X[0]) if self.repeats else 0.0
-        )
+        first, last = self.X[0], self.X[-1]
+        return self._spline.integrate(first, last) / (last - first) if self.repeats else 0.0
 
     @cached_property
     def _antiderivative(self) -> PPoly:

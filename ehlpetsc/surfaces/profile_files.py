@@ -73,7 +73,7 @@ def _read(
     text = path.suffix.lower() in TEXT
     x, z, notes = checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
     x.flags.writeable = z.flags.writeable = False
-    return x, z, tuple(notes)
+    return x, z, notes
 
 
 def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
@@ -127,7 +127,7 @@ def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np
     return x[:, middle], z[:, middle]
 
 
-def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, list[str]]:
+def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Profile from x = 0 on with increasing x and filled gaps; ProfileError for a faulty one."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
     notes = []
@@ -151,7 +151,7 @@ def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, n
     x, z = _with_missing_lines(x, z)
     if np.isnan(z).any():
         x, z = _filled(x, z, layout.fill_gaps, notes)
-    return x - x[0], z, notes
+    return x - x[0], z, tuple(notes)
 
 
 def _with_missing_lines(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

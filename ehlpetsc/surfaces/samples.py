@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -54,14 +53,12 @@ def samples(folder: Path, spec: Values) -> Samples:
     if spec.synthetic is not None:
         X, z, repeats = synthetic.sampled(spec.synthetic)
         return Samples(X, spec.scale * z, repeats)
-    found: Sequence[str]
     if spec.z is not None:
         unit, x_unit = spec.unit or "m", spec.x_unit or spec.unit or "m"
         steps = spec.spacing * np.arange(len(spec.z)) if spec.x is None else UNITS[x_unit] * np.array(spec.x)
-        X, z, found = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
+        X, z, notes = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
-        X, z, found = read_profile(folder / spec.file, layout_of(spec))
-    notes = list(found)
+        X, z, notes = read_profile(folder / spec.file, layout_of(spec))
     if spec.level:
         z = levelled(X, z)
     if spec.cutoff is not None:
@@ -69,14 +66,14 @@ def samples(folder: Path, spec: Values) -> Samples:
     if spec.short_cutoff is not None:
         ra, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
         shown = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
-        notes.append(f"short_cutoff: Ra {shown[0]} before, {shown[1]} after")
+        notes += (f"short_cutoff: Ra {shown[0]} before, {shown[1]} after",)
     mean = float(z.mean())
     if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
         z = z - mean
-        notes.append(f"mean height of {1e6 * mean:.4g} um subtracted")
+        notes += (f"mean height of {1e6 * mean:.4g} um subtracted",)
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
-    return Samples(X, z if spec.scale == 1.0 else spec.scale * z, True, True, tuple(notes))
+    return Samples(X, z if spec.scale == 1.0 else spec.scale * z, True, True, notes)
 
 
 def layout_of(spec: Values) -> Layout:

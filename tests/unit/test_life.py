@@ -260,11 +260,11 @@ def test_longer_or_annotated_life_is_continued(change, tmp_path):
     save_life(stored, path)
     assert change[0] in text
     (tmp_path / "a.toml").write_text(text.replace(*change))
-    continued = stored_or_new(load(tmp_path / "a.toml"), path, overwrite=False, after=None)
+    continued = stored_or_new(load(tmp_path / "a.toml"), path, overwrite=False)
     assert continued.done == 10 and "".join(change[1]) in continued.case
     other = load(tmp_path / "a.toml", {"wear.coefficient": 2e-19})
     with pytest.raises(OutputError, match="another case"):
-        stored_or_new(other, path, overwrite=False, after=None)
+        stored_or_new(other, path, overwrite=False)
 
 
 def test_life_on_an_unresolved_profile_is_refused(tmp_path):

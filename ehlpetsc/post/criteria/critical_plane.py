@@ -116,11 +116,9 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     tolerance = TOLERANCE * extent
     is_kept = np.zeros(size, np.bool_)
     is_kept[0] = is_kept[size - 1] = True
-    for direction in DIRECTIONS:
-        a, b, c = direction
-        _mark_reversals(
-            a * points[0, :size] + b * points[1, :size] + c * points[2, :size], tolerance, is_kept
-        )
+    for a, b, c in DIRECTIONS:
+        along = a * points[0, :size] + b * points[1, :size] + c * points[2, :size]
+        _mark_reversals(along, tolerance, is_kept)
     count, first = 0, ZERO
     ends = np.empty(size, np.int64)
     for last in range(size):
@@ -142,9 +140,7 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
 
 
 MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
-NEGLIGIBLE_RANGE = (
-    0.2  # of the widest range: smaller cycles, ignored in the search, have less than 1e-7 of its damage
-)
+NEGLIGIBLE_RANGE = 0.2  # of the widest: smaller cycles, which the search ignores, have < 1e-7 of its damage
 
 
 @compiled(error_model="python", nogil=True)

@@ -74,7 +74,7 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     centre, radius = points[:, 0].copy(), 0.0
     support = centre.copy().reshape(1, 3)
     for _ in range(MAX_ROUNDS):
-        away = (points[0] - centre[0]) ** 2 + (points[1] - centre[1]) ** 2 + (points[2] - centre[2]) ** 2
+        away = ((points - centre.reshape(3, 1)) ** 2).sum(axis=0)
         farthest = away.argmax()
         if sqrt(away[farthest]) <= radius * (1 + BALL_TOLERANCE):
             break

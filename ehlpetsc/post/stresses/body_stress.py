@@ -142,9 +142,7 @@ def kernel_table(nx: int, depth: float) -> np.ndarray:
     """Kernel spectra (f, 6, 8) at the OFFSETS, up to the last frequency that matters; depth in elements."""
     factor = low_pass(nx, depth)
     left = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
-    shift = np.exp(
-        2j * np.pi / padded_length(nx) * np.arange(factor.size)
-    )  # by an element, to mirrored offsets
+    shift = np.exp(2j * np.pi / padded_length(nx) * np.arange(factor.size))  # by an element: mirrored offsets
     spectra = np.concatenate([left, PARITY * shift * left[::-1].conj()]) * factor
     return np.ascontiguousarray(np.moveaxis(spectra[..., : np.count_nonzero(factor)], -1, 0))
 

@@ -47,14 +47,8 @@ def _primitives(u: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
     d = u * u + z * z
     d = np.where(d > 0, d, 1.0)  # u = z = 0: u ln D and z ln D are 0, the rest is the finite part
     log_d = np.log(d)
-    first = np.stack(
-        [
-            theta / 2 + z * u / (2 * d),
-            -z * z / (2 * d),
-            theta / 2 - z * u / (2 * d),
-            log_d / 2 + z * z / (2 * d),
-        ]
-    )
+    zu, zz = z * u / (2 * d), z * z / (2 * d)
+    first = np.stack([theta / 2 + zu, -zz, theta / 2 - zu, log_d / 2 + zz])
     second = np.stack(
         [u * theta / 2, -z * theta / 2, u * theta / 2 - z * log_d / 2, u * log_d / 2 - u + 1.5 * z * theta]
     )
@@ -91,13 +85,9 @@ SPACING_TOLERANCE = 1e-6  # relative, of stored positions
 def spacing(x: np.ndarray) -> float:
     """Spacing of nodes; ValueError for fewer than two nodes or if they are not uniform and increasing."""
     x = np.asarray(x, float)
-    if x.ndim != 1 or x.size < 2:
-        raise ValueError("x must be one row of at least two nodes")
-    dx = (x[-1] - x[0]) / (x.size - 1)
-    if not (
-        dx > 0 and np.abs(np.diff(x) - dx).max() <= SPACING_TOLERANCE * dx + 8 * np.spacing(np.abs(x).max())
-    ):
-        raise ValueError("x must be uniformly spaced and increasing")
+    dx = (x[-1] - x[0]) / (x.size - 1) if x.ndim == 1 and x.size > 1 else 0.0
+    if not (dx > 0 and np.allclose(np.diff(x), dx, SPACING_TOLERANCE, 8 * np.spacing(np.abs(x).max()))):
+        raise ValueError("x must be a row of at least two nodes, uniformly spaced and increasing")
     return dx
 
 
