@@ -104,10 +104,9 @@ def _lay_out(file: h5py.File, history: LifeHistory) -> None:
             name, (0, *shape), value.dtype, maxshape=(None, *shape), chunks=(chunk, *shape), fletcher32=True
         )
     for k, body in enumerate(history.bodies[0], 1):
-        for name, unit in BODY_DATASETS.items():
+        for name in BODY_DATASETS:
             file[f"surface/{k}/{name}"] = getattr(body, name)
-            file[f"surface/{k}/{name}"].attrs["units"] = unit
-        for name, unit in ROW_DATASETS.items():
+        for name, unit in (BODY_DATASETS | ROW_DATASETS).items():
             file[f"surface/{k}/{name}"].attrs["units"] = unit
     for name, value in history.plastic[0].items():
         file[f"records/{name}"].attrs["is_number"] = int(not np.ndim(value))

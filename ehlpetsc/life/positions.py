@@ -49,7 +49,10 @@ class Positions:
         operation = operation_of(case, scales)
         self.scenes = [Scene.of_pass(case, scales, operation, k + 1) for k in range(self.count)]
         self.rq = self.scenes[0].rq
-        self._shift = case.time.pass_shift if self.count > 1 else 0.0
+        shift = case.time.pass_shift if self.count > 1 else 0.0
+        # columns of body 2 in excess of position 0, and the direction in which positions follow each other
+        self._columns_more = int(np.ceil(abs((self.count - 1) * shift) / scales.dx))
+        self._sign = -1.0 if (directed_speeds(case, scales)[1] > 0.0) == (shift > 0.0) else 1.0
         self.passes_2 = 1.0
         if case.gears:
             pinion, wheel = case.gears.pair.teeth
@@ -84,16 +87,6 @@ class Positions:
         first = body.s[0] if self._sign > 0 else body.s[-1] - length
         first += self._offset(position, k) - self._offset(0, k)
         return first, first + length
-
-    @property
-    def _columns_more(self) -> int:
-        """Number of columns of body 2 in excess of position 0."""
-        return int(np.ceil(abs((self.count - 1) * self._shift) / self.scales.dx))
-
-    @property
-    def _sign(self) -> float:
-        """Direction in which the positions of body 2 follow each other on it."""
-        return -1.0 if (directed_speeds(self.case, self.scales)[1] > 0.0) == (self._shift > 0.0) else 1.0
 
     def new_body(self, of_pass: OfBody, k: int) -> LifeBody:
         """Columns of a body after a pass in position 0, of body 2 in all of its positions."""

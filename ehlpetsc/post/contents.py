@@ -80,7 +80,7 @@ def point_temperatures(loads: Loads, surface: str, s: np.ndarray, complete: np.n
     highest[~complete] = np.nan
     with np.errstate(invalid="ignore", divide="ignore"):
         mean = np.where(complete, sums / times, np.nan)
-    return PointTemperatures(highest, mean, highest - loads.bulk_temperature(surface))
+    return PointTemperatures(highest, mean, highest - loads.case.heat.bulk_temperature[int(surface) - 1])
 
 
 def attributes_of(prepared: Prepared) -> dict[str, Any]:

@@ -59,10 +59,6 @@ class Loads(Result):
         """Whether the temperature of a surface is stored; False without [heat]."""
         return self.case.heat is not None and f"temperature_{surface}" in self.fields
 
-    def bulk_temperature(self, surface: str) -> float:
-        """Temperature of the body of `surface` far from the contact [K]."""
-        return self.case.heat.bulk_temperature[int(surface) - 1]
-
     def check(self, surfaces: Sequence[str]) -> None:
         """Raise PostError if a field required for `surfaces`, or the history, is not stored."""
         for name in ("pressure", *(f"shear_stress_{surface}" for surface in surfaces)):
