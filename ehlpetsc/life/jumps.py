@@ -103,26 +103,18 @@ class Jumps:
                 for rate, body in zip(rates, bodies, strict=True)
             )
             max_passes = min(max_passes, int(MAX_EXTRAPOLATION * before))
-        jump = self._allowed(bodies, rates, solved_round, max_passes)
-        after = tuple(
-            body.after(rate, jump, done, self.life.break_out)
-            for body, rate in zip(bodies, rates, strict=True)
-        )
-        return after, jump, rates
+        pairs = list(zip(bodies, rates, strict=True))
+        jump = self._allowed(pairs, solved_round, max_passes)
+        return tuple(body.after(rate, jump, done, self.life.break_out) for body, rate in pairs), jump, rates
 
-    def _allowed(
-        self, bodies: tuple[LifeBody, ...], rates: tuple[Rates, ...], solved_round: Round, left: int
-    ) -> int:
+    def _allowed(self, pairs: list[tuple[LifeBody, Rates]], solved_round: Round, left: int) -> int:
         """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
         passes: float = 1 if self.is_yielding(solved_round.yielded) else left
-        for body, rate in zip(bodies, rates, strict=True):
+        for body, rate in pairs:
             passes = min(passes, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
         passes = max(int(passes), 1)
-        if self.life.break_out != "none":
+        if (rule := self.life.break_out) != "none":
             late = min(left, int(BREAK_OUT_DELAY * passes))
-            ends = min(
-                body.passes_to_break_out(rate, late, self.life.break_out)
-                for body, rate in zip(bodies, rates, strict=True)
-            )
+            ends = min(body.passes_to_break_out(rate, late, rule) for body, rate in pairs)
             passes = ends if ends < late else passes
         return min(left, max(int(passes), len(solved_round.passes)))

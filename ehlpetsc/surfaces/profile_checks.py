@@ -97,9 +97,9 @@ def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[
         arrives = entry_times(profile, scales)
         if not arrives or case.time.travel >= arrives[1]:
             continue
-        reaches, fills = arrives
-        last = ("fills" if profile.repeats else "is with its middle in the centre of", fills)
-        event, time = ("reaches", reaches) if case.time.travel < reaches else last
+        event, time = "fills" if profile.repeats else "is with its middle in the centre of", arrives[1]
+        if case.time.travel < arrives[0]:
+            event, time = "reaches", arrives[0]
         notes.append(
             f"surface.{side}: the run ends at time.travel = {case.time.travel:g}, before the profile {event} "
             f"the contact ({time:.2f})"

@@ -33,10 +33,8 @@ def evaluate(
     `count`: results (points, columns) of stress (points, 3, samples), lengths (points,) and residual stress.
     """
     stress = np.stack(np.broadcast_arrays(sx, sz, txz), axis=-2).astype(float)
-    if not np.isfinite(stress).all():
-        raise ValueError("stress histories must be finite")
-    if not np.isfinite(residual_stress):
-        raise ValueError("residual_stress must be a finite number")
+    if not (np.isfinite(stress).all() and np.isfinite(residual_stress)):
+        raise ValueError("stress histories and residual_stress must be finite")
     shape, samples = stress.shape[:-2], stress.shape[-1]
     blocks = stress.reshape(-1, 3, samples)
     out = count(blocks, np.full(len(blocks), samples), float(residual_stress))
