@@ -14,6 +14,7 @@ from ehlpetsc.base.materials import DEFAULT
 from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared
+from ehlpetsc.post.stresses.body_points import Passage
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import SURFACES, PointTemperatures, WeibullFit, stored_names
 
@@ -57,29 +58,29 @@ def datasets_of(
             f"{MIN_ASPERITIES} or more"
         )
     if loads.is_heated(surface):
-        temperatures = point_temperatures(loads, surface, prepared.s, motion.complete)
+        temperatures = point_temperatures(loads, surface, motion)
         found |= {f"temperature/{surface}_{name}": array for name, array in temperatures._asdict().items()}
     return found
 
 
-def point_temperatures(loads: Loads, surface: str, s: np.ndarray, complete: np.ndarray) -> PointTemperatures:
-    r"""Highest and mean surface temperature of body points s and their flash temperature.
+def point_temperatures(loads: Loads, surface: str, motion: Passage) -> PointTemperatures:
+    r"""Highest and mean surface temperature of body points and their flash temperature.
 
     The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
     over the stored frames; the flash temperature is the highest temperature minus that of the body.
-    nan for points that are not `complete`: they did not pass the whole contact.
+    nan for points that did not pass the whole contact.
     """
-    highest, sums, times = np.full(s.size, np.nan), np.zeros(s.size), np.zeros(s.size)
+    highest, (sums, times) = np.full(motion.enter.size, np.nan), np.zeros((2, motion.enter.size))
     step = np.diff(loads.time)
     for frame, duration in enumerate(0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))):
-        x = s + loads.travelled[surface][frame]
+        x = motion.positions(frame, loads.x, loads.dx)
         values, is_inside = loads.temperatures(surface, frame, x), np.abs(x) <= loads.a
         highest = np.fmax(highest, values)
         sums[is_inside] += duration * values[is_inside]
         times[is_inside] += duration
-    highest[~complete] = np.nan
+    highest[~motion.complete] = np.nan
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean = np.where(complete, sums / times, np.nan)
+        mean = np.where(motion.complete, sums / times, np.nan)
     return PointTemperatures(highest, mean, highest - loads.case.heat.bulk_temperature[int(surface) - 1])
 
 

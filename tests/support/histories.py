@@ -16,6 +16,7 @@ def history_at(loads, surface, s, depth, quantum=0.0):
 
 def temperature_history(loads, surface, s):
     """Temperatures (samples,) [K] of the surface at body point s [m] while it is among the nodes."""
-    places = s + loads.travelled[surface]
-    values = [loads.temperatures(surface, frame, place) for frame, place in enumerate(places)]
-    return np.array(values)[(places >= loads.x[0]) & (places <= loads.x[-1])]
+    motion = passage(np.array([s]), loads.x, loads.dx, loads.travelled[surface])
+    frames = range(int(motion.enter[0]), int(motion.leave[0]) + 1)
+    places = [motion.positions(frame, loads.x, loads.dx) for frame in frames]
+    return np.array([loads.temperatures(surface, *one)[0] for one in zip(frames, places, strict=True)])

@@ -27,6 +27,12 @@ class Passage(NamedTuple):
     leave: np.ndarray
     complete: np.ndarray
 
+    def positions(self, frame: int, x: np.ndarray, dx: float) -> np.ndarray:
+        """Positions of all points in a frame [m]; nan beyond the nodes x."""
+        node = np.arange(self.enter.size) + self.shift[frame]
+        at = x[node.clip(0, x.size - 1)] + self.offset[frame] * dx
+        return np.where((node >= 0) & (node < x.size), at, np.nan)
+
 
 def body_points(x: np.ndarray, dx: float, travelled: Iterable[np.ndarray]) -> np.ndarray:
     """Body coordinates s, with the spacing dx, of all points that were ever among the nodes x [m].
