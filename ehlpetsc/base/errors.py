@@ -5,8 +5,8 @@ The message of an error that a user can correct states the fault, its place, and
 
 from __future__ import annotations
 
+import os
 from enum import IntEnum
-from os import PathLike
 
 
 class ExitStatus(IntEnum):
@@ -24,10 +24,11 @@ class ExitStatus(IntEnum):
         return self.name.lower().replace("_", " ")
 
 
-def not_written(error: OSError, path: str | PathLike | None = None) -> str:
-    """Message of a failed write: the file, by default that of the error if any, and the reason."""
-    path = path or error.filename
-    return f"{path}: not written, {error.strerror or error}" if path else str(error)
+def not_written(error: Exception, path: str | os.PathLike | None = None) -> str:
+    """Message of a failed write: the file, by default that of the error if any, and the system's reason."""
+    path, number = path or getattr(error, "filename", None), getattr(error, "errno", None)
+    reason = os.strerror(number) if number else str(error)
+    return f"{path}: not written, {reason}" if path else str(error)
 
 
 class CaseError(Exception):

@@ -15,10 +15,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, not_written
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_for_reading, plain
-from ehlpetsc.results.output_guard import os_reason, replacing
+from ehlpetsc.results.output_guard import replacing
 
 BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
@@ -47,7 +47,7 @@ class LifeFile:
             else:
                 self._append(history, [len(history.rows) - 1])
         except (OSError, RuntimeError) as error:
-            raise OutputError(f"{self.path}: not written, {os_reason(error)}") from error
+            raise OutputError(not_written(error, self.path)) from error
 
     def close(self, status: str) -> None:
         """Store the final status and close the file.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, not_written
 from ehlpetsc.results.output_guard import (
     OVERWRITE_ADVICE,
     Lock,
@@ -76,7 +76,7 @@ class Index:
         try:
             atomic_write(self.path, (json.dumps(content, indent=1, default=str) + "\n").encode())
         except OSError as error:
-            raise OutputError(f"{self.path}: index not written, {error.strerror}") from error
+            raise OutputError(not_written(error, self.path)) from error
 
 
 def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:

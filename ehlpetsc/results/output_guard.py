@@ -125,9 +125,3 @@ def atomic_write(path: Path, content: bytes) -> None:
         file.write(content)
         file.flush()
         os.fsync(file.fileno())
-
-
-def os_reason(error: Exception) -> str:
-    """Message of the operating system without HDF5's text."""
-    number = getattr(error, "errno", None)
-    return os.strerror(number) if number else str(error)

@@ -14,9 +14,9 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, not_written
 from ehlpetsc.results.hdf5_file import LIBVER, open_for_reading, plain
-from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write, os_reason
+from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
 
 VERSION = 4  # of the format
 HEADER_BYTES = 512
@@ -34,7 +34,7 @@ def save_restart(path: Path, arrays: dict[str, np.ndarray], attrs: dict[str, Any
     try:
         atomic_write(path, _header(body) + bytes(body))
     except OSError as error:
-        raise OutputError(f"{path}: restart file not written, {os_reason(error)}") from error
+        raise OutputError(not_written(error, path)) from error
 
 
 def load_restart(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:

@@ -19,11 +19,11 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.declarations import Field
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, not_written
 from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, of_every_case
 from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend
 from ehlpetsc.results.means import means
-from ehlpetsc.results.output_guard import os_reason, replacing
+from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 
@@ -140,14 +140,12 @@ class ResultWriter:
         contact_count: np.ndarray | None = None,
     ) -> None:
         self.path = path
-        self.contact_count = np.zeros(len(layout.x), dtype="i8")
-        if contact_count is not None:
-            self.contact_count[:] = contact_count
+        self.contact_count = np.zeros(len(layout.x), "i8") + (0 if contact_count is None else contact_count)
         self._steps: list[dict] = []
         self._frames: list[dict] = []
-        with self._one_sentence("not created"):
+        self._memory = io.BytesIO()
+        with self._one_sentence():
             if path is None:
-                self._memory = io.BytesIO()
                 self._create(self._memory, layout, attributes)
             else:
                 with replacing(path) as target:
@@ -196,7 +194,7 @@ class ResultWriter:
     def flush(self) -> None:
         """Write all rows to the file; a killed process then does not lose them."""
         file, scalars = self._file, list(self._file["steps"])
-        with self._one_sentence("not written on"):
+        with self._one_sentence():
             if self.path:
                 frame_bytes = 8 * len(self.contact_count) * len(self._fields)
                 check_space(self.path, len(self._frames) * frame_bytes + 8 * len(self._steps) * len(scalars))
@@ -216,7 +214,7 @@ class ResultWriter:
 
     def put_depth(self, side: str, name: str, depth: np.ndarray) -> None:
         """Store a depth [m] of a surface, "1" or "2", at the points s of its profile."""
-        with self._one_sentence("not written on"):
+        with self._one_sentence():
             self._file[f"surface/{side}/{name}"][:] = depth
 
     def means(self) -> dict[str, float]:
@@ -229,7 +227,7 @@ class ResultWriter:
         if not self._file:
             return
         self.flush()
-        with self._one_sentence("not closed"):
+        with self._one_sentence():
             self._file.attrs.modify("limits", np.bytes_("\n".join(limits).encode()))
             self._end(status)
 
@@ -242,7 +240,7 @@ class ResultWriter:
         self._file.close()
 
     @contextlib.contextmanager
-    def _one_sentence(self, failure: str) -> Iterator[None]:
+    def _one_sentence(self) -> Iterator[None]:
         """After an error close the file; one of HDF5 or the system becomes an OutputError."""
         try:
             yield
@@ -251,7 +249,7 @@ class ResultWriter:
                 self._end("stopped")
             if isinstance(error, OutputError):
                 raise
-            raise OutputError(f"{self.path}: result file {failure}, {os_reason(error)}") from error
+            raise OutputError(not_written(error, self.path)) from error
 
     def _copy_up_to(self, path: Path, step: int) -> None:
         """Copy all rows up to a step of an earlier part of the run."""

@@ -172,7 +172,7 @@ def disk(monkeypatch):
 def test_older_result_is_kept_if_the_start_fails(tmp_path, disk, resumed):
     path = written(tmp_path / "r.h5", range(2000))
     before, disk[0] = path.read_bytes(), 100_000
-    with pytest.raises(OutputError, match=r"r\.h5: .*created, No space left on device$"):
+    with pytest.raises(OutputError, match=r"r\.h5: .*written, No space left on device$"):
         make_writer(path, **resumed)
     assert path.read_bytes() == before and [p.name for p in tmp_path.iterdir()] == ["r.h5"]
 
