@@ -7,13 +7,12 @@ needs, and names the packages that are missing.
 import difflib
 import importlib
 import os
-import shlex
 import signal
 import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import NamedTuple, NoReturn
+from typing import NoReturn
 
 import ehlpetsc.base.environment as packages
 from ehlpetsc import __version__
@@ -21,34 +20,21 @@ from ehlpetsc.base.environment import NUMERICS, READING
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.run.stop import StopRequest
 
-DRAWING = (*NUMERICS, "matplotlib")
+DRAWING, FORECAST = (*NUMERICS, "matplotlib"), (*READING, "h5py")
 
 
-class Command(NamedTuple):
-    """A command: module and function of its words, packages that it needs, description."""
-
-    module: str
-    needs: tuple[str, ...]
-    text: str
-    function: str = "main"
-
-
-COMMANDS = {
-    "post": Command("ehlpetsc.post.command", NUMERICS, "stresses, fatigue damage, statistics"),
-    "plot": Command("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
-    "summary": Command("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
-    "compare": Command("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),
-    "ensemble": Command("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
-    "gears": Command("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
-    "life": Command("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
-    "explain": Command(
-        "ehlpetsc.run.explain", (*READING, "h5py"), "film, run time and effects of a case, before it runs"
-    ),
-    "keys": Command("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
-    "template": Command(
-        "ehlpetsc.case.key_page", READING, "a commented case to begin with", "template_command"
-    ),
-    "docs": Command("ehlpetsc.base.docs", (), "these pages as one site, opened in a browser"),
+COMMANDS = {  # module and its function, by default main, packages that it needs, description
+    "post": ("ehlpetsc.post.command", NUMERICS, "stresses, fatigue damage, statistics"),
+    "plot": ("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
+    "summary": ("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
+    "compare": ("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),
+    "ensemble": ("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
+    "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
+    "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
+    "explain": ("ehlpetsc.run.explain", FORECAST, "film, run time and effects of a case, before it runs"),
+    "keys": ("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
+    "template": ("ehlpetsc.case.key_page:template_command", READING, "a commented case to begin with"),
+    "docs": ("ehlpetsc.base.docs", (), "these pages as one site, opened in a browser"),
 }
 
 
@@ -94,14 +80,11 @@ def _start(words: list[str]) -> int:
 
 
 def _start_command(name: str, words: list[str]) -> int:
-    command = COMMANDS[name]
-    lacks = packages.missing(command.needs)
-    if lacks:
-        return refuse(
-            f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
-            f"type: {shlex.join([sys.executable, '-m', 'pip', 'install', *lacks])}"
-        )
-    return getattr(importlib.import_module(command.module), command.function)(words)
+    place, needs, _ = COMMANDS[name]
+    if lacks := packages.missing(needs):
+        return refuse(packages.advice(lacks, [name, *words]))
+    module, _, function = place.partition(":")
+    return getattr(importlib.import_module(module), function or "main")(words)
 
 
 def _run_script(words: list[str]) -> NoReturn:
@@ -118,8 +101,7 @@ def _run(words: list[str]) -> int:
     try:
         chosen = parse(words)
         stop = StopRequest(chosen.time_limit)  # before the imports, which take a second
-        missing = packages.prepare()
-        if missing:
+        if missing := packages.prepare():
             return refuse(packages.advice(missing, words))
         if "-help" in [*chosen.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
             _print(help_text())
@@ -134,16 +116,15 @@ def _run(words: list[str]) -> int:
 
 def help_text() -> str:
     """All commands and the options of a run, in the manner of PETSc's ``-help``."""
-    from ehlpetsc.run.cli import options_text
+    from ehlpetsc.run.cli import run_parser
 
     lines = [
         "usage: ehlpetsc CASE.toml [options]    run a case, under mpirun on any number of ranks",
         "       ehlpetsc COMMAND ...            each with -h:",
-        *(f"  {name:9s} {command.text}" for name, command in COMMANDS.items()),
+        *(f"  {name:9s} {text}" for name, (*_, text) in COMMANDS.items()),
         "  python    SCRIPT.py: run a script in which import ehlpetsc works",
-        "Options of a run, also as -ehl_output ...:",
-        options_text(),
-        "  --version",
+        "Options of a run, also as -ehl_output ...; and --version:",
+        run_parser().format_help().partition("\n")[2],
         "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",
         "may be in [petsc] of the case, in PETSC_OPTIONS and on the command line; the last one counts.",
         "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",

@@ -132,12 +132,10 @@ def solve(
     if time is not None and time.passes > 1:
         passes = f"{simulation.case.path}: time.passes = {time.passes}: solve one after the other"
         raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
-    if progress is None:
-        progress = on_terminal(sys.stdout) or in_notebook()
+    progress = on_terminal(sys.stdout) or in_notebook() if progress is None else progress
     recorder = Recorder(simulation, None if output is None else Path(output))
     with simulation.options, recorder:
-        begun = recorder.lock_output(None if restart is None else Path(restart), overwrite)
-        if begun is not None:
+        if begun := recorder.lock_output(None if restart is None else Path(restart), overwrite):
             recorder.resume(begun)
         shown = [Progress(simulation)] if progress and simulation.comm.rank == 0 else []
         with StopRequest.on_interrupt() as stop:
@@ -153,6 +151,5 @@ def solve(
 
 def need_solver() -> None:
     """Find Debian's PETSc; ImportError with advice if a package is missing."""
-    missing = environment.prepare()
-    if missing:
+    if missing := environment.prepare():
         raise ImportError(environment.advice(missing, []))

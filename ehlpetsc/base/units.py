@@ -51,10 +51,7 @@ OTHERS = {
 ZEROS = {"degC": 273.15, "°C": 273.15, "C": 273.15, "degF": 459.67 * 5 / 9}  # K
 SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*"} | {"²": "^2", "³": "^3"})
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
-TOKEN = re.compile(
-    r"\s*(?:(?P<number>\d+\.?\d*(?:e[-+]?\d+)?)|(?P<name>[A-Za-z%°]+)(?:(?:\^|\*\*)?(?P<power>[-+]?\d))?"
-    r"|(?P<sign>[*/()]))"
-)
+TOKEN = r"\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?)|([A-Za-z%°]+)(?:(?:\^|\*\*)?([-+]?\d))?|([*/()]))"
 ANY = "a number, or %"  # where there is no unit
 MAX_DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
 
@@ -100,41 +97,24 @@ def factor(text: str, unit: str) -> float:
 @cache
 def _unit(text: str) -> tuple[float, tuple[int, ...]]:
     """SI size and exponents of `BASE` of a product of units, read from left to right."""
-    tokens, end, text = [], 0, text.translate(SIGNS).strip()
-    if text.count("(") != text.count(")"):
+    text = text.translate(SIGNS).strip()
+    if re.sub(TOKEN, "", text):
         raise KeyError(text)
-    while end < len(text):
-        match = TOKEN.match(text, end)
-        if not match:
-            raise KeyError(text)
-        tokens.append(match)
-        end = match.end()
-    unit = _product(tokens)
-    if tokens:  # a bracket that was not opened
-        raise KeyError(text)
-    return unit
-
-
-def _product(tokens: list[re.Match[str]]) -> tuple[float, tuple[int, ...]]:
-    """Unit of the tokens up to a closing bracket, which are removed."""
-    size, exponents, power = 1.0, [0] * len(BASE), 1
-    while tokens:
-        token = tokens.pop(0)
-        if token["sign"] == ")":
-            break
-        if token["sign"] in ("*", "/"):
-            power = 1 if token["sign"] == "*" else -1
+    size, exponents, sign, outer = 1.0, [0] * len(BASE), 1, [1]
+    for number, name, power, mark in re.findall(TOKEN, text):
+        if mark == "(":
+            outer.append(sign * outer[-1])
+        elif mark == ")":
+            outer.pop()
+        if mark:
+            sign = -1 if mark == "/" else 1
             continue
-        if token["sign"]:
-            one, dimensions = _product(tokens)
-        elif token["number"]:
-            one, dimensions = float(token["number"]), (0,) * len(BASE)
-        else:
-            one, dimensions = _named(token["name"])
-            power *= int(token["power"] or 1)
-        size *= one**power
-        exponents = [e + power * d for e, d in zip(exponents, dimensions, strict=True)]
-        power = 1
+        one, dimensions = _named(name) if name else (float(number), (0,) * len(BASE))
+        exponent, sign = sign * outer[-1] * int(power or 1), 1
+        size *= one**exponent
+        exponents = [e + exponent * d for e, d in zip(exponents, dimensions, strict=True)]
+    if outer != [1]:
+        raise KeyError(text)
     return size, tuple(exponents)
 
 

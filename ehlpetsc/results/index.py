@@ -38,8 +38,8 @@ def read_index(path: Path) -> dict:
         raise OutputError(f"{path}: not an index of ehlpetsc ({error})") from error
 
 
-class Index:
-    """Index of results of a case, written while they are computed.
+class Index(Lock):
+    """Index of results of a case, written while they are computed; with a lock.
 
     `kind` is the name of the list in the file, "members" or "passes"; `rows` are its entries, each with the
     name of a "file" in the folder of the index; `more` are other entries of the file.
@@ -48,27 +48,19 @@ class Index:
     def __init__(self, path: Path, case: Case, kind: str, **more: object) -> None:
         self.path, self.case, self.kind, self.more = path, case, kind, more
         self.rows: list[dict] = []
-        self._lock = Lock(path)
+        super().__init__(path)
 
-    def acquire(self, overwrite: bool) -> None:
+    def acquire(self, overwrite: bool = False) -> None:
         """Lock the index until :meth:`release`; OutputError if another file would be replaced."""
         check_output_path(self.path, inputs_of(self.case))
         if self.path.exists() and not overwrite and self.kind not in read_index(self.path):
             raise OutputError(f"{self.path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}")
-        self._lock.acquire()
-
-    def release(self) -> None:
-        """Release the lock."""
-        self._lock.release()
+        super().acquire()
 
     def stored_rows(self, of_any_case: bool = False) -> list[dict]:
         """Rows in the file; [] if it is missing or, normally, of another case."""
         content = read_index(self.path) if self.path.exists() else {}
         return content.get(self.kind, []) if of_any_case or content.get("case") == self.case.text else []
-
-    def replace(self, rows: list[dict]) -> None:
-        """Take other rows, which the next :meth:`write` stores."""
-        self.rows = rows
 
     def write(self) -> None:
         """Write the file."""

@@ -39,21 +39,14 @@ def check_derived(path: Path, inputs: Iterable[Path], endings: tuple[str, ...], 
 
 
 class Lock:
-    """Lock on an output, a context manager, or by :meth:`acquire` and :meth:`release`.
+    """Lock on an output from :meth:`acquire` to :meth:`release`.
 
-    The lock is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process.
+    It is a file lock of the operating system on ``OUTPUT.lock``, which ends with a killed process.
     """
 
     def __init__(self, path: Path) -> None:
         self._output, self._path = path, path.with_name(path.name + ".lock")
         self._file: TextIO | None = None
-
-    def __enter__(self) -> Lock:
-        self.acquire()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.release()
 
     def acquire(self) -> None:
         """Acquire the lock; an OutputError names the process that has it."""

@@ -7,14 +7,12 @@ words are PETSc's. Only rank 0 reads the case file.
 from __future__ import annotations
 
 import argparse
-import contextlib
 import difflib
-import itertools
 import math
 import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 
@@ -28,46 +26,11 @@ if TYPE_CHECKING:
 NO_SIGNAL_HANDLER = "-no_signal_handler"  # PETSc's handler would end the process with its own report
 
 
-def _minutes(text: str) -> float:
-    with contextlib.suppress(ValueError):
-        if 0.0 < (minutes := float(text)) < math.inf:
-            return minutes
-    raise argparse.ArgumentTypeError(f"{text}: allowed: a number > 0 [minutes]")
-
-
-OPTIONS: dict[str, dict[str, Any]] = {  # arguments of argparse
-    "output": {"metavar": "FILE", "help": "result file, the restart file beside it [CASE.h5 in this folder]"},
-    "set": {
-        "metavar": "TABLE.KEY=VALUE",
-        "action": "append",
-        "default": [],
-        "help": "key of the case; may be repeated",
-    },
-    "overwrite": {"action": "store_true", "help": "replace the file of another or of an edited case"},
-    "restart": {"metavar": "FILE", "type": Path, "help": "continue from FILE and append to the result"},
-    "time_limit": {
-        "metavar": "MINUTES",
-        "type": _minutes,
-        "default": 0.0,
-        "help": "stop after this wall clock time [none]",
-    },
-    "scheme": {
-        "metavar": "newton|sweep",
-        "choices": ("newton", "sweep"),
-        "help": "sweep: Gauss-Seidel iteration of the paper [newton]",
-    },
-}
-
-
-def _long_name(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
-
-
-def options_text() -> str:
-    """Lines of the help on the options of a run."""
-    names = {name: f"{_long_name(name)} {option.get('metavar', '')}" for name, option in OPTIONS.items()}
-    names["output"] = f"-o, {names['output']}"
-    return "\n".join(f"  {text:32s} {OPTIONS[name]['help']}" for name, text in names.items())
+def minutes(text: str) -> float:
+    """Wall clock time of an option."""
+    if not 0.0 < float(text) < math.inf:
+        raise argparse.ArgumentTypeError(f"{text}: allowed: a number > 0 [minutes]")
+    return float(text)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -75,8 +38,24 @@ class _Parser(argparse.ArgumentParser):
         raise UsageError(f"{message.removeprefix('argument ')}; ehlpetsc -h lists the options")
 
 
+def run_parser() -> argparse.ArgumentParser:
+    """Parser of the options of a run."""
+    parser = _Parser(add_help=False, allow_abbrev=False, usage=argparse.SUPPRESS)
+    add = parser.add_argument
+    of_output = "result file, also -o; the restart file beside it [CASE.h5 in this folder]"
+    add("--output", metavar="FILE", help=of_output)
+    of_set = "key of the case; may be repeated"
+    add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help=of_set)
+    add("--overwrite", action="store_true", help="replace the file of another or of an edited case")
+    add("--restart", metavar="FILE", type=Path, help="continue from FILE and append to the result")
+    limit = "stop after this wall clock time [none]"
+    add("--time-limit", metavar="MINUTES", type=minutes, default=0.0, help=limit)
+    add("--scheme", choices=("newton", "sweep"), help="sweep: Gauss-Seidel iteration of the paper [newton]")
+    return parser
+
+
 def parse(words: list[str]) -> argparse.Namespace:
-    """Sort the words of a run: values of `OPTIONS`, the case file as `case`, all other words as `petsc`.
+    """Sort the words of a run: values of its options, the case file as `case`, all other words as `petsc`.
 
     The case file, None with -help alone, is the word that ends in .toml, otherwise the first word.
 
@@ -85,15 +64,11 @@ def parse(words: list[str]) -> argparse.Namespace:
     UsageError
         Two case files, or none although one is needed; an unknown option; a word that belongs to no option.
     """
-    parser = _Parser(add_help=False, allow_abbrev=False)
-    for name, option in OPTIONS.items():
-        parser.add_argument(_long_name(name), **option)
-    chosen, others = parser.parse_known_args([_long(word) for word in words])
+    chosen, others = run_parser().parse_known_args([_long(word) for word in words])
     case, petsc = _without_case(others)
-    before = "value"
-    for word, value in itertools.pairwise([*petsc, ""]):
-        _check(word, value, before, case)
-        before = word
+    names = [_long(f"-ehl_{name}") for name in vars(chosen)]
+    for before, word, value in zip(["value", *petsc], petsc, [*petsc[1:], ""], strict=False):
+        _check(word, value, before, case, names)
     if chosen.scheme:  # read by the solver, from PETSc's table
         petsc += ["-ehl_scheme", chosen.scheme]
     return argparse.Namespace(**vars(chosen), case=case, petsc=petsc)
@@ -120,7 +95,7 @@ def _without_case(words: list[str]) -> tuple[str | None, list[str]]:
     return words[k], words[:k] + words[k + 1 :]
 
 
-def _check(word: str, value: str, before: str, case: str | None) -> None:
+def _check(word: str, value: str, before: str, case: str | None, names: list[str]) -> None:
     """Refuse a word that neither this program nor PETSc has, and files that PETSc could not open."""
     name = word.lstrip("-")
     if word in ("-n", "-np"):
@@ -128,7 +103,7 @@ def _check(word: str, value: str, before: str, case: str | None) -> None:
     if re.match(r"[^-]|-\d", word) and not before.startswith("-"):
         reason = "neither an option nor a value; a command comes first"
         raise UsageError(f"{word}: {reason}: ehlpetsc {word} {case}")
-    close = difflib.get_close_matches(f"--{name}", map(_long_name, OPTIONS), cutoff=0.8)
+    close = difflib.get_close_matches(f"--{name}", names, cutoff=0.8)
     if close and word.startswith("-"):
         raise UsageError(f"{word}: unknown option; did you mean {close[0]}?")
     if word.startswith("--") and name[:1].isalpha():
@@ -202,4 +177,4 @@ def _run_single(
             print(line)
         for line in warnings(case, simulation.scales):
             print(f"warning: {line}", flush=True)
-    return Run(simulation, output, stop).run(restart, overwrite).status
+    return Run(simulation, output, stop).run(restart, overwrite)[0]

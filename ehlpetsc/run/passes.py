@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
@@ -60,16 +60,17 @@ class Passes:
             restart = restart or on_root(self.comm, self._unfinished)
         first = on_root(self.comm, pass_of, restart) if restart else 1
         if first > 1:
-            self.index.replace(on_root(self.comm, self._rows_before, first))
+            rows = on_root(self.comm, self.index.stored_rows, True)
+            self.index.rows = [row for row in rows if row["pass"] < first]
         simulation, status = None, ExitStatus.DONE
         for number in range(first, self.case.time.passes + 1):
             simulation = Simulation(self.case, self.comm, after=simulation, pass_number=number)
             self._print(f"pass {number} of {self.case.time.passes}")
-            outcome = Run(simulation, self.file(number), self.stop).run(restart, overwrite)
-            status, restart = outcome.status, None
+            status, _ = Run(simulation, self.file(number), self.stop).run(restart, overwrite)
             if status is not ExitStatus.DONE:
                 return status
             on_root(self.comm, self._note, number)
+            restart = None
         self._print_end()
         return status
 
@@ -83,9 +84,6 @@ class Passes:
                 return self.restart(number)
         return None
 
-    def _rows_before(self, first: int) -> list[dict]:
-        return [row for row in self.index.stored_rows(of_any_case=True) if row["pass"] < first]
-
     def _note(self, number: int) -> None:
         """Add a complete pass to the index."""
         with read_result(self.file(number)) as result:
@@ -93,17 +91,13 @@ class Passes:
         before = self.index.rows[-1]["set_volume"] if self.index.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
         self.index.rows.append(row)
-        try:
-            self.index.write()
-        except OutputError as error:
-            raise OutputError(f"{error}; {self.file(number).name} is whole") from error
+        self.index.write()
         self._print(line(row))
 
     def _print_end(self) -> None:
         rows, shift = self.index.rows, self.case.time.pass_shift
         self._print(f"passes: {self.index.path}")
-        number = passes_to_run_in(rows, SHIFTED_IN_A_ROW if shift else 1) if self.comm.rank == 0 else None
-        if number:
+        if number := passes_to_run_in(rows, SHIFTED_IN_A_ROW if shift else 1):
             self._print(f"run in: from pass {number} on each adds less than {RUN_IN:.0%} of the first one's")
         if len(rows) > 1 and not shift:
             self._print("the same asperities have met in every pass; time.pass_shift brings others together")

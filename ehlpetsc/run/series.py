@@ -97,7 +97,7 @@ def compute_rows(
         on_row(number)
 
     on_root(world, index.write)
-    index.replace(WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows))
+    index.rows = WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows)
 
 
 class Member:
@@ -161,33 +161,35 @@ class Series:
 
     def run(self) -> ExitStatus:
         """Run the missing members; returns the exit status."""
-        begun, is_root, index, faults = clock.monotonic(), self.world.rank == 0, self.index, []
+        begun, index = clock.monotonic(), self.index
         on_root(self.world, index.acquire, self.overwrite)
         try:
-            done = self.world.bcast(
-                [is_done(m.output, m.case.text) for m in self.members] if is_root else None
-            )
-            missing = [n for n, complete in enumerate(done) if not complete]
-            missing.sort(key=lambda n: self.members[n].weight(), reverse=True)
-            for number in set(range(len(done))).difference(missing):
-                index.rows[number]["state"] = ExitStatus.DONE.words
-            if is_root:
-                self._print_opening(len(missing))
+            missing = on_root(self.world, self._missing)
             compute_rows(self.world, index, missing, self._run_member, self.stop)
-            states = {row["state"] for row in index.rows}
-            failed = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
-            status = next((status for status in failed if status.words in states), ExitStatus.DONE)
-            if {WAITING, ExitStatus.STOPPED.words} & states:
-                status = ExitStatus.STOPPED
-            try:
-                on_root(self.world, index.write)
-            except OutputError as error:
-                faults, status = [str(error)], status or ExitStatus.BAD_INPUT
+            if self.world.rank == 0:
+                self._report(clock.monotonic() - begun)
+            on_root(self.world, index.write)
         finally:
             index.release()
-        if is_root:
-            self._report(status, faults, clock.monotonic() - begun)
-        return status
+        return self._status()
+
+    def _missing(self) -> list[int]:
+        """Numbers of the members without a complete result, the longest first; prints the opening."""
+        missing = []
+        for number, member in enumerate(self.members):
+            if is_done(member.output, member.case.text):
+                self.index.rows[number]["state"] = ExitStatus.DONE.words
+            else:
+                missing.append(number)
+        self._print_opening(len(missing))
+        return sorted(missing, key=lambda n: self.members[n].weight(), reverse=True)
+
+    def _status(self) -> ExitStatus:
+        states = {row["state"] for row in self.index.rows}
+        if {WAITING, ExitStatus.STOPPED.words} & states:
+            return ExitStatus.STOPPED
+        failed = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
+        return next((status for status in failed if status.words in states), ExitStatus.DONE)
 
     def _run_member(self, number: int, group: MPI.Comm, stop: PollingStop) -> dict[str, Any]:
         """Run one member on a group; returns its state and the reason of a failure."""
@@ -196,11 +198,10 @@ class Series:
         err: Any = PrefixedStream(member.name, sys.stderr)
         try:
             run = Run(Simulation(member.case, group), member.output, stop, out, err)
-            outcome = run.run(overwrite=self.overwrite)
+            status, failure = run.run(overwrite=self.overwrite)
         except (CaseError, OutputError, UsageError) as error:
             return {"state": ExitStatus.BAD_INPUT.words, "reason": str(error)}
-        reason = {"reason": str(outcome.failure)} if outcome.failure else {}
-        return {"state": outcome.status.words} | reason
+        return {"state": status.words} | ({"reason": str(failure)} if failure else {})
 
     def _print_opening(self, missing: int) -> None:
         names = ", ".join(m.name for m in self.members)
@@ -217,16 +218,16 @@ class Series:
             print(f"warning: {prefix}{warning}")
         sys.stdout.flush()
 
-    def _report(self, status: ExitStatus, faults: list[str], wall: float) -> None:
+    def _report(self, wall: float) -> None:
         """Print the outcome on the first rank."""
+        status = self._status()
         for member, row in zip(self.members, self.index.rows, strict=True):
             if "reason" in row:
-                print(f"ehlpetsc: {member.name}: {row['state']}: {row['reason']}", file=sys.stderr)
-        for fault in faults:
-            print(f"ehlpetsc: {fault}", file=sys.stderr)
-        sys.stderr.flush()
+                print(
+                    f"ehlpetsc: {member.name}: {row['state']}: {row['reason']}", file=sys.stderr, flush=True
+                )
         if status is ExitStatus.STOPPED:
             print("ehlpetsc: stopped; the same command computes what is missing")
-        if not faults:
+        if self.index.path.exists():
             print(f"index: {self.index.path}")
         print(summary_line(status, Totals.of_series(m.totals() for m in self.members), wall), flush=True)

@@ -31,15 +31,7 @@ from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.time_stepping import TimeStepping
 
-MONITOR_OPTIONS = (
-    "snes_monitor",
-    "snes_vi_monitor",
-    "snes_converged_reason",
-    "ksp_monitor",
-    "ksp_converged_reason",
-)
-
-
+MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
@@ -158,16 +150,15 @@ class Simulation:
         self.solution: State | None = None
         with self.options:
             solver: Any = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
-            self._is_monitored = any(name in self.options.given for name in MONITOR_OPTIONS)
         before = after.solution.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
 
     def _is_of_contact(self, other: Simulation) -> bool:
         """Whether another simulation has the same nodes and contact law."""
-        (mesh, a), (other_mesh, other_a) = ((s.case.mesh, s.scales.a) for s in (self, other))
-        same_law = self.case.contact.law == other.case.contact.law
-        return same_law and mesh == other_mesh and abs(a - other_a) < NODE_TOLERANCE * a
+        (mesh, law), of_other = ((s.case.mesh, s.case.contact.law) for s in (self, other))
+        is_equal = abs(self.scales.a - other.scales.a) < NODE_TOLERANCE * self.scales.a
+        return is_equal and (mesh, law) == of_other
 
     @property
     def finished(self) -> bool:
@@ -201,8 +192,7 @@ class Simulation:
             begun = self.solution is not None
             if begun and stop and stop(self.comm):
                 raise Stopped
-            is_requested = stop and (stop.overdue if begun else stop)
-            watch = partial(_raise_if_stopped, is_requested, self.comm) if stop else None
+            watch = partial(_raise_if_stopped, stop.overdue if begun else stop, self.comm) if stop else None
             yield self.advance(watch=watch)
 
     def resume(self, solution: State, baseline: tuple[np.ndarray, np.ndarray]) -> None:
@@ -271,7 +261,7 @@ class Simulation:
 
     def _print_heading(self, text: str) -> None:
         """Print a heading above the output of PETSc's monitors."""
-        if self._is_monitored:
+        if any(name in self.options.given for name in MONITORS):
             PETSc.Sys.Print(text, comm=self.comm)
 
 

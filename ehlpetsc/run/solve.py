@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time as clock
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TextIO
+from typing import TYPE_CHECKING, Protocol, TextIO
 
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
 from ehlpetsc.run.outputs.progress import Progress, summary_line
@@ -22,14 +22,6 @@ class Output(Protocol):
     def write(self, state: AcceptedState) -> None: ...
 
     def close(self, status: ExitStatus) -> None: ...
-
-
-class Outcome(NamedTuple):
-    """Outcome of a run; `wall` is its wall clock time [s]."""
-
-    status: ExitStatus
-    failure: NotConverged | OutputError | None
-    wall: float
 
 
 def solve(
@@ -66,25 +58,23 @@ class Run:
         self.out, self.err = out or sys.stdout, err or sys.stderr
         self._unused: set[str] = set()
 
-    def run(self, restart: Path | None = None, overwrite: bool = False) -> Outcome:
+    def run(
+        self, restart: Path | None = None, overwrite: bool = False
+    ) -> tuple[ExitStatus, NotConverged | OutputError | None]:
         """Run to the end, or from a restart file, and print a report; see `Recorder.lock_output`."""
         begun = clock.monotonic()
+        status: ExitStatus
+        failure: NotConverged | OutputError | None
         try:
             status, failure = self._solve(restart, overwrite)
         except OutputError as error:
             if self.simulation.state is None:  # nothing was computed yet
                 raise
-            outcome = Outcome(ExitStatus.BAD_INPUT, error, clock.monotonic() - begun)
-            if self.root:
-                saved = f"; the same command continues from {self.recorder.restart}"
-                saved = saved if self.recorder.restart.exists() else ""
-                print(f"ehlpetsc: {error}{saved}", file=self.err, flush=True)
-            self._print(summary_line(outcome.status, self.recorder.totals, outcome.wall))
-            return outcome
-        outcome = Outcome(status, failure, clock.monotonic() - begun)
+            status, failure = ExitStatus.BAD_INPUT, error
         if self.root:
-            self._report(outcome)
-        return outcome
+            self._report(status, failure)
+        self._print(summary_line(status, self.recorder.totals, clock.monotonic() - begun))
+        return status, failure
 
     def _solve(self, restart: Path | None, overwrite: bool) -> tuple[ExitStatus, NotConverged | None]:
         with self.simulation.options, self.recorder:
@@ -110,21 +100,22 @@ class Run:
         if new:
             self._print(f"note: unused options: -{', -'.join(sorted(new))}")
 
-    def _report(self, outcome: Outcome) -> None:
+    def _report(self, status: ExitStatus, failure: NotConverged | OutputError | None) -> None:
         recorder, state = self.recorder, self.simulation.solution
-        if outcome.failure:
+        if isinstance(failure, OutputError):
+            saved = f"; the same command continues from {recorder.restart}"
+            saved = saved if recorder.restart.exists() else ""
+            print(f"ehlpetsc: {failure}{saved}", file=self.err, flush=True)
+            return
+        if failure:
             saved = f". Last good state: {recorder.restart}" if state else ""
-            print(f"ehlpetsc: not converged: {outcome.failure}{saved}", file=self.err, flush=True)
-        elif outcome.status is ExitStatus.STOPPED:
+            print(f"ehlpetsc: not converged: {failure}{saved}", file=self.err, flush=True)
+        elif status is ExitStatus.STOPPED:
             self._print(f"ehlpetsc: {place_of_stop(self.simulation, recorder)}")
-        for line in recorder.limits:
-            self._print(f"limit: {line}")
-        for note in self._notes:
-            self._print(f"note: {note}")
+        self._print(*(f"limit: {line}" for line in recorder.limits), *(f"note: {n}" for n in self._notes))
         self._print_unused()
         if state is not None:
             self._print(f"result: {recorder.output}")
-        self._print(summary_line(outcome.status, self.recorder.totals, outcome.wall))
 
     def _print(self, *lines: str) -> None:
         if self.root:

@@ -8,7 +8,7 @@ from support.running import PYTHON, SCRIPT, called, run, settings, summary
 
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.cli import OPTIONS, parse
+from ehlpetsc.run.cli import parse
 
 SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
 MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]
@@ -178,7 +178,7 @@ def test_unused_options_are_listed_before_the_first_step(case, tmp_path):
 def test_help_lists_own_options_and_runs_nothing(case, tmp_path):
     done = run(case, "-help", cwd=tmp_path, ranks=2)
     assert done.returncode == 0
-    assert all(f"--{name.replace('_', '-')} " in done.stdout for name in OPTIONS)
+    assert all(f"--{name} " in done.stdout for name in ("output", "overwrite", "restart", "time-limit"))
     assert done.stdout.count("usage: ehlpetsc") == 1
     for petscs in ("-snes_linesearch_type", "-ksp_rtol", "-pc_type"):
         assert petscs in done.stdout

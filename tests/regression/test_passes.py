@@ -21,13 +21,15 @@ BRIEF = settings(*SHORT)
 
 def test_pass_index_is_locked_by_one_run(tmp_path):
     """A second run of passes names the first run."""
-    with Lock(tmp_path / "running_in.passes.json"):
-        second = run(CASE, *settings(*SHORT), "--overwrite", cwd=tmp_path)
-        assert second.returncode == 2
-        (message,) = second.stderr.splitlines()
-        assert message.startswith("ehlpetsc: running_in.passes.json: ")
-        assert f" process {os.getpid()} on " in message
-        assert [path.name for path in tmp_path.iterdir()] == ["running_in.passes.json.lock"]
+    lock = Lock(tmp_path / "running_in.passes.json")
+    lock.acquire()
+    second = run(CASE, *settings(*SHORT), "--overwrite", cwd=tmp_path)
+    assert second.returncode == 2
+    (message,) = second.stderr.splitlines()
+    assert message.startswith("ehlpetsc: running_in.passes.json: ")
+    assert f" process {os.getpid()} on " in message
+    assert [path.name for path in tmp_path.iterdir()] == ["running_in.passes.json.lock"]
+    lock.release()
     assert not list(tmp_path.iterdir())
 
 

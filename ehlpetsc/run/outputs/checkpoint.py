@@ -13,6 +13,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
+from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
 
@@ -27,7 +28,6 @@ NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 SCALE_TOLERANCE = 1e-12  # relative
 SCALES = ("a", "p0", "h")  # of load, radius and elasticity
 SPEEDS = ("motion", "operation", "gears")  # tables
-Pair = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,9 @@ class Checkpoint:
     """
 
     state: State
-    baseline: Pair
+    baseline: tuple[np.ndarray, np.ndarray]
     contact_count: np.ndarray
     totals: dict[str, float]
-    pass_number: int
 
 
 def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
@@ -79,8 +78,7 @@ def load(path: Path, case: Case, scales: Scales) -> tuple[Checkpoint, list[str]]
         raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to continue")
     arrays, attributes = load_restart(path)
     earlier = tomllib.loads(attributes["case"])
-    misfit = _misfit(arrays, attributes, earlier, case, scales)
-    if misfit:
+    if misfit := _misfit(arrays, attributes, earlier, case, scales):
         raise OutputError(f"{path}: {misfit}")
     return _checkpoint(arrays, attributes), changed_keys(earlier, tomllib.loads(case.text))
 
@@ -92,8 +90,6 @@ def pass_of(path: Path) -> int:
 
 def changed_keys(earlier: dict, now: dict) -> list[str]:
     """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics."""
-    from ehlpetsc.results.index import flat_keys
-
     old, new = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
     return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
@@ -117,7 +113,7 @@ def _checkpoint(arrays: dict[str, np.ndarray], attributes: dict[str, Any]) -> Ch
     )
     totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
     smooth = arrays["smooth_q"], arrays["smooth_w"]
-    return Checkpoint(state, smooth, arrays["contact_count"], totals, int(attributes["pass_number"]))
+    return Checkpoint(state, smooth, arrays["contact_count"], totals)
 
 
 def _misfit(

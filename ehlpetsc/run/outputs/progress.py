@@ -19,20 +19,10 @@ SECONDS_IN_PLACE = 0.2
 MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
 
 
-def on_terminal(stream: TextIO | None) -> bool:
-    """Whether output is shown on a terminal.
-
-    Under mpirun every rank has a terminal, even if the output of mpirun is a file: the output of the parent
-    process decides, and run_mpi.sh sets TERM.
-    """
-    if not stream.isatty() or os.environ.get("TERM") == "dumb":
-        return False
-    if "OMPI_COMM_WORLD_RANK" not in os.environ:
-        return True
-    try:
-        return os.readlink(f"/proc/{os.getppid()}/fd/1").startswith(("/dev/pts/", "/dev/tty"))
-    except OSError:
-        return True
+def on_terminal(stream: TextIO) -> bool:
+    """Whether output is shown on a terminal, which under mpirun is not known."""
+    is_dumb = os.environ.get("TERM") == "dumb" or "OMPI_COMM_WORLD_RANK" in os.environ
+    return stream.isatty() and not is_dumb
 
 
 def in_notebook() -> bool:

@@ -43,8 +43,8 @@ class Recorder:
 
     def __init__(self, simulation: Simulation, output: Path | None) -> None:
         self.simulation, self.comm = simulation, simulation.comm
-        self.output = None if output is None else Path(output)
-        self.restart = self.output and self.output.parent / f"{self.output.stem}.restart.h5"
+        self.output: Any = None if output is None else Path(output)
+        self.restart = self.output and self.output.with_name(f"{self.output.stem}.restart.h5")
         self.totals = Totals()
         self.limits: list[str] = []
         self._lock: Lock | None = None
@@ -68,30 +68,24 @@ class Recorder:
         Returns the restart file to resume from: `restart`, otherwise that of an unfinished run of the same
         case. An OutputError if existing files may not be replaced and not `overwrite`.
         """
-        if self.output is None:
-            return restart
-        files = self.output, self.restart
-        return on_root(self.comm, self._lock_files, *files, restart, overwrite)
+        return on_root(self.comm, self._lock_files, restart, overwrite) if self.output else restart
 
-    def _lock_files(self, output: Path, own: Path, restart: Path | None, overwrite: bool) -> Path | None:
-        """Lock the result and its `own` restart file; the restart file to resume from."""
-        case = self.simulation.case
-        inputs = inputs_of(case)
-        check_output_path(output, [*inputs, Path(restart)] if restart else inputs)
-        check_output_path(own, inputs)
-        self._lock = Lock(output)
+    def _lock_files(self, restart: Path | None, overwrite: bool) -> Path | None:
+        case, inputs = self.simulation.case, inputs_of(self.simulation.case)
+        check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
+        check_output_path(self.restart, inputs)
+        self._lock = Lock(self.output)
         self._lock.acquire()
-        return restart if restart or overwrite else restart_of_same(output, own, case.text)
+        return restart if restart or overwrite else restart_of_same(self.output, self.restart, case.text)
 
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
-        simulation = self.simulation
-        stored, notes = load(path, simulation.case, simulation.scales)
-        solution = stored.state
-        simulation.resume(solution, stored.baseline)
+        stored, notes = load(path, self.simulation.case, self.simulation.scales)
+        state = stored.state
+        self.simulation.resume(state, stored.baseline)
         self.totals = Totals(stored.totals)
-        self._open(solution.step, stored.contact_count)
-        return [f"{path}, step {solution.step}, {1e6 * solution.time:.4f} us", *notes]
+        self._open(state.step, stored.contact_count)
+        return [f"{path}, step {state.step}, {1e6 * state.time:.4f} us", *notes]
 
     def write(self, state: AcceptedState) -> None:
         """Store an accepted state; write the restart file if it is due."""
