@@ -43,7 +43,7 @@ class CaseError(Exception):
 
 
 class ProfileError(Exception):
-    """A profile cannot be used; the message names the reason and the cure."""
+    """A profile or a table of conditions cannot be used; the message names the reason and the cure."""
 
 
 class UsageError(Exception):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 from collections.abc import Collection, Iterator
+from operator import ge, gt, le, lt
 from typing import Any, NamedTuple, TypeGuard
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
@@ -39,50 +40,37 @@ def is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool) and -MAX_FLOAT < value < MAX_FLOAT
 
 
-def in_si(data: Tables, table: KeyTable = CASE, where: str = "") -> list[Fault]:
-    """Replace the texts with a unit in tables by numbers in SI units; returns the faults."""
+def in_si(data: Tables) -> list[Fault]:
+    """Replace the texts with a unit in the tables of a case by numbers in SI units; returns the faults."""
     faults = []
-    for holder, name, key, place in _texts(data, table, where):
-        try:
-            holder[name] = converted(holder[name], key.unit)
-        except UnitFault as fault:
-            faults.append(Fault(place, f"{place} = {fault}"))
+    for holder, name, key, place in [*_entries(data, CASE, ""), *_series_entries(data.get("series"))]:
+        if key and key.kind is float and key.unit not in NUMBERS_ONLY:
+            try:
+                holder[name] = converted(holder[name], key.unit)
+            except UnitFault as fault:
+                faults.append(Fault(place, f"{place} = {fault}"))
     return faults
 
 
-def _texts(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key, str]]:
-    """Texts in place of numbers: their table or list, their key in it, the key of the case, the place."""
+def _entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key | None, str]]:
+    """Values in tables: their table or list, their key in it, the key of the case, the place."""
     for name, key in table.keys.items():
         value = data.get(name)
         inner = _table_of(key, value)
         if inner and isinstance(value, dict):
-            yield from _texts(value, inner, f"{where}{name}.")
-        elif _takes_units(key) and _has_text(value):
+            yield from _entries(value, inner, f"{where}{name}.")
+        elif value is not None:
             yield data, name, key, where + name
-    series = data.get("series") if not where else None
-    if isinstance(series, dict):
-        yield from _series_texts(series)
 
 
-def _series_texts(series: Tables) -> Iterator[tuple[Any, Any, Key, str]]:
-    values, keys = series.get("values"), series.get("keys")
-    places: list[tuple[Any, Any, object]] = [(series, "values", series["key"])] if "key" in series else []
-    if not places and isinstance(keys, list) and isinstance(values, list):
-        places = [(values, number, name) for number, name in enumerate(keys[: len(values)])]
-    for holder, name, dotted in places:
-        key = key_of(str(dotted))
-        if key and _takes_units(key) and _has_text(values if holder is series else holder[name]):
-            yield holder, name, key, f"series.values{'' if holder is series else f'.{name}'}"
-
-
-def _takes_units(key: Key) -> bool:
-    return key.kind is float and key.unit not in NUMBERS_ONLY
-
-
-def _has_text(value: object, depth: int = 2) -> bool:
-    if isinstance(value, list) and depth:
-        return any(_has_text(item, depth - 1) for item in value)
-    return isinstance(value, str)
+def _series_entries(series: Any) -> Iterator[tuple[Any, Any, Key | None, str]]:
+    if not isinstance(series, dict) or not isinstance(values := series.get("values"), list):
+        return
+    if "key" in series:
+        yield series, "values", key_of(series["key"]), "series.values"
+    elif isinstance(keys := series.get("keys"), list):
+        for number, name in enumerate(keys[: len(values)]):
+            yield values, number, key_of(name), f"series.values.{number}"
 
 
 def check(
@@ -148,20 +136,16 @@ def _checked(
         return result, needs + faults
     try:
         result = _value(key, value)
+        if key.below and is_number(limit := data.get(key.below)) and result >= limit:
+            raise _Wrong
     except _Wrong:
         if isinstance(value, dict) and key.kind is not dict:
             return None, [Fault(place, f"{place}: a table here; allowed: {allowed(key)}")]
         hint = celsius(key, value)
         return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}{hint}")]
-    limit = data.get(key.below)
-    if key.below and is_number(limit) and result >= limit:
-        return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}")]
     unmet = [need for need in key.needs if result != key.default and not _holds(need, root)]
-    if unmet:
-        return None, [
-            Fault(place, f"{place} = {show(value)}: needs {' and '.join(unmet)} ({plain(key.text)})")
-        ]
-    return result, []
+    of_need = f"{place} = {show(value)}: needs {' and '.join(unmet)} ({plain(key.text)})"
+    return (None, [Fault(place, of_need)]) if unmet else (result, [])
 
 
 def _table_of(key: Key, value: Any) -> KeyTable | None:
@@ -173,8 +157,8 @@ def _table_of(key: Key, value: Any) -> KeyTable | None:
 
 def _value(key: Key, value: Any) -> Any:
     """Value with the type of the key."""
-    if key.table or key.variants or key.kind is dict:
-        if key.kind is not dict or key.table or key.variants or not isinstance(value, dict):
+    if key.kind is dict:
+        if key.table or key.variants or not isinstance(value, dict):
             raise _Wrong
         return dict(value)
     if key.many == "both" and not isinstance(value, list | tuple):
@@ -192,12 +176,10 @@ def _item(key: Key, value: Any) -> Any:
     if key.kind is object:
         return value
     if key.kind in (int, float):
-        bounds = (key.ge is None or value >= key.ge) if is_number(value) else False
-        if not bounds or key.kind is int and not isinstance(value, int):
+        if not is_number(value) or key.kind is int and not isinstance(value, int):
             raise _Wrong
-        if key.gt is not None and value <= key.gt or key.lt is not None and value >= key.lt:
-            raise _Wrong
-        if key.le is not None and value > key.le:
+        bounds = ((ge, key.ge), (gt, key.gt), (le, key.le), (lt, key.lt))
+        if not all(bound is None or holds(value, bound) for holds, bound in bounds):
             raise _Wrong
         return key.kind(value)
     if not isinstance(value, key.kind) or key.choices and value not in key.choices:

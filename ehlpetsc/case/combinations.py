@@ -5,12 +5,9 @@ from __future__ import annotations
 import copy
 import itertools
 import tomllib
-from collections.abc import Callable
-from os import PathLike
 from typing import Any
 
 from ehlpetsc.base.toml_file import plain
-from ehlpetsc.case.messages import show
 
 
 def parsed(override: object) -> tuple[list[str], Any]:
@@ -72,21 +69,3 @@ def member_tables(data: dict[str, Any], settings: Settings) -> dict[str, Any]:
     for keys, value in settings:
         put(member, keys, value)
     return member
-
-
-def series_faults(
-    path: str | PathLike, data: dict[str, Any], faults_of: Callable[[dict[str, Any]], list[str]]
-) -> list[str]:
-    """Faults of members that the base case does not have, by a function of the tables of a member."""
-    if "series" not in data:
-        return []
-    faults = []
-    for settings in settings_of(data["series"]):
-        try:
-            member = member_tables(data, settings)
-        except ValueError:
-            named = ", ".join(show(key) for key in keys_of(data["series"]))
-            return [f"{path}: series.key = {named}: allowed: a key of this case"]
-        values = ", ".join(show(value) for _, value in settings)
-        faults += [f"{fault} (series.values: {values})" for fault in faults_of(member)]
-    return faults

@@ -29,29 +29,26 @@ if TYPE_CHECKING:
 Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 
-class TableFault(Exception):
-    """A table of conditions cannot be used; the message names the reason and the line."""
-
-
 def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[float]]:
-    """Columns of a text file in SI units, by key of a table; raises `TableFault`."""
+    """Columns of a text file in SI units, by key of a table; raises `ProfileError`."""
     from ehlpetsc.surfaces.text_columns import text_columns
 
     try:
         columns, header = text_columns(path)
-    except ProfileError as fault:
-        raise TableFault(str(fault)) from None
     except OSError as error:
-        raise TableFault(f"cannot be read: {error.strerror}: {path}") from None
+        raise ProfileError(f"cannot be read: {error.strerror}: {path}") from None
     headings = [line.partition("#")[0].strip() for line in header.splitlines()]
-    heading = next(filter(None, reversed(headings)), "")
-    factors = _factors(heading, table, names)
+    factors = _factors(next(filter(None, reversed(headings)), ""), table, names)
     if len(factors) != len(columns):
-        allowed = ", ".join(spellings[0] for spellings in names.values())
         count = f"{len(factors)} column names, {len(columns)} columns of numbers"
-        raise TableFault(f"{count}; allowed: a line with some of {allowed}, and numbers below it")
+        allowed = f"a line with some of {_spellings(names)}, and numbers below it"
+        raise ProfileError(f"{count}; allowed: {allowed}")
     scaled = zip(factors.items(), columns, strict=True)
     return {key: (size * column).tolist() for (key, size), column in scaled}
+
+
+def _spellings(names: Columns) -> str:
+    return ", ".join(spellings[0] for spellings in names.values())
 
 
 def _factors(heading: str, table: KeyTable, names: Columns) -> dict[str, float]:
@@ -60,15 +57,14 @@ def _factors(heading: str, table: KeyTable, names: Columns) -> dict[str, float]:
     factors: dict[str, float] = {}
     for word in heading.split(next((sign for sign in ";,\t" if sign in heading), None)):
         name, _, unit = word.strip(" \"'").replace("(", "[").partition("[")
-        unit = unit.rstrip(")] ")
         key = key_by_name.get(" ".join(name.lower().replace("_", " ").split()))
         if key is None or key in factors:
-            allowed = ", ".join(spellings[0] for spellings in names.values())
-            raise TableFault(f"column {shortened(name.strip())!r}: allowed: one each of {allowed}")
+            allowed = f"allowed: one each of {_spellings(names)}"
+            raise ProfileError(f"column {shortened(name.strip())!r}: {allowed}")
         try:
-            factors[key] = factor(unit or table.keys[key].unit, table.keys[key].unit)
+            factors[key] = factor(unit.rstrip(")] ") or table.keys[key].unit, table.keys[key].unit)
         except UnitFault as fault:
-            raise TableFault(f"column {shortened(word.strip())!r}: {fault}") from None
+            raise ProfileError(f"column {shortened(word.strip())!r}: {fault}") from None
     return factors
 
 
@@ -76,13 +72,13 @@ MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the en
 
 
 def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
-    """Conditions over time from the unchecked tables of a case in a folder; raises `TableFault`.
+    """Conditions over time from the unchecked tables of a case in a folder; raises `ProfileError`.
 
     None: constant conditions, or a table with faults that the check of the keys reports.
     """
     gears, operation = tables.get("gears"), tables.get("operation")
     if gears is not None and isinstance(operation, dict):
-        raise TableFault("[gears] gives the same conditions; allowed: one of both")
+        raise ProfileError("[gears] gives the same conditions; allowed: one of both")
     if isinstance(gears, dict):
         from ehlpetsc.gears.path import path_of_contact
 
@@ -138,20 +134,20 @@ def of_gears(path: ContactPath) -> ConditionsTable:
 
 
 def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> ConditionsTable:
-    """Conditions of the columns, for missing ones the constants of the case; raises `TableFault`."""
+    """Conditions of the columns, for missing ones the constants of the case; raises `ProfileError`."""
     if "time" not in columns:
-        raise TableFault("no column time; allowed: one, increasing")
+        raise ProfileError("no column time; allowed: one, increasing")
     if len(columns) == 1:
-        raise TableFault("no column but time; allowed: load, radius, speed 1, speed 2, one at least")
+        raise ProfileError("no column but time; allowed: load, radius, speed 1, speed 2, one at least")
     values = {key: np.array(column) for key, column in columns.items()}
     count = len(values["time"])
     if count < 2 or any(len(column) != count for column in values.values()):
-        raise TableFault("allowed: columns of the same length, two times at least")
+        raise ProfileError("allowed: columns of the same length, two times at least")
 
     def refuse(key: str, wrong: np.ndarray, allowed: str) -> None:
         for k in np.flatnonzero(wrong)[:1]:
             unit = OPERATION.keys[key].unit
-            raise TableFault(f"row {k + 1}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
+            raise ProfileError(f"row {k + 1}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
 
     for key, column in values.items():
         refuse(key, ~np.isfinite(column), "a finite number")
@@ -161,10 +157,12 @@ def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> Cond
     constants = _constants(tables)
     missing = [key for key in COLUMNS if key not in values and key not in constants]
     if missing:
-        raise TableFault(f"{_sources(missing)}; allowed: a column of the table, or the key")
+        keys = {f"contact.{key}" if key in ("load", "radius") else "motion" for key in missing}
+        neither = f"neither {', '.join(missing)} nor {', '.join(sorted(keys))}"
+        raise ProfileError(f"{neither}; allowed: a column of the table, or the key")
     values = {key: values.get(key, np.full(count, constants.get(key, 0.0))) for key in COLUMNS}
     if not (values["speed_1"].any() or values["speed_2"].any()):
-        raise TableFault("both speeds are zero; allowed: a speed at some time")
+        raise ProfileError("both speeds are zero; allowed: a speed at some time")
     from ehlpetsc.physics.variable_operation import ConditionsTable
 
     load, radius, u1, u2 = (values[key] for key in ("load", "radius", "speed_1", "speed_2"))
@@ -182,12 +180,6 @@ def _constants(tables: Tables) -> dict[str, float]:
         u, xi = float(motion["entrainment_speed"]), float(motion.get("slide_roll_ratio", 0.0))
         constants |= {"speed_1": u * (1.0 + xi / 2.0), "speed_2": u * (1.0 - xi / 2.0)}
     return constants
-
-
-def _sources(missing: list[str]) -> str:
-    keys = {"load": "contact.load", "radius": "contact.radius"}
-    names = {keys.get(key, "motion") for key in missing}
-    return f"neither {', '.join(missing)} nor {', '.join(sorted(names))}"
 
 
 def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Tables:

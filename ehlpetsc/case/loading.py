@@ -13,9 +13,8 @@ from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import parse_toml, plain, read_text
 from ehlpetsc.case.checking import Fault, Tables, check, in_si, is_number
-from ehlpetsc.case.combinations import member_tables, parsed, put, series_faults, settings_of
+from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import (
-    TableFault,
     conditions_of,
     reversal_faults,
     with_columns,
@@ -77,11 +76,10 @@ def load(
     faults += in_si(data)
     faults += resolve_measured_layer(folder, data)
     base = copy.deepcopy(data) if "series" in data else data  # each member has bulk temperatures of its own
-    checked, found = _checked(folder, base, {fault.place for fault in faults})
-    found += [Fault("", line) for line in profile_faults(folder, data.get("surface"), checked)]
+    checked, found = _with_profiles(folder, base, {fault.place for fault in faults})
     lines = _lines(path, faults + found)
-    if checked and not lines and "series" in data:
-        lines = series_faults(path, data, lambda member: _member_faults(path, member))
+    if not lines and "series" in data:
+        lines = _series_faults(path, folder, data)
     if lines:
         raise CaseError(lines)
     stored = with_columns(data, folder)
@@ -142,7 +140,7 @@ def _checked(
     try:
         data = with_columns(data, folder, ("gears",))
         conditions = conditions_of(data, folder)
-    except TableFault as error:
+    except ProfileError as error:
         faults = [] if is_stored else [_file_fault(data, error)]
     data = with_reference_state(data, conditions)
     if "motion" not in data and ("fluid" in data or "time" in data):
@@ -150,15 +148,12 @@ def _checked(
     case, found = check(CASE, data, known=known)
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
-        faults += (
-            [Fault("mesh", line) for line in reversal_faults(cast(Case, case), conditions)]
-            if conditions
-            else []
-        )
+        reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
+        faults += [Fault("mesh", line) for line in reversed_flow]
     return (case if case and not faults else None), faults + found
 
 
-def _file_fault(data: Tables, error: TableFault) -> Fault:
+def _file_fault(data: Tables, error: ProfileError) -> Fault:
     name, key = ("gears", "load_file") if "gears" in data else ("operation", "file")
     file = data[name].get(key)
     return Fault(name, f"{name}{f'.{key} = {show(file)}' if file else ''}: {error}")
@@ -183,11 +178,19 @@ def _checked_with_losses(folder: Path, data: Tables, known: Collection[str]) -> 
     return _checked(folder, data, known)
 
 
-def _member_faults(path: str | PathLike, data: Tables) -> list[str]:
-    folder = Path(path).parent
-    case, faults = _checked(folder, data)
-    faults += [Fault("", line) for line in profile_faults(folder, data.get("surface"), case)]
-    return _lines(path, faults)
+def _series_faults(path: str | PathLike, folder: Path, data: Tables) -> list[str]:
+    """Faults of the members of a series, of which the base case has none."""
+    lines = []
+    for settings in settings_of(data["series"]):
+        try:
+            member = member_tables(data, settings)
+        except ValueError:
+            named = ", ".join(show(key) for key in keys_of(data["series"]))
+            return [f"{path}: series.key = {named}: allowed: a key of this case"]
+        _, faults = _with_profiles(folder, member)
+        values = ", ".join(show(value) for _, value in settings)
+        lines += [f"{line} (series.values: {values})" for line in _lines(path, faults)]
+    return lines
 
 
 def _lines(path: str | PathLike, faults: list[Fault]) -> list[str]:
@@ -196,12 +199,13 @@ def _lines(path: str | PathLike, faults: list[Fault]) -> list[str]:
     return list(dict.fromkeys(f"{path}: {fault.text}" for fault in own))
 
 
-def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
-    """Faults of the files or heights of both surfaces.
+def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> tuple[Any, list[Fault]]:
+    """As :func:`_checked`, with the faults of the files or heights of both surfaces.
 
     Without a case, as other tables have faults, the profiles are not compared with the contact.
     """
-    faults = []
+    case, faults = _checked(folder, data, known)
+    surface = data.get("surface")
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
@@ -211,8 +215,8 @@ def profile_faults(folder: Path, surface: Any, case: Case | None) -> list[str]:
             _check_profile(folder, spec, case)
         except ProfileError as error:
             key = "z" if "z" in table else "file"
-            faults.append(f"surface.{side}.{key} = {show(table[key])}: {error}")
-    return faults
+            faults.append(Fault("", f"surface.{side}.{key} = {show(table[key])}: {error}"))
+    return case, faults
 
 
 def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
@@ -220,10 +224,8 @@ def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
     from ehlpetsc.surfaces.samples import samples
 
     given = samples(folder, spec)
-    if case is None or case.contact is None:  # their faults are reported with their keys
-        return
-    scales = Scales.of(case)
-    film = scales.h * expected_film(case, scales) if case.fluid else 0.0
-    fault = absurd(given, scales.a, scales.dx, scales.h, film)
-    if fault:
-        raise ProfileError(fault)
+    if case:
+        scales = Scales.of(case)
+        film = scales.h * expected_film(case, scales) if case.fluid else 0.0
+        if fault := absurd(given, scales.a, scales.dx, scales.h, film):
+            raise ProfileError(fault)

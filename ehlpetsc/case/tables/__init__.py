@@ -55,16 +55,13 @@ def _petsc_options(case: Case) -> dict[str, dict[str, str]]:
     """Options as texts, as PETSc requires; true is an option without a value, false none."""
     options = {}
     for name, value in case.petsc.items():
-        number = isinstance(value, int | float) and abs(value) < 1e300
-        if not name or name.startswith("-") or not is_plain(name) or not (number or _is_text(value)):
+        is_number = isinstance(value, int | float) and abs(value) < 1e300
+        is_name = name and not name.startswith("-") and is_plain(name)
+        if not (is_name and (is_number or isinstance(value, str) and is_plain(value))):
             raise Refused(key="petsc")
         if value is not False:
             options[name] = value if isinstance(value, str) else "" if value is True else repr(value)
     return {"petsc": options}
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str) and is_plain(value)
 
 
 CASE = KeyTable(
@@ -96,20 +93,14 @@ def extend(laws: Mapping[str, Law], effects: Iterable[type[Effect]]) -> None:
             CASE.keys[effect.table.name] = effect.table.key
 
 
-def table_of(name: str) -> KeyTable | None:
-    """Table by its dotted name, "" for the top."""
-    table: KeyTable | None = CASE
-    for part in filter(None, name.split(".")):
-        key = table.keys.get(part) if table else None
-        table = key.table if key else None
-    return table
-
-
 def key_of(name: str) -> Key | None:
     """Key by its dotted name."""
-    above, _, last = str(name).rpartition(".")
-    table = table_of(above)
-    return table.keys.get(last) if table else None
+    table: KeyTable | None = CASE
+    key = None
+    for part in str(name).split("."):
+        key = table.keys.get(part) if table else None
+        table = key.table if key else None
+    return key
 
 
 if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
