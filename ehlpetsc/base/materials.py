@@ -13,7 +13,7 @@ with :math:`n'=b/c` and :math:`K'=\sigma_f'/\varepsilon_f'^{n'}`, so that both c
 are checked against a published application of the method to another steel (Metals 15 (2025) 780, table of
 the Roessle-Fatemi method); the original article itself was not available.
 
-Hardnesses are nominal, of the condition that the `source` of a steel names, and from data sheets that quote
+Hardnesses are nominal, of the condition beside the name of a steel, and from data sheets that quote
 the standards, not from these: EN 10084 for 16MnCr5 (Akrostal: at least 60 HRC carburised, quenched and
 tempered), EN ISO 683-17 for 100Cr6 (Lucefin: 62 HRC tempered at 250 C, 59 HRC at 300 C), DIN 50150 for
 42CrMo4 (995 MPa: 310 HV, 295 HB, 31 HRC). SAE4340 has none: the paper that gives its constants does not give
@@ -39,90 +39,41 @@ FATIGUE_KEYS = ("fatigue_strength", "fatigue_ductility", "b", "c", "cyclic_harde
 
 @dataclass(frozen=True)
 class Steel:
-    """A steel in one condition, SI units.
+    """Elastic, strain-life (sigma_f' [Pa], eps_f', b, c) and cyclic (n') constants of a steel, SI units."""
 
-    `source`: condition, and where the constants are from. `hardness`: Brinell, HB; None: not published with
-    the constants. `fatigue_strength`, `fatigue_ductility`, `b`, `c`: sigma_f' [Pa], eps_f', b, c of the
-    strain-life curve. `cyclic_hardening`, `cyclic_strength`: n' and K' [Pa] of the cyclic stress-strain
-    curve.
-    """
-
-    source: str
     youngs_modulus: float
     poisson_ratio: float
-    hardness: float | None
     fatigue_strength: float
     fatigue_ductility: float
     b: float
     c: float
     cyclic_hardening: float
 
-    @property
-    def cyclic_strength(self) -> float:
-        """K' [Pa] that makes both curves agree."""
-        return cyclic_strength(self.fatigue_strength, self.fatigue_ductility, self.cyclic_hardening)
-
-    @property
-    def yield_pressure(self) -> float:
-        """Pressure [Pa] at which a solid of it yields, see :func:`flow_pressure`."""
-        return flow_pressure(self.cyclic_strength, self.cyclic_hardening)
-
-
-def cyclic_strength(fatigue_strength: float, fatigue_ductility: float, cyclic_hardening: float) -> float:
-    """K' = sigma_f'/eps_f'^n' [Pa], by which the cyclic and the strain-life curve agree."""
-    return fatigue_strength / fatigue_ductility**cyclic_hardening
-
-
-def cyclic_yield_stress(strength: float, hardening: float) -> float:
-    """Cyclic yield stress K' 0.002^n' [Pa] at 0.2 % plastic strain."""
-    return strength * PLASTIC_STRAIN**hardening
-
 
 def flow_pressure(strength: float, hardening: float) -> float:
     r"""Mean pressure [Pa] under which a half plane flows: :math:`(2+\pi)\,Y/\sqrt3 = 2.97\,Y`.
 
     Prandtl's slip lines with von Mises' shear yield stress (Johnson (1985), Contact Mechanics, section 6.2),
-    Y the cyclic yield stress of :func:`cyclic_yield_stress`, of K' [Pa] and n'.
+    :math:`Y=K'\,0.002^{n'}` the cyclic yield stress at 0.2 % plastic strain, of K' [Pa] and n'.
     """
-    return FLOW_FACTOR * cyclic_yield_stress(strength, hardening)
+    return FLOW_FACTOR * strength * PLASTIC_STRAIN**hardening
 
 
-def steel_of_hardness(
-    hardness: float, youngs_modulus: float, source: str, poisson_ratio: float = 0.3
-) -> Steel:
-    """Steel with the constants of Roessle and Fatemi (2000), of a hardness of 150 to 700 HB."""
+def steel_of_hardness(hardness: float, youngs_modulus: float, poisson_ratio: float = 0.3) -> Steel:
+    """Steel with the constants of Roessle and Fatemi (2000), of a Brinell hardness of 150 to 700 HB."""
     if not 150 <= hardness <= 700:
         raise ValueError(f"hardness = {hardness:g} HB: allowed: 150 to 700")
     ductility = (0.32 * hardness**2 - 487 * hardness + 191000) / (1e-6 * youngs_modulus)
     strength = 1e6 * (4.25 * hardness + 225)
-    return Steel(
-        source, youngs_modulus, poisson_ratio, hardness, strength, ductility, -0.09, -0.56, 0.09 / 0.56
-    )
+    return Steel(youngs_modulus, poisson_ratio, strength, ductility, -0.09, -0.56, 0.09 / 0.56)
 
 
 STEELS = {
-    "16MnCr5": steel_of_hardness(
-        HRC_60, ISO_MODULUS, "case-hardened surface, nominally 60 HRC (EN 10084); constants from hardness"
-    ),
-    "100Cr6": steel_of_hardness(
-        HRC_60, 207e9, "hardened, tempered at 250 to 300 C, nominally 60 HRC; constants from hardness"
-    ),
-    "42CrMo4": steel_of_hardness(
-        295,
-        ISO_MODULUS,
-        "quenched and tempered to 1000 MPa, nominally 295 HB (DIN 50150); constants from hardness",
-    ),
-    "SAE4340": Steel(
-        "Holmes, Qiao, Evans and Snidle (2005), Table 1; no hardness; n' of the paper, K' from both curves",
-        207e9,
-        0.3,
-        None,
-        2.0e9,
-        0.48,
-        -0.091,
-        -0.60,
-        0.15,
-    ),
+    "16MnCr5": steel_of_hardness(HRC_60, ISO_MODULUS),  # case-hardened surface, nominally 60 HRC
+    "100Cr6": steel_of_hardness(HRC_60, 207e9),  # hardened, tempered at 250 to 300 C, nominally 60 HRC
+    "42CrMo4": steel_of_hardness(295, ISO_MODULUS),  # quenched, tempered to 1000 MPa, nominally 295 HB
+    # Holmes, Qiao, Evans and Snidle (2005), Table 1; n' of the paper, K' from both curves
+    "SAE4340": Steel(207e9, 0.3, 2.0e9, 0.48, -0.091, -0.60, 0.15),
 }
 DEFAULT = "SAE4340"
 
@@ -163,5 +114,5 @@ def fatigue_constants(steel: Steel, post: Mapping[str, Any]) -> dict[str, float]
     """Fatigue constants of a steel by key, overridden by `[post]`; K' follows unless `[post]` has it."""
     constants = {key: getattr(steel, key) for key in FATIGUE_KEYS if key != "cyclic_strength"}
     constants |= {key: post[key] for key in FATIGUE_KEYS if post.get(key) is not None}
-    names = ("fatigue_strength", "fatigue_ductility", "cyclic_hardening")
-    return {"cyclic_strength": cyclic_strength(*(constants[name] for name in names))} | constants
+    cyclic = constants["fatigue_strength"] / constants["fatigue_ductility"] ** constants["cyclic_hardening"]
+    return {"cyclic_strength": cyclic} | constants

@@ -30,11 +30,8 @@ from ehlpetsc.physics.scales import reduced_modulus
 if TYPE_CHECKING:
     from ehlpetsc.gears.standards import Rating
 
-BY_MATERIAL = "material"
-ELASTIC = ("youngs_modulus", "poisson_ratio")
 MEASURED_KEY = "asperity_height"
 DIGITS = 6  # of a measured asperity height
-MM2 = 1e6  # mm^2/s in m^2/s
 
 
 def with_derived(tables: Tables) -> Tables:
@@ -52,13 +49,12 @@ def _with_material(tables: Tables) -> Tables:
     """Elastic constants of the steels, and their flow pressure for ``yield_pressure = "material"``."""
     contact = tables["contact"]
     steels = named_steels(contact["material"])
-    filled = {key: [getattr(steel, key) for steel in steels] for key in ELASTIC} | contact
-    if contact.get("yield_pressure") == BY_MATERIAL:
+    elastic = ("youngs_modulus", "poisson_ratio")
+    filled = {key: [getattr(steel, key) for steel in steels] for key in elastic} | contact
+    if contact.get("yield_pressure") == "material":
         constants = [fatigue_constants(steel, tables.get("post", {})) for steel in steels]
-        filled["yield_pressure"] = [
-            float(flow_pressure(values["cyclic_strength"], values["cyclic_hardening"]))
-            for values in constants
-        ]
+        pressures = [flow_pressure(one["cyclic_strength"], one["cyclic_hardening"]) for one in constants]
+        filled["yield_pressure"] = list(map(float, pressures))
     return tables | {"contact": filled}
 
 
@@ -75,8 +71,8 @@ def _with_grade(tables: Tables) -> Tables:
     oil = check(GRADE, grade)[0] if isinstance(grade, dict) else None
     if oil is None or temperature is None or not 200.0 < temperature < 700.0:
         return tables
-    nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])
-    properties = {"viscosity": nu / MM2 * oil.density} | fluid
+    nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])  # mm^2/s
+    properties = {"viscosity": nu / 1e6 * oil.density} | fluid
     alpha = _slope(gold_pressure_viscosity(nu), properties)
     tables = tables | {"fluid": {"pressure_viscosity": alpha} | properties}
     return tables | {"heat": {"oil_density": oil.density} | heat} if heat else tables
@@ -127,15 +123,20 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
         return []
     if "surface." in str(data.get("series")):
         return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
+    from ehlpetsc.surfaces.samples import samples
+
     surface = data["surface"] if isinstance(data.get("surface"), dict) else {}
     tables = [table for table in surface.values() if isinstance(table, dict) and "short_cutoff" in table]
     if not tables:
         return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
     try:
-        removed = [_removed(folder, values_of(PROFILE, table)) for table in tables]
+        profiles = [values_of(PROFILE, table) for table in tables]
+        before = [samples(folder, profile.copy({"short_cutoff": None})).z for profile in profiles]
+        after = [samples(folder, profile).z for profile in profiles]
     except (ProfileError, CaseError):  # reported by the checks of the profiles
         contact[MEASURED_KEY] = None
         return []
+    removed = [float((z - z_s).std()) for z, z_s in zip(before, after, strict=True)]
     contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
     return []
 
@@ -200,11 +201,3 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
         (heat.inlet_temperature if heat else None) or reference,
         (solids[0].effusivity, solids[1].effusivity),
     )
-
-
-def _removed(folder: Path, profile: Values) -> float:
-    """Rms height [m] that the short cut-off removes from one profile."""
-    from ehlpetsc.surfaces.samples import samples
-
-    before = samples(folder, profile.copy(update={"short_cutoff": None}))
-    return float((before.z - samples(folder, profile).z).std())
