@@ -14,18 +14,8 @@ from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import parse_toml, plain, read_text
 from ehlpetsc.case.checking import Fault, Tables, check, in_si, is_number
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
-from ehlpetsc.case.conditions import (
-    conditions_of,
-    reversal_faults,
-    with_columns,
-    with_reference_state,
-)
-from ehlpetsc.case.derived import (
-    rating_of,
-    resolve_measured_layer,
-    with_derived,
-    with_layer_stiffness,
-)
+from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
+from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES

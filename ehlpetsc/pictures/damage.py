@@ -24,10 +24,7 @@ SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, 
 FIELD_DEPTH = 1.5  # half-widths
 STRESSES = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$", r"$\sigma_{vM}$")
 MIN_TICK_DISTANCE = 0.09  # of the depth axis
-CRITERIA = {
-    "fatemi-socie": "Fatemi-Socie",
-    "dang-van": "Dang Van: share of the fatigue limit; line: 1",
-}
+CRITERIA = {"fatemi-socie": "Fatemi-Socie", "dang-van": "Dang Van: share of the fatigue limit; line: 1"}
 
 
 class Map(NamedTuple):

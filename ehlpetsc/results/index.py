@@ -12,13 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError, not_written
-from ehlpetsc.results.output_guard import (
-    OVERWRITE_ADVICE,
-    Lock,
-    atomic_write,
-    check_output_path,
-    inputs_of,
-)
+from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, atomic_write, check_output_path, inputs_of
 from ehlpetsc.results.reader import Result, read_result
 
 if TYPE_CHECKING:

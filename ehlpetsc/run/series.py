@@ -147,12 +147,7 @@ class Series:
     """
 
     def __init__(
-        self,
-        world: MPI.Comm,
-        case: Case,
-        output: Path,
-        stop: StopRequest,
-        overwrite: bool = False,
+        self, world: MPI.Comm, case: Case, output: Path, stop: StopRequest, overwrite: bool = False
     ) -> None:
         self.world, self.stop, self.overwrite = world, stop, overwrite
         self.members = members_of(case, output)

@@ -139,10 +139,7 @@ KEYS = {
         needs=("fluid.grade left out",),
     ),
     "temperature": Key(
-        "at which grade, oil or a law gives the viscosity; left out: that of [heat]",
-        "K",
-        200,
-        700,
+        "at which grade, oil or a law gives the viscosity; left out: that of [heat]", "K", 200, 700
     ),
     "law": Required("viscosity law", choices=LAWS, equation=VISCOSITY, replaced_by=("oil",)),
     "pressure_viscosity": Key("`alpha`; left out: of grade, or of a law that has it", "1/Pa", 1e-12, 1e-6),
