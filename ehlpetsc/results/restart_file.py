@@ -15,21 +15,21 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError, not_written
-from ehlpetsc.results.hdf5_file import LIBVER, open_for_reading, plain
+from ehlpetsc.base.toml_file import plain
+from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
 
-VERSION = 4  # of the format
+VERSION = 5  # of the format
 HEADER_BYTES = 512
 SIGNATURE = b"ehlpetsc restart file %d\n" % VERSION
 
 
-def save_restart(path: Path, arrays: dict[str, np.ndarray], attrs: dict[str, Any]) -> None:
-    """Save a state to a temporary file, synchronised to disk, then renamed; OutputError if that fails."""
+def save_restart(path: Path, values: dict[str, Any]) -> None:
+    """Save arrays, numbers and texts to a temporary file, synchronised to disk, then renamed; OutputError."""
     content = io.BytesIO()
     with h5py.File(content, "w", libver=LIBVER, userblock_size=HEADER_BYTES) as file:
-        file.attrs.update(attrs)
-        for name, array in arrays.items():
-            file[name] = array
+        for name, value in values.items():
+            (file if isinstance(value, np.ndarray) else file.attrs)[name] = value
     body = content.getbuffer()[HEADER_BYTES:]
     try:
         atomic_write(path, _header(body) + bytes(body))
@@ -37,8 +37,8 @@ def save_restart(path: Path, arrays: dict[str, np.ndarray], attrs: dict[str, Any
         raise OutputError(not_written(error, path)) from error
 
 
-def load_restart(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    """Arrays and attributes of a file of :func:`save_restart`.
+def load_restart(path: Path) -> dict[str, Any]:
+    """Values of a file of :func:`save_restart`.
 
     An OutputError if the file is missing, damaged, no restart file, or of another version.
     """
@@ -51,13 +51,13 @@ def load_restart(path: Path) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     if content[:HEADER_BYTES] != _header(memoryview(content)[HEADER_BYTES:]):
         raise OutputError(f"{path}: damaged restart file: its content does not agree with its checksum")
     with h5py.File(io.BytesIO(content), "r") as file:
-        return {name: file[name][()] for name in file}, {n: plain(v) for n, v in file.attrs.items()}
+        return {name: file[name][()] for name in file} | plain(dict(file.attrs))
 
 
 def is_restart_of(path: Path, case_text: str) -> bool:
     """Whether a file is an undamaged restart file of a case."""
     try:
-        return load_restart(path)[1]["case"] == case_text
+        return load_restart(path)["case"] == case_text
     except OutputError:
         return False
 
@@ -72,7 +72,8 @@ def restart_of_same(path: Path, restart: Path, case_text: str) -> Path | None:
     if path.exists():
         try:
             with open_for_reading(path) as file:
-                status, case = plain(file.attrs["status"]), file.attrs["case"]
+                attrs = attributes(file)
+            status, case = attrs["status"], attrs["case"]
         except (OutputError, KeyError):
             raise OutputError(f"{path}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}") from None
         if case != case_text:
@@ -80,7 +81,7 @@ def restart_of_same(path: Path, restart: Path, case_text: str) -> Path | None:
     if status == "done" or not restart.exists():
         return None
     try:
-        same = load_restart(restart)[1]["case"] == case_text
+        same = load_restart(restart)["case"] == case_text
     except OutputError as error:
         raise OutputError(f"{error}; remove it, {OVERWRITE_ADVICE}") from None
     if not same or status is None:

@@ -38,7 +38,7 @@ def foreign(folder, name):
     """A file that no command may replace, by its ending."""
     path = folder / name
     if name.endswith(".restart.h5"):
-        save_restart(path, {}, {"case": "a"})
+        save_restart(path, {"case": "a"})
     elif name.endswith((".h5", ".png", ".html", ".gif")):
         make_result(path)
     elif name.endswith(".toml"):
@@ -111,7 +111,7 @@ def test_invalid_input_is_refused_in_one_line(tmp_path, monkeypatch, capsys, com
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sub").mkdir()
     (tmp_path / "a.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0")
-    save_restart(tmp_path / "a.restart.h5", {}, {"case": "a"})
+    save_restart(tmp_path / "a.restart.h5", {"case": "a"})
     message = sentence(capsys, command, name)
     assert not message.startswith(" "), "an empty name is shown as such"
     assert len(os.listdir(tmp_path)) == 3

@@ -292,7 +292,7 @@ def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, disk):
         (lambda path: None, "such file$"),
         (lambda path: path.write_text("x" * 3000), "r.h5: not an HDF5"),
         (lambda path: h5py.File(path, "w").close(), "r.h5: an HDF5 .*not a result"),
-        (lambda path: save_restart(path, {"p": X}, {}), "r.h5: an HDF5 .*not a result"),
+        (lambda path: save_restart(path, {"p": X}), "r.h5: an HDF5 .*not a result"),
         (lambda path: later_version(path), r"version 2, .* 1$"),
     ],
 )
@@ -312,9 +312,9 @@ def later_version(path):
 def test_restart_content_round_trip(tmp_path):
     path = tmp_path / "r.restart.h5"
     for step in (4, 5):  # the second replaces the first
-        save_restart(path, {"p": X, "h": 2 * X}, {"step": step, "case": "text", "time": 0.1})
-    arrays, attrs = load_restart(path)
-    assert arrays.keys() == {"p", "h"}
-    np.testing.assert_array_equal(arrays["h"], 2 * X)
-    assert (attrs["step"], attrs["case"], attrs["time"]) == (5, "text", 0.1)
+        save_restart(path, {"p": X, "h": 2 * X, "step": step, "case": "text", "time": 0.1})
+    values = load_restart(path)
+    assert values.keys() == {"p", "h", "step", "case", "time"}
+    np.testing.assert_array_equal(values["h"], 2 * X)
+    assert (values["step"], values["case"], values["time"]) == (5, "text", 0.1)
     assert [p.name for p in tmp_path.iterdir()] == [path.name]

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from ehlpetsc.run.simulation import Simulation
 
 TOTAL, RECORD = "total ", "record "  # prefixes of the names of totals and of effects with a record
+EARLIER = "earlier {}"  # prefix of the values of an earlier level
+OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 SCALE_TOLERANCE = 1e-12  # relative
@@ -46,27 +48,18 @@ class Checkpoint:
 
 def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
     """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
-    case, scales = simulation.case, simulation.scales
-    state, smooth = simulation.solution, simulation.stepper.baseline
-    arrays = {"x": scales.x * scales.a, "contact_count": contact_count, "q": state.q, "w": state.w}
-    arrays |= {"smooth_q": smooth[0], "smooth_w": smooth[1]}
-    arrays |= {name: getattr(state, name) for name in ("m", "m_older") if getattr(state, name) is not None}
-    for name in TimeLevel._fields if state.earlier else ():
-        arrays[f"earlier_{name}"] = np.array([getattr(level, name) for level in state.earlier])
-    attributes = {
-        "case": case.text,
-        "contact_law": case.contact.law,
-        "pass_number": simulation.pass_number,
-        "dt": state.dt or 0.0,
-        **{name: getattr(state, name) for name in ("time", "step", "retries", "h00", "travelled")},
-        **{name: getattr(scales, name) for name in SCALES},
-    }
+    case, scales, state = simulation.case, simulation.scales, simulation.solution
+    smooth_q, smooth_w = simulation.stepper.baseline
+    values = {"x": scales.x * scales.a, "contact_count": contact_count}
+    values |= {"smooth_q": smooth_q, "smooth_w": smooth_w, "pass_number": simulation.pass_number}
+    values |= {"case": case.text, "contact_law": case.contact.law}
+    values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
+    values |= {name: value for name in OF_STATE if (value := getattr(state, name)) is not None}
+    for number, level in enumerate(state.earlier):
+        values |= flat(level, EARLIER.format(number))
     for name, record in state.records.items():
-        attributes[RECORD + name] = 1
-        for key, value in flat(record, name).items():
-            (arrays if isinstance(value, np.ndarray) else attributes)[key] = value
-    stored = {TOTAL + name: value for name, value in totals.items()}
-    save_restart(path, arrays, attributes | stored)
+        values |= {RECORD + name: 1} | flat(record, name)
+    save_restart(path, values | {TOTAL + name: value for name, value in totals.items()})
 
 
 def load(path: Path, case: Case, scales: Scales) -> tuple[Checkpoint, list[str]]:
@@ -76,16 +69,16 @@ def load(path: Path, case: Case, scales: Scales) -> tuple[Checkpoint, list[str]]
     """
     if case.time is None:
         raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to continue")
-    arrays, attributes = load_restart(path)
-    earlier = tomllib.loads(attributes["case"])
-    if misfit := _misfit(arrays, attributes, earlier, case, scales):
+    values = load_restart(path)
+    earlier = tomllib.loads(values["case"])
+    if misfit := _misfit(values, earlier, case, scales):
         raise OutputError(f"{path}: {misfit}")
-    return _checkpoint(arrays, attributes), changed_keys(earlier, tomllib.loads(case.text))
+    return _checkpoint(values), changed_keys(earlier, tomllib.loads(case.text))
 
 
 def pass_of(path: Path) -> int:
     """Number of the pass of a restart file; errors as in :func:`load`."""
-    return int(load_restart(path)[1]["pass_number"])
+    return load_restart(path)["pass_number"]
 
 
 def changed_keys(earlier: dict, now: dict) -> list[str]:
@@ -95,39 +88,31 @@ def changed_keys(earlier: dict, now: dict) -> list[str]:
     return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
 
 
-def _checkpoint(arrays: dict[str, np.ndarray], attributes: dict[str, Any]) -> Checkpoint:
-    values = arrays | attributes
-    levels = [arrays[name] for name in map("earlier_{}".format, TimeLevel._fields) if name in arrays]
-    names = [effect for effect in EFFECTS if RECORD + effect.name in attributes]
+def _checkpoint(values: dict[str, Any]) -> Checkpoint:
+    effects = [effect for effect in EFFECTS if RECORD + effect.name in values]
+    levels = [name for name in map(EARLIER.format, range(2)) if f"{name}.q" in values]
+    of_state = {name: values[name] for name in OF_STATE if name in values}
     state = State(
-        Unknowns(arrays["q"], arrays["w"], float(attributes["h00"])),
-        m=arrays.get("m"),
-        m_older=arrays.get("m_older"),
-        time=float(attributes["time"]),
-        dt=float(attributes["dt"]) or None,
-        retries=int(attributes["retries"]),
-        step=int(attributes["step"]),
-        travelled=tuple(attributes["travelled"].tolist()),
-        earlier=tuple(TimeLevel(*level) for level in zip(*levels, strict=True)),
-        records={effect.name: unflat(effect.record, values, effect.name) for effect in names},
+        unflat(Unknowns, values, "unknowns"),
+        **of_state | {"travelled": tuple(values["travelled"])},
+        earlier=tuple(unflat(TimeLevel, values, name) for name in levels),
+        records={effect.name: unflat(effect.record, values, effect.name) for effect in effects},
     )
-    totals = {n.removeprefix(TOTAL): v.item() for n, v in attributes.items() if n.startswith(TOTAL)}
-    smooth = arrays["smooth_q"], arrays["smooth_w"]
-    return Checkpoint(state, smooth, arrays["contact_count"], totals)
+    totals = {name.removeprefix(TOTAL): value for name, value in values.items() if name.startswith(TOTAL)}
+    smooth = values["smooth_q"], values["smooth_w"]
+    return Checkpoint(state, smooth, values["contact_count"], totals)
 
 
-def _misfit(
-    arrays: dict[str, np.ndarray], attributes: dict[str, Any], earlier: dict, case: Case, scales: Scales
-) -> str | None:
+def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -> str | None:
     """Reason why a file does not fit the case; None if it fits."""
-    x, now = arrays["x"] / attributes["a"], scales.x
+    x, now = values["x"] / values["a"], scales.x
     if len(x) != len(now):
         return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"
     if np.abs(x - now).max() > NODE_TOLERANCE * np.ptp(now):
         return f"begins at {x[0]:.6g} half-widths, the case at {now[0]:.6g}; [mesh] must be as it was"
-    if ("fluid" in earlier) != (case.fluid is not None) or attributes["contact_law"] != case.contact.law:
+    if ("fluid" in earlier) != (case.fluid is not None) or values["contact_law"] != case.contact.law:
         return "of another contact model, or of oil where there is none now; both must be as they were"
-    if not all(np.isclose(attributes[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
+    if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
         return "of another load, radius or elasticity; what changes with time is in [operation]"
     now_table, start = tomllib.loads(case.text), earlier.get("time", {}).get("start", "smooth")
     if case.time.start != start:
