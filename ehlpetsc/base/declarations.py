@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from types import SimpleNamespace
 from typing import Any
 
 
@@ -94,31 +95,25 @@ def plain(text: str) -> str:
 Required = partial(Key, required=True)
 
 
-class Values:
+class Values(SimpleNamespace):
     """Checked values of a table as attributes (`lambda_` for the key `lambda`); a missing table is None."""
 
-    def __init__(self, values: Mapping[str, Any]) -> None:
-        self.__dict__.update(values)
+    def __init__(self, values: Mapping[str, Any] | None = None) -> None:  # None: to be copied
+        super().__init__(**(values or {}))
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{name}: the values of a case do not change")
 
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(f"no key {name}")
-
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Values) and type(other) is type(self) and other.as_dict() == self.as_dict()
-
-    __hash__ = None  # type: ignore[assignment]
+        return isinstance(other, type(self)) and other.as_dict() == self.as_dict()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.as_dict()})"
 
     def as_dict(self) -> dict[str, Any]:
         """Values by key, tables in it as dicts."""
-        return {
-            k: v.as_dict() if isinstance(v, Values) else v for k, v in self.__dict__.items() if k[0] != "_"
-        }
+        public = {key: value for key, value in vars(self).items() if key[0] != "_"}
+        return {key: value.as_dict() if isinstance(value, Values) else value for key, value in public.items()}
 
     def copy(self, update: Mapping[str, Any]) -> Any:
         """The same table with other values of some keys."""
