@@ -15,6 +15,7 @@ _HOMES = {
     "Simulation": "ehlpetsc.run.simulation",
     "read_result": "ehlpetsc.api",
     "Result": "ehlpetsc.api",
+    "gears": "ehlpetsc.gears",
     "CaseError": "ehlpetsc.base.errors",
     "NotConverged": "ehlpetsc.base.errors",
     "OutputError": "ehlpetsc.base.errors",
@@ -22,18 +23,14 @@ _HOMES = {
 }
 
 
-_PACKAGES = ("gears",)
-
-
 def __getattr__(name: str) -> object:
-    if name in _PACKAGES:
-        return importlib.import_module(f"ehlpetsc.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'ehlpetsc' has no attribute {name!r}")
     if _HOMES[name].startswith("ehlpetsc.run."):
         importlib.import_module("ehlpetsc.api").need_solver()
-    return getattr(importlib.import_module(_HOMES[name]), name)
+    home = importlib.import_module(_HOMES[name])
+    return getattr(home, name, home)
 
 
 def __dir__() -> list[str]:
-    return [*globals(), *_HOMES, *_PACKAGES]
+    return [*globals(), *_HOMES]

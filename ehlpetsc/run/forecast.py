@@ -75,12 +75,9 @@ def file_size(case: Case, s: Scales) -> float:
 
 def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     """Both surfaces: size, roughness and travel, a line each."""
-    lines = []
-    for side in ("1", "2"):
-        profile = rough and rough.side(side)
-        described = _profile(case, s, profile) if profile else ["smooth"]
-        lines += [f"Surface {side}: {line}" for line in described]
-    return lines
+    profiles = {side: rough and rough.side(side) for side in ("1", "2")}
+    lines = {side: _profile(case, s, one) if one else ["smooth"] for side, one in profiles.items()}
+    return [f"Surface {side}: {line}" for side in lines for line in lines[side]]
 
 
 def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
@@ -89,56 +86,46 @@ def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None or rq <= 0.0:
         return []
     ratio = lambda_ratio(case, s, rough)
+    mixed = f"mixed lubrication, contact {'possible' if ratio > 1 else 'likely'}"
+    regime = "full film" if ratio > FULL_FILM else mixed  # Johnson, Greenwood & Poon (1972)
     return [
         f"Lambda ratio {ratio:.2g}: minimum smooth film {1e6 * ratio * rq:.3g} um over the combined "
-        f"Rq {1e6 * rq:.3g} um, {_regime(ratio)}"
+        f"Rq {1e6 * rq:.3g} um, {regime}"
     ]
-
-
-def _regime(ratio: float) -> str:
-    """Lubrication regime by the lambda ratio, e.g. Johnson, Greenwood & Poon (1972)."""
-    if ratio > FULL_FILM:
-        return "full film"
-    return "mixed lubrication, contact possible" if ratio > 1 else "mixed lubrication, contact likely"
 
 
 def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
     """Size, roughness and travel of one profile, a line each."""
-    samples = profile.given
+    from ehlpetsc.surfaces.profile_checks import entry_times
+
+    samples, times = profile.given, entry_times(profile, s)
     lines = [
         f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}",
         *samples.notes,
     ]
     if samples.measured:
         points = f"{samples.X.size} points {1e6 * samples.spacing:.4g} um apart"
-        size = f"{1e3 * samples.length:.4g} mm long, {points}"
-        lines.insert(1, size)
+        lines.insert(1, f"{1e3 * samples.length:.4g} mm long, {points}")
         if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
-        if case.time is not None and profile.enters:
-            lines += _part_in_contact(case, s, profile)
-    from ehlpetsc.surfaces.profile_checks import entry_times
-
-    times = entry_times(profile, s)
+        if case.time is not None and times:
+            lines += _part_in_contact(case, s, profile, times[0])
     if times:
-        reaches, fills = times
         end = "and fills it" if profile.repeats else "and has its middle at x = 0"
-        lines.append(f"reaches the contact at travel {reaches:.2f} a {end} at {fills:.2f} a")
+        lines.append(f"reaches the contact at travel {times[0]:.2f} a {end} at {times[1]:.2f} a")
     return lines
 
 
-def _part_in_contact(case: Case, s: Scales, profile: Profile) -> list[str]:
+def _part_in_contact(case: Case, s: Scales, profile: Profile, reaches: float) -> list[str]:
     """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
-    from ehlpetsc.surfaces.profile_checks import entry_times
-
-    reaches, length = entry_times(profile, s)[0], profile.given.length
-    slower = s.u_max / abs(profile.speed)
+    length, slower = profile.given.length, s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower
     if through >= length:
         return []
     needed = reaches + (2.0 + length / s.a) * slower
-    part = f"0 to {1e3 * through:.3g} mm of {1e3 * length:.4g} mm pass through the contact, x = 0 first"
-    part = part if through > 0.0 else "no part passes through the contact"
+    part = "no part passes through the contact"
+    if through > 0.0:
+        part = f"0 to {1e3 * through:.3g} mm of {1e3 * length:.4g} mm pass through the contact, x = 0 first"
     return [f"{part}; the whole profile needs time.travel = {math.ceil(needed)}"]
 
 

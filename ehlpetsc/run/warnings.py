@@ -15,7 +15,9 @@ from ehlpetsc.physics.film_formulas import (
     inlet_opening,
     points_for_opening,
 )
+from ehlpetsc.physics.flash_temperature import expected_friction
 from ehlpetsc.physics.laws import LAWS
+from ehlpetsc.run.outputs.limits import isothermal
 from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
@@ -129,19 +131,9 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
 
 def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
-    if case.heat is not None or case.motion is None:
-        return []
-    from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, expected_friction, flash_temperature
-
-    friction = case.contact.boundary_friction
-    friction = expected_friction(case.fluid, friction, scales, expected_film(case, scales) * scales.h)
-    flash = flash_temperature(friction, scales)
-    if flash <= MAX_ISOTHERMAL_FLASH:
-        return []
-    return [
-        f"the case is isothermal, but its flash temperature by Blok's formula is about {flash:.0f} K (steel, "
-        f"coefficient of friction {friction:.3f}); [heat] computes with temperatures"
-    ]
+    film, friction = expected_film(case, scales) * scales.h, case.contact.boundary_friction
+    friction = expected_friction(case.fluid, friction, scales, film) if case.motion else None
+    return list(isothermal(case, scales, friction))
 
 
 def _oil_warnings(fluid: Any) -> Iterator[str]:

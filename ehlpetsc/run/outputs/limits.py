@@ -34,7 +34,8 @@ def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str
     if "p_max" not in totals:  # no step was taken
         return []
     of_oil = _of_oil(case, totals) if case.fluid else []
-    return [*_of_solids(case.contact, totals), *_mesh(rough, scales), *_heat(case, scales, totals), *of_oil]
+    heat = (f"heat: {note}" for note in isothermal(case, scales, totals.get("friction_coefficient")))
+    return [*_of_solids(case.contact, totals), *_mesh(rough, scales), *heat, *of_oil]
 
 
 def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
@@ -53,16 +54,17 @@ def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
         )
 
 
-def _heat(case: Case, scales: Scales, totals: dict[str, float]) -> Iterator[str]:
-    if "friction_coefficient" not in totals or case.heat is not None or case.motion is None:
+def isothermal(case: Case, scales: Scales, friction: float | None) -> Iterator[str]:
+    """Note on an isothermal case with a high flash temperature by its coefficient of friction, if known."""
+    if friction is None or case.heat is not None or case.motion is None:
         return
     from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
 
-    flash = flash_temperature(abs(totals["friction_coefficient"]), scales)
+    flash = flash_temperature(abs(friction), scales)
     if flash > MAX_ISOTHERMAL_FLASH:
         yield (
-            f"heat: the run is isothermal, but the flash temperature of its friction is about {flash:.0f} K "
-            "by Blok's formula for steel; [heat] computes with temperatures"
+            f"the case is isothermal, but its flash temperature by Blok's formula is about {flash:.0f} K "
+            f"(steel, coefficient of friction {friction:.3f}); [heat] computes with temperatures"
         )
 
 
