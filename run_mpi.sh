@@ -104,7 +104,7 @@ quietly() {
 # For a machine that is neither Debian nor prepared
 other_machine() {
     say "packages are missing, and this is not Debian 12 or newer, where they could be installed.
-found:   $(python3 "$check" found "$@" 2>/dev/null || command -v python3 || echo "no python3")
+found:   $(command -v python3 || echo "no python3"), without $(python3 "$check" missing "$@" 2>/dev/null | paste -sd " ")
 needed:  Python 3.11 or newer with ${run_modules// /, }, and the mpirun of their MPI, first on the PATH:
   a cluster: module load ..., until python3 -c 'import petsc4py, mpi4py, h5py' works; or export PETSC_DIR=...
   a virtual environment: pip install '${here}[solver,post]' (builds PETSc), then activate it

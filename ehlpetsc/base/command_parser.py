@@ -77,7 +77,7 @@ def exit_status(
     `faults`: further exceptions that mean bad input. `output`: output file, for errors of writing without a
     file name.
     """
-    name = f"ehlpetsc {name}"
+    name, faults = f"ehlpetsc {name}", (OutputError, PostError, UsageError, *faults)
     try:
         status = action()
     except Stopped:
@@ -93,8 +93,6 @@ def exit_status(
     except OSError as error:
         text = not_written(error, error.filename or output) if error.errno else str(error)  # HDF5 has none
         print(f"{name}: {text}", file=sys.stderr)
-    except (OutputError, PostError, UsageError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
     except faults as error:
         print(f"{name}: {error}", file=sys.stderr)
     else:

@@ -4,7 +4,6 @@
 
     environment.py own MODULE ...      status 0: this Python, not Debian's, has all modules and can load PETSc
     environment.py missing MODULE ...  prints the missing modules
-    environment.py found MODULE ...    prints the version of Python and the missing modules
 """
 
 from __future__ import annotations
@@ -107,17 +106,12 @@ def _is_own_python(names: Iterable[str]) -> bool:
     return petsc.ScalarType.__name__ in ("float", "float64")
 
 
-def _python_report(names: Iterable[str]) -> str:
-    lacks = f"without {', '.join(missing(names))}" if missing(names) else "with all packages"
-    return f"{sys.executable} is Python {sys.version.split()[0]}, {lacks}"
-
-
 def _answer(question: str, *names: str) -> int:
     sys.path.pop(0)  # this file's folder, whose modules are part of a package
     if question == "own":
         return 0 if _is_own_python(names) else 1
     prepare()
-    print(_python_report(names) if question == "found" else "\n".join(missing(names)))
+    print("\n".join(missing(names)))
     return 0
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ehlpetsc.analysis.gear_run import FLANKS, SCALARS, GearRun
 from ehlpetsc.gears.geometry import GearPair
@@ -18,7 +19,10 @@ from ehlpetsc.gears.path import hertz
 from ehlpetsc.gears.standards import Rating, values_of
 from ehlpetsc.pictures import style
 
-WIDTH, PANEL, FONT, DPI = 3.35, 0.95, 8, 300  # inches, points, dots per inch: one column
+WIDTH, PANEL, DPI = 3.35, 0.95, 300  # inches, dots per inch: one column
+TEXT = {"font.size": 8, "figure.titlesize": 8, "legend.fontsize": 7, "legend.frameon": False}
+GRID = {"axes.grid": True, "grid.alpha": 0.3}
+ABOVE = dict(loc="lower center", bbox_to_anchor=(0.5, 1.1), handlelength=1.2)  # the names of the points
 POSITION = "position from the pitch point [mm]"
 LINES = ("-", "--", ":")  # of the curves of a panel
 COLOURS = {"pinion": style.SURFACES["1"], "wheel": style.SURFACES["2"]}
@@ -50,17 +54,16 @@ def draw(path: ContactPath, modulus: float, rating: Rating | None, target: Path,
         panels["film [µm]"] = {"ISO/TS 6336-22": standards["mean film"]}
     if "maximum flash temperature" in standards:
         panels["flash [K]"] = {"Blok": standards["maximum flash temperature"]}
-    figure, axes = _panels(len(panels), title)
-    for axis, (label, curves) in zip(axes, panels.items(), strict=True):
-        for number, (name, values) in enumerate(curves.items()):
-            colour = COLOURS.get(name, "0.4" if number else style.SINGLE)
-            axis.plot(position, values, LINES[number], color=colour, linewidth=1.2, label=name)
-        axis.set_ylabel(label, fontsize=FONT)
-        _mark(axis, path.pair, with_names=axis is axes[0])
-        if all(curves):
-            axis.legend(fontsize=FONT - 1, frameon=False, labelspacing=0.2)
-    axes[0].set_ylim(bottom=0.0)
-    _finish(figure, axes, target)
+    with _column(len(panels), target, title) as axes:
+        for axis, (label, curves) in zip(axes, panels.items(), strict=True):
+            for number, (name, values) in enumerate(curves.items()):
+                colour = COLOURS.get(name, "0.4" if number else style.SINGLE)
+                axis.plot(position, values, LINES[number], color=colour, linewidth=1.2, label=name)
+            axis.set_ylabel(label)
+            _mark(axis, path.pair, with_names=axis is axes[0])
+            if all(curves):
+                axis.legend(labelspacing=0.2)
+        axes[0].set_ylim(bottom=0.0)
 
 
 def _sharings(path: ContactPath) -> dict[str, np.ndarray]:
@@ -76,18 +79,17 @@ def _sharings(path: ContactPath) -> dict[str, np.ndarray]:
 def draw_runs(runs: list[GearRun], target: Path, *, names: Sequence[str]) -> None:
     """Draw scalars of runs along the line of action, with those of the standards, into a file."""
     rows = [row for row in SCALARS if row[0] in names]
-    figure, axes = _panels(len(rows), runs[0].title if len(runs) == 1 else "")
-    for axis, (name, factor, label) in zip(axes, rows, strict=True):
-        for run, colour in zip(runs, style.shades(len(runs)), strict=True):
-            values, position = factor * run.scalars[name], 1e3 * run.position
-            axis.plot(position, values, color=colour, alpha=0.25, linewidth=0.3)
-            axis.plot(position, run.averaged(values), color=colour, linewidth=1.2, label=run.title)
-        _draw_standard(axis, runs[0], name)
-        axis.set_ylabel(label, fontsize=FONT)
-        _mark(axis, runs[0].path.pair, with_names=axis is axes[0])
-    if len(runs) > 1:
-        _legend_above(axes[0])
-    _finish(figure, axes, target)
+    with _column(len(rows), target, runs[0].title if len(runs) == 1 else "") as axes:
+        for axis, (name, factor, label) in zip(axes, rows, strict=True):
+            for run, colour in zip(runs, style.shades(len(runs)), strict=True):
+                values, position = factor * run.scalars[name], 1e3 * run.position
+                axis.plot(position, values, color=colour, alpha=0.25, linewidth=0.3)
+                axis.plot(position, run.averaged(values), color=colour, linewidth=1.2, label=run.title)
+            _draw_standard(axis, runs[0], name)
+            axis.set_ylabel(label)
+            _mark(axis, runs[0].path.pair, with_names=axis is axes[0])
+        if len(runs) > 1:
+            axes[0].legend(**ABOVE)
 
 
 def _draw_standard(axis: Axes, run: GearRun, name: str) -> None:
@@ -101,18 +103,17 @@ def _draw_standard(axis: Axes, run: GearRun, name: str) -> None:
 
 def draw_damage(runs: list[GearRun], target: Path) -> None:
     """Draw the maximum damage over the depths along both flanks into a file."""
-    figure, axes = _panels(2, "", height=1.8, shared=False)
     pair = runs[0].path.pair
-    for k, axis in enumerate(axes):
-        for run, colour in zip(runs, style.shades(len(runs)), strict=True):
-            if run.damage.damage[k] is not None:
-                maximum = np.nan_to_num(run.damage.damage[k]).max(axis=0)
-                look = dict(color=colour, linewidth=0.5, label=run.title)
-                axis.semilogy(1e3 * run.damage.arcs[k], np.where(maximum > 0.0, maximum, np.nan), **look)
-        _mark(axis, pair, {name: float(pair.flank_arcs(rho)[k]) for name, rho in pair.points.items()})
-        axis.set_ylabel(f"damage of an\nengagement, {FLANKS[k]}", fontsize=FONT)
-    _legend_above(axes[0])
-    _finish(figure, axes, target, "arc length along the flank from A [mm]")
+    with _column(2, target, "", "arc length along the flank from A [mm]", 1.8, sharex=False) as axes:
+        for k, axis in enumerate(axes):
+            for run, colour in zip(runs, style.shades(len(runs)), strict=True):
+                if run.damage.damage[k] is not None:
+                    maximum = np.nan_to_num(run.damage.damage[k]).max(axis=0)
+                    look = dict(color=colour, linewidth=0.5, label=run.title)
+                    axis.semilogy(1e3 * run.damage.arcs[k], np.where(maximum > 0.0, maximum, np.nan), **look)
+            _mark(axis, pair, {name: float(pair.flank_arcs(rho)[k]) for name, rho in pair.points.items()})
+            axis.set_ylabel(f"damage of an\nengagement, {FLANKS[k]}")
+        axes[0].legend(**ABOVE)
 
 
 def draw_stages(runs: list[GearRun], target: Path) -> None:
@@ -120,55 +121,44 @@ def draw_stages(runs: list[GearRun], target: Path) -> None:
     torque, figures = [run.path.pair.torque for run in runs], [run.figures() for run in runs]
     flanks = [flank for flank in FLANKS if all(f"maximum damage of the {flank}" in row for row in figures)]
     names = [row for row in STAGES if all(np.isfinite(one[row[0]]) for one in figures)]
-    figure, axes = _panels(len(names) + bool(flanks), "")
-    for axis, (name, label) in zip(axes, names, strict=False):
-        axis.plot(torque, [row[name] for row in figures], "o-", color=style.SINGLE, markersize=4)
-        if all(name in run.standards for run in runs):
-            means = [np.nanmean(run.standards[name]) for run in runs]
-            axis.plot(torque, means, "s", **STANDARD, markersize=3)
-        axis.set_ylabel(label, fontsize=FONT)
-        axis.set_ylim(0.0, 1.1 * axis.dataLim.y1)
-    for flank in flanks:
-        damage = [row[f"maximum damage of the {flank}"] for row in figures]
-        axes[-1].semilogy(torque, damage, "o-", color=COLOURS[flank], markersize=4, label=flank)
-        axes[-1].set_ylabel("damage of an\nengagement", fontsize=FONT)
-        axes[-1].legend(fontsize=FONT, frameon=False)
-    for axis in axes:
-        axis.grid(alpha=0.3)
-    _finish(figure, axes, target, "torque on the pinion [N m]")
+    with _column(len(names) + bool(flanks), target, "", "torque on the pinion [N m]") as axes:
+        for axis, (name, label) in zip(axes, names, strict=False):
+            axis.plot(torque, [row[name] for row in figures], "o-", color=style.SINGLE, markersize=4)
+            if all(name in run.standards for run in runs):
+                means = [np.nanmean(run.standards[name]) for run in runs]
+                axis.plot(torque, means, "s", **STANDARD, markersize=3)
+            axis.set_ylabel(label)
+            axis.set_ylim(0.0, 1.1 * axis.dataLim.y1)
+        for flank in flanks:
+            damage = [row[f"maximum damage of the {flank}"] for row in figures]
+            axes[-1].semilogy(torque, damage, "o-", color=COLOURS[flank], markersize=4, label=flank)
+            axes[-1].set_ylabel("damage of an\nengagement")
+            axes[-1].legend()
 
 
-def _panels(count: int, title: str, height: float = PANEL, shared: bool = True) -> tuple[Figure, np.ndarray]:
-    """Figure of a column and its panels."""
-    figure = Figure(figsize=(WIDTH, 0.6 + height * count), layout="constrained")
-    axes = figure.subplots(count, 1, sharex=shared, squeeze=False)[:, 0]
-    for axis in axes:
-        axis.tick_params(labelsize=FONT)
-    if title:
-        figure.suptitle(title, fontsize=FONT)
-    return figure, axes
-
-
-def _finish(figure: Figure, axes: np.ndarray, target: Path, label: str = POSITION) -> None:
-    figure.align_ylabels(list(axes))
-    axes[-1].set_xlabel(label, fontsize=FONT)
-    style.save(figure, target, dpi=DPI)
-
-
-def _legend_above(axis: Axes) -> None:
-    """Legend in the column above the names of the points."""
-    position = dict(loc="lower center", bbox_to_anchor=(0.5, 1.1))
-    axis.legend(fontsize=FONT - 1, frameon=False, handlelength=1.2, **position)
+@contextmanager
+def _column(
+    count: int, target: Path, title: str, label: str = POSITION, height: float = PANEL, sharex: bool = True
+) -> Iterator[np.ndarray]:
+    """Panels of a column, which are saved at the end."""
+    with rc_context(TEXT | GRID):
+        size = (WIDTH, 0.6 + height * count)
+        figure, axes = style.new_figure(count, 1, size, sharex=sharex, squeeze=False)
+        if title:
+            figure.suptitle(title)
+        yield axes[:, 0]
+        figure.align_ylabels(list(axes[:, 0]))
+        axes[-1, 0].set_xlabel(label)
+        style.save(figure, target, dpi=DPI)
 
 
 def _mark(
     axis: Axes, pair: GearPair, places: dict[str, float] | None = None, with_names: bool = True
 ) -> None:
     """Mark the points A to E, by default on the line of action, at places in metres."""
-    axis.grid(alpha=0.3)
     places = places or {name: rho - pair.points["C"] for name, rho in pair.points.items()}
     for name, x in places.items():
         axis.axvline(1e3 * x, color="0.7", linewidth=0.8)
         if with_names:
-            at = dict(xycoords=("data", "axes fraction"), ha="center", fontsize=FONT)
+            at = dict(xycoords=("data", "axes fraction"), ha="center")
             axis.annotate(name, (1e3 * x, 1.03), **at)

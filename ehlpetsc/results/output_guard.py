@@ -10,12 +10,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, not_written
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
 
-WAIT_ADVICE = "wait for it, or give another -o"
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 PAGES = (".html", ".htm")
@@ -50,30 +49,27 @@ class Lock:
 
     def acquire(self) -> None:
         """Acquire the lock; an OutputError names the process that has it."""
-        file = self._locked()
-        while not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
-            file.close()  # the previous process removed the file between opening and locking
-            file = self._locked()
-        file.truncate(0)
-        file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
-        file.flush()
-        self._file = file
-
-    def _locked(self) -> TextIO:
         try:
             file = open(self._path, "a+")
         except OSError as error:
-            raise OutputError(f"{self._output}: result file not created, {error.strerror}") from error
+            raise OutputError(not_written(error, self._output)) from error
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             file.seek(0)
             process = file.read().strip() or "another process"
             file.close()
-            raise OutputError(f"{self._output}: is being written by {process}; {WAIT_ADVICE}") from None
+            advice = "wait for it, or give another -o"
+            raise OutputError(f"{self._output}: is being written by {process}; {advice}") from None
         except OSError:
             pass  # a file system without locks
-        return file
+        if not (self._path.exists() and os.path.samestat(self._path.stat(), os.fstat(file.fileno()))):
+            file.close()  # the previous process removed the file between opening and locking
+            return Lock.acquire(self)
+        file.truncate(0)
+        file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
+        file.flush()
+        self._file = file
 
     def release(self) -> None:
         """Release the lock; further calls have no effect."""

@@ -98,6 +98,10 @@ class PostResult:
 
     Attributes
     ----------
+    a, ratio
+        Half-width [m], slide/roll ratio.
+    main, height, under
+        Surface whose asperities are evaluated; their heights [m], the damage under them, shape (nz, peaks).
     s, z
         Body points [m]; depths z/a.
     surfaces
@@ -120,7 +124,8 @@ class PostResult:
             self.attrs = attributes(file)
             names = [name for surface in SURFACES for name in stored_names(surface)]
             self._arrays = {name: file[name][:] for name in names if name in file}
-        self.a = float(self.attrs["a"])
+        self.a, self.ratio, self.main = (self.attrs[name] for name in ("a", "slide_roll_ratio", "surface"))
+        self.height, self.under = (self._arrays[f"asperities/{self.main}_{k}"] for k in ("height", "damage"))
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
@@ -142,26 +147,6 @@ class PostResult:
         """Stored arrays of a name with {n} by surface."""
         names = {side: name.format(n=side) for side in SURFACES}
         return {side: self._arrays[key] for side, key in names.items() if key in self._arrays}
-
-    @property
-    def ratio(self) -> float:
-        """Slide/roll ratio."""
-        return self.attrs["slide_roll_ratio"]
-
-    @property
-    def main(self) -> str:
-        """Surface whose asperities `height`, `under` and `fits` are of."""
-        return self.attrs["surface"]
-
-    @property
-    def height(self) -> np.ndarray:
-        """Heights of the asperities [m], shape (peaks,)."""
-        return self._arrays[f"asperities/{self.main}_height"]
-
-    @property
-    def under(self) -> np.ndarray:
-        """Damage under the asperities, shape (nz, peaks)."""
-        return self._arrays[f"asperities/{self.main}_damage"]
 
     @property
     def fits(self) -> list[WeibullFit]:

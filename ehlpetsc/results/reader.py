@@ -200,8 +200,6 @@ class Result:
 
     def nearest_frame(self, *, time: float | None = None, step: int | None = None) -> int:
         """Index of the stored frame nearest to a time [s] or to a step number."""
-        if (time is None) == (step is None):
-            raise OutputError(f"{self.path}: nearest_frame needs either time or step")
         value, stored = (time, self.time) if step is None else (step, self.step)
         return int(np.argmin(np.abs(stored - value)))
 

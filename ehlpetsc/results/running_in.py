@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,12 +23,10 @@ def pass_summary(result: Result) -> dict[str, Any]:
 
     In SI units; a surface that is not stored is None.
     """
-    steps = result.steps
-    weights = filled_weights(result)
+    steps, weights = result.steps, filled_weights(result)
     values = {name: mean(result, name, weights) for name in MEANS if name in result.scalars}
     summary = {name: value if np.isfinite(value) else None for name, value in values.items()}
     summary |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
-    summary["halved"] = int(np.count_nonzero(steps("retries")))
     summary |= {name: float(steps(name)[-1]) for name in result.scalars if STEP_SCALARS[name].units == "m^2"}
     summary.setdefault("set_volume", 0.0)
     return summary | {side: statistics(result, side) for side in ("1", "2")}
@@ -45,19 +44,16 @@ def heights(result: Result, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def statistics(result: Result, side: str) -> dict[str, float] | None:
-    """Ra, Rq [m], Rsk, maximum slope and maximum indentation [m] of a surface after a pass."""
+    """Ra, Rq [m] and Rsk of a surface after a pass."""
     surface = heights(result, side)
     if surface is None:
         return None
-    s, z, z_after = surface
-    height = z_after - z_after.mean()
+    height = surface[2] - surface[2].mean()
     rq = float(np.sqrt((height**2).mean()))
     return {
         "ra": float(np.abs(height).mean()),
         "rq": rq,
         "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
-        "slope": float(np.abs(np.diff(z_after) / np.diff(s)).max()),
-        "deepest": float((z - z_after).max()),
     }
 
 
@@ -69,9 +65,5 @@ def passes_to_run_in(rows: list[dict], in_a_row: int = 1) -> int | None:
     """
     if not rows or rows[0]["pass"] != 1 or rows[0]["added"] <= 0.0:
         return None
-    first = None
-    for row in reversed(rows):
-        if row["added"] >= RUN_IN * rows[0]["added"]:
-            break
-        first = row["pass"]
-    return first if first and len(rows) - first + 1 >= in_a_row else None
+    small = list(takewhile(lambda row: row["added"] < RUN_IN * rows[0]["added"], reversed(rows)))
+    return small[-1]["pass"] if len(small) >= in_a_row else None

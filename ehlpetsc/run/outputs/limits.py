@@ -35,7 +35,12 @@ def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str
         return []
     of_oil = _of_oil(case, totals) if case.fluid else []
     heat = (f"heat: {note}" for note in isothermal(case, scales, totals.get("friction_coefficient")))
-    return [*_of_solids(case.contact, totals), *_mesh(rough, scales), *heat, *of_oil]
+    mesh = []
+    if rough:
+        from ehlpetsc.surfaces.profile_checks import mesh_warnings
+
+        mesh = [f"mesh: {note}" for note in mesh_warnings(rough, scales)]
+    return [*_of_solids(case.contact, totals), *mesh, *heat, *of_oil]
 
 
 def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
@@ -95,20 +100,4 @@ def _of_oil(case: Case, totals: dict[str, float]) -> Iterator[str]:
         yield (
             f"film: {totals['nodes_below_1nm']} times a node out of contact had less than "
             f"{1e9 * MIN_CONTINUUM_FILM:g} nm of oil, a molecule or two, where oil is no continuum"
-        )
-
-
-def _mesh(rough: Roughness | None, scales: Scales) -> Iterator[str]:
-    if rough is None:
-        return
-    from ehlpetsc.surfaces.profile import WAVE_NODES
-    from ehlpetsc.surfaces.profile_checks import MAX_UNRESOLVED
-
-    profiles = {side: profile for side in ("1", "2") if (profile := rough.side(side))}
-    unresolved = {side: profile.unresolved_variance(scales.dx) for side, profile in profiles.items()}
-    coarse = [f"{100 * v:.1f} % of surface.{side}" for side, v in unresolved.items() if v > MAX_UNRESOLVED]
-    if coarse:
-        yield (
-            f"mesh: of the height variance, {' and '.join(coarse)} lie in waves of fewer than {WAVE_NODES} "
-            "nodes; asperities of so few nodes are the mesh's as much as the surface's"
         )
