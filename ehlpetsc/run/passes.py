@@ -61,7 +61,7 @@ class Passes:
         first = on_root(self.comm, pass_of, restart) if restart else 1
         if first > 1:
             rows = on_root(self.comm, self.index.stored_rows, True)
-            self.index.rows = [row for row in rows if row["pass"] < first]
+            self.index.rows[:] = [row for row in rows if row["pass"] < first]
         simulation, status = None, ExitStatus.DONE
         for number in range(first, self.case.time.passes + 1):
             simulation = Simulation(self.case, self.comm, after=simulation, pass_number=number)

@@ -97,7 +97,7 @@ def compute_rows(
         on_row(number)
 
     on_root(world, index.write)
-    index.rows = WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows)
+    index.rows[:] = WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows)
 
 
 class Member:
