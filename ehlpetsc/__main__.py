@@ -32,8 +32,8 @@ COMMANDS = {  # module and its function, by default main, packages that it needs
     "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
     "explain": ("ehlpetsc.run.explain", FORECAST, "film, run time and effects of a case, before it runs"),
-    "keys": ("ehlpetsc.case.key_page", READING, "keys of a case: meaning, unit, bounds, default"),
-    "template": ("ehlpetsc.case.key_page:template_command", READING, "a commented case to begin with"),
+    "keys": ("ehlpetsc.case.keys", READING, "keys of a case: meaning, unit, bounds, default"),
+    "template": ("ehlpetsc.case.keys:template_command", READING, "a commented case to begin with"),
     "docs": ("ehlpetsc.base.docs", (), "these pages as one site, opened in a browser"),
 }
 

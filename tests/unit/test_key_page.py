@@ -4,12 +4,11 @@ import re
 
 import numpy as np
 import pytest
-from support import ROOT, refused
+from support import ROOT, key_page, refused
 
 from ehlpetsc.__main__ import main
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.case import key_page
-from ehlpetsc.case.key_page import template
+from ehlpetsc.case.keys import keys, template
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.laws import density
 
@@ -18,8 +17,13 @@ def test_key_page_equals_the_table():
     assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == key_page.page()
 
 
+def test_equations_are_typeset():
+    tex = key_page.tex("p_c <= beta E* exp(-h_a/sigma)^(1/n')")
+    assert tex == r"p_c \le \beta E^{\ast} \exp(-h_a/\sigma)^{1/n'}"
+
+
 def test_every_key_of_the_cases_is_listed():
-    listed = key_page.keys()
+    listed = keys()
     for path in (ROOT / "cases").glob("*.toml"):
         text = path.read_text(encoding="utf-8").partition("[petsc]")[0]
         for key in re.findall(r"^(\w+) *=", text, re.MULTILINE):
@@ -37,7 +41,7 @@ def test_every_key_of_the_cases_is_listed():
     ],
 )
 def test_a_key_is_found_by_its_name(name, words):
-    assert re.search(words.replace("[", r"\["), key_page.keys(name), re.DOTALL)
+    assert re.search(words.replace("[", r"\["), keys(name), re.DOTALL)
 
 
 def test_refused_density_constants_explain_the_textbook_form(tmp_path):
@@ -60,7 +64,7 @@ def test_template_is_a_case(tmp_path, kind):
 
 
 def test_commands_print_keys_and_template(capsys):
-    for words, text in ((["keys"], key_page.keys()), (["keys", "mesh"], key_page.keys("mesh"))):
+    for words, text in ((["keys"], keys()), (["keys", "mesh"], keys("mesh"))):
         assert main(words) == 0 and capsys.readouterr().out == text + "\n"
     assert main(["template"]) == 0 and capsys.readouterr().out == template()
     assert "mush: " in refused(capsys, main, "keys", "mush")

@@ -8,7 +8,7 @@ from support import CASES
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.units import converted
-from ehlpetsc.case import key_page
+from ehlpetsc.case import keys
 from ehlpetsc.case.loading import load, members
 
 SMOOTH = CASES / "table1_smooth.toml"
@@ -59,7 +59,7 @@ def test_every_unit_of_the_keys_is_converted(unit):
 
 
 def test_every_unit_of_a_key_is_in_the_table():
-    tables = key_page.tables().values()
+    tables = keys.tables().values()
     used = {key.unit for table in tables for key in table.keys.values() if key.kind is float}
     assert used == set(PLAUSIBLE) | WITHOUT
 
