@@ -159,10 +159,6 @@ class KeyTable:
         return Key(self.text, kind=dict, required=self.required, table=self)
 
 
-_FRAME = ("time", "x")
-_STEP = ("time",)
-
-
 @dataclass(frozen=True)
 class Field:
     """Metadata of a dataset.
@@ -183,7 +179,7 @@ class Field:
 
     units: str
     long_name: str
-    dims: tuple = _FRAME
+    dims: tuple = ("time", "x")
     dtype: str = "f8"
     only: str = ""
 
@@ -215,7 +211,7 @@ class StepScalar(Field):
         Whether it is compared between runs, unlike scalars of the solution process.
     """
 
-    dims: tuple = _STEP
+    dims: tuple = ("time",)
     over_run: str = ""
     over_series: str = ""
     summary: str = ""

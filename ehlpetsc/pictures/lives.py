@@ -27,13 +27,12 @@ def draw(life: LifeHistory, path: Path) -> None:
         raise OSError(f"{path}: not written, no pass is solved yet")
     figure = Figure(figsize=(11.0, 8.5), layout="constrained")
     top, bottom = figure.subfigures(2, 1, height_ratios=(2, 1))
-    chosen = np.unique(np.linspace(0, len(life.rows) - 1, SHOWN_INSTANTS).round().astype(int))
-    above = []
-    for column, row in enumerate(chosen):
-        for k in range(2):
-            above.append(top.add_subplot(2, len(chosen), k * len(chosen) + column + 1))
-            image = under_profile(above[-1], life.bodies[row][k])
-            above[-1].set_title(f"surface {k + 1}, {life.rows[row]['passes']:,} passes", fontsize="small")
+    chosen = style.spread(len(life.rows), SHOWN_INSTANTS)
+    above = top.subplots(2, len(chosen), squeeze=False)
+    for row, column in zip(chosen, above.T, strict=True):
+        for k, axes in enumerate(column):
+            image = under_profile(axes, life.bodies[row][k])
+            axes.set_title(f"surface {k + 1}, {life.rows[row]['passes']:,} passes", fontsize="small")
     top.colorbar(image, ax=above, label="log10 D", shrink=0.6)
     passes = life("passes")
     panels = (
@@ -42,8 +41,7 @@ def draw(life: LifeHistory, path: Path) -> None:
         ("ra", "Ra [µm]", 1e6),
         ("friction", "friction", 1.0),
     )
-    for column, (name, label, unit) in enumerate(panels):
-        axes = bottom.add_subplot(1, 4, column + 1)
+    for axes, (name, label, unit) in zip(bottom.subplots(1, len(panels)), panels, strict=True):
         if name == "friction":
             axes.plot(passes - life("jump") + 1, life(name), ".-", color=style.SINGLE)
         else:
@@ -52,15 +50,10 @@ def draw(life: LifeHistory, path: Path) -> None:
                 axes.plot(passes, unit * life(f"{name}_{side}"), marks, **line)
             axes.legend(fontsize="x-small")
         axes.set(xlim=(0.0, 1.05 * passes[-1]), xlabel="passes", ylabel=label)
-    figure.suptitle(_title(life))
-    style.save(figure, path)
-
-
-def _title(life: LifeHistory) -> str:
-    """Title of the case, with the steels of the stored case."""
     named = tomllib.loads(life.case)["contact"].get("material") or []
-    steels = dict.fromkeys([named] if isinstance(named, str) else named)
-    return f"{life.title} ({', '.join(steels)})" if steels else life.title
+    steels = ", ".join(dict.fromkeys([named] if isinstance(named, str) else named))
+    figure.suptitle(f"{life.title} ({steels})" if steels else life.title)
+    style.save(figure, path)
 
 
 def under_profile(axes: Axes, body: LifeBody) -> ScalarMappable:

@@ -139,8 +139,7 @@ DPI = 80
 
 def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
     """Write at most `MAX_FRAMES` frames with common axes."""
-    last = len(results[0].time) - 1
-    chosen = np.unique(np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int))
+    chosen = style.spread(len(results[0].time), MAX_FRAMES)
     figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
     window, limits = frames.view(results, options.window), _limits(results, chosen)
     writer = PillowWriter(fps=RATE)

@@ -100,9 +100,8 @@ def frames(result: Result) -> dict:
     x, a = result.x / result.attrs["a"], result.attrs["a"]
     columns = style.in_view(x, view([result]))
     width = -(-len(x[columns]) // MAX_NODES)
-    last, shown = len(result.time) - 1, frame_to_show(result)
-    spread = np.linspace(0, last, min(last + 1, MAX_FRAMES)).round().astype(int)
-    chosen = np.unique(np.append(spread, shown))
+    shown = frame_to_show(result)
+    chosen = np.unique(np.append(style.spread(len(result.time), MAX_FRAMES), shown))
     fields = {
         name: _packed([binned(factor * result.frame(name, k)[columns], width, reduce) for k in chosen])
         for name, (factor, reduce) in FIELDS.items()

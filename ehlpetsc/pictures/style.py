@@ -94,6 +94,11 @@ def scale_above(axes: Axes, factor: float, label: str) -> None:
     above.set_xlabel(label, fontsize="small")
 
 
+def spread(count: int, most: int) -> np.ndarray:
+    """Indices of at most so many of `count` entries, from the first to the last."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
+
+
 def in_view(x: np.ndarray, window: Sequence[float]) -> slice:
     """Nodes with x/a within the limits of a view."""
     nodes = np.flatnonzero((x >= window[0]) & (x <= window[1]))

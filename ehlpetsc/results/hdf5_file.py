@@ -25,16 +25,13 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
 
     Further options are those of `h5py.File`; an OutputError if there is no readable HDF5 file.
     """
+    if not Path(path).is_file():
+        raise OutputError(f"{path}: no such file")
     try:
-        if not Path(path).is_file():
-            raise OutputError(f"{path}: no such file")
-        try:
-            return h5py.File(path, "r", **options)
-        except OSError as fault:
-            if BEING_WRITTEN not in str(fault):
-                raise
-            return h5py.File(path, "r", swmr=True, **options)
+        return h5py.File(path, "r", **options)
     except (OSError, ValueError, RuntimeError) as fault:
+        if BEING_WRITTEN in str(fault):
+            return h5py.File(path, "r", swmr=True, **options)
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
 

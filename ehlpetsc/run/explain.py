@@ -40,7 +40,12 @@ def explain(case: Case) -> str:
     rough = Roughness.of(case, scales)
     sections = [
         [case.title],
-        _contact(scales),
+        _series(case) if case.series else [],
+        [
+            f"Contact: radius {scales.R:g} m, load {scales.load:g} N/m, reduced modulus "
+            f"{scales.E / 1e9:.4f} GPa",
+            f"Hertz: half-width a = {scales.a * 1e3:.6f} mm, maximum pressure p0 = {scales.p0 / 1e9:.6f} GPa",
+        ],
         _layer(case.contact, scales),
         _film(case, scales, rough),
         _motion(case, scales),
@@ -49,16 +54,7 @@ def explain(case: Case) -> str:
         [f"Warning: {line}" for line in warnings(case, scales)],
         [f"Refused: {line}" for line in domain_faults(case, scales)],
     ]
-    if case.series:
-        sections.insert(1, _series(case))
     return "\n".join(line for section in sections for line in section)
-
-
-def _contact(s: Scales) -> list[str]:
-    return [
-        f"Contact: radius {s.R:g} m, load {s.load:g} N/m, reduced modulus {s.E / 1e9:.4f} GPa",
-        f"Hertz: half-width a = {s.a * 1e3:.6f} mm, maximum pressure p0 = {s.p0 / 1e9:.6f} GPa",
-    ]
 
 
 def _layer(contact: Any, s: Scales) -> list[str]:
@@ -77,13 +73,13 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(case.fluid, s.E, s.conditions)
-    lines = [
+    return [
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
         f"Expected smooth film (Moes, and the density under p0): central {central * 1e6:.3g} um, "
         f"minimum {minimum * 1e6:.3g} um",
+        *lambda_line(case, s, rough),
     ]
-    return [*lines, *lambda_line(case, s, rough)]
 
 
 def _motion(case: Case, s: Scales) -> list[str]:
@@ -94,12 +90,11 @@ def _motion(case: Case, s: Scales) -> list[str]:
     line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; surfaces 1, 2 at {s.u1:g}, {s.u2:g} m/s"
     if case.time is None:
         return [line, "Time: steady"]
-    begin = ["Start: rough, after a ramp before time 0"] if case.time.start == "rough" else []
     return [
         line,
         f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
         f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
-        *begin,
+        *["Start: rough, after a ramp before time 0"] * (case.time.start == "rough"),
     ]
 
 
