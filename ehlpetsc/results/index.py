@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError, not_written
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, atomic_write, check_output_path, inputs_of
 from ehlpetsc.results.reader import Result, read_result
 
@@ -57,12 +57,9 @@ class Index(Lock):
         return content.get(self.kind, []) if of_any_case or content.get("case") == self.case.text else []
 
     def write(self) -> None:
-        """Write the file."""
+        """Write the file; OutputError."""
         content = {"title": self.case.title, **self.more, self.kind: self.rows, "case": self.case.text}
-        try:
-            atomic_write(self.path, (json.dumps(content, indent=1, default=str) + "\n").encode())
-        except OSError as error:
-            raise OutputError(not_written(error, self.path)) from error
+        atomic_write(self.path, (json.dumps(content, indent=1, default=str) + "\n").encode())
 
 
 def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:

@@ -92,7 +92,7 @@ def inputs_of(case: Case) -> list[Path]:
 def replacing(path: Path) -> Iterator[Path]:
     """Context manager of an empty temporary file beside `path`: renamed at the end, removed after an error.
 
-    An OSError of the temporary file names `path` as its file. What a killed process left is overwritten.
+    An error of the system becomes an OutputError. What a killed process left is overwritten.
     """
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".tmp.{target.name}")
@@ -103,8 +103,8 @@ def replacing(path: Path) -> Iterator[Path]:
     except BaseException as error:
         with contextlib.suppress(OSError):
             temporary.unlink()
-        if isinstance(error, OSError) and error.errno and error.filename in (None, str(temporary)):
-            raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
+        if isinstance(error, OSError) and error.errno:
+            raise OutputError(not_written(error, path)) from error
         raise
 
 

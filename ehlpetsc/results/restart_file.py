@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError, not_written
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.toml_file import plain
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
@@ -31,10 +31,7 @@ def save_restart(path: Path, values: dict[str, Any]) -> None:
         for name, value in values.items():
             (file if isinstance(value, np.ndarray) else file.attrs)[name] = value
     body = content.getbuffer()[HEADER_BYTES:]
-    try:
-        atomic_write(path, _header(body) + bytes(body))
-    except OSError as error:
-        raise OutputError(not_written(error, path)) from error
+    atomic_write(path, _header(body) + bytes(body))
 
 
 def load_restart(path: Path) -> dict[str, Any]:
