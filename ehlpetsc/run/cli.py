@@ -169,7 +169,7 @@ def _run_single(
     from ehlpetsc.run.forecast import banner
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import Run
-    from ehlpetsc.run.warnings import warnings
+    from ehlpetsc.run.validity import warnings
 
     simulation = Simulation(case, comm)
     if comm.rank == 0:

@@ -16,7 +16,7 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
 from ehlpetsc.run.outputs.progress import duration
-from ehlpetsc.run.warnings import domain_faults, warnings
+from ehlpetsc.run.validity import domain_faults, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:

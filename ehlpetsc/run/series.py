@@ -29,7 +29,7 @@ from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
-from ehlpetsc.run.warnings import warnings
+from ehlpetsc.run.validity import warnings
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -25,7 +25,7 @@ from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.stop import StopRequest
-from ehlpetsc.run.warnings import domain_faults
+from ehlpetsc.run.validity import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
@@ -171,10 +171,6 @@ class Simulation:
     def end(self) -> float:
         """Time of the end of the run [s]."""
         return self.solution.time + self._time_left()
-
-    def level(self, time: float) -> float:
-        """Number of nominal time steps up to a time [s], with a fraction."""
-        return self.operation.level(time, self.scales.dt)
 
     def _time_left(self) -> float:
         return self.operation.remaining(self.solution.time, self.solution.travelled)

@@ -13,7 +13,7 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.warnings import domain_faults, domain_warnings
+from ehlpetsc.run.validity import domain_faults, domain_warnings
 from ehlpetsc.stepping.convergence_check import check_ends
 
 SMOOTH = CASES / "table1_smooth.toml"

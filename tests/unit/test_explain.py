@@ -13,7 +13,7 @@ from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run import forecast
 from ehlpetsc.run.explain import explain
 from ehlpetsc.run.forecast import file_size, steps
-from ehlpetsc.run.warnings import warnings
+from ehlpetsc.run.validity import warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")

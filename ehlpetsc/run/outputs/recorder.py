@@ -20,8 +20,8 @@ from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run.outputs.checkpoint import load, save
-from ehlpetsc.run.outputs.limits import limits
 from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.validity import limits
 from ehlpetsc.stepping.time_stepping import on_level
 
 if TYPE_CHECKING:
@@ -37,8 +37,8 @@ class Recorder:
 
     `output`: result file; the restart file is named after it. None: in memory, without a restart file.
 
-    `totals`: totals of all steps so far. `limits`: messages of :func:`.limits.limits`, on rank 0, set
-    by :meth:`close`. `restart`: restart file.
+    `totals`: totals of all steps so far. `limits`: messages of :func:`ehlpetsc.run.validity.limits`, on
+    rank 0, set by :meth:`close`. `restart`: restart file.
     """
 
     def __init__(self, simulation: Simulation, output: Path | None) -> None:
@@ -149,7 +149,8 @@ class Recorder:
 
     def _append(self, state: AcceptedState) -> None:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
-        frame = every == 1 or steady or on_level(self.simulation.level(float(state.scalars["time"])), every)
+        level = self.simulation.operation.level(float(state.time), self.simulation.scales.dt)
+        frame = every == 1 or steady or on_level(level, every)
         self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
 
     def _close(self, status: ExitStatus) -> None:
