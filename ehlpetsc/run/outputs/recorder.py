@@ -149,8 +149,8 @@ class Recorder:
 
     def _append(self, state: AcceptedState) -> None:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
-        level = self.simulation.operation.level(float(state.time), self.simulation.scales.dt)
-        frame = every == 1 or steady or on_level(level, every)
+        level, nominal = self.simulation.operation.level, self.simulation.scales.dt
+        frame = every == 1 or steady or on_level(level(float(state.time), nominal), every)
         self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
 
     def _close(self, status: ExitStatus) -> None:
