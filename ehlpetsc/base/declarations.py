@@ -17,7 +17,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 
 class Refused(ValueError):
@@ -184,8 +184,7 @@ class Field:
     only: str = ""
 
 
-@dataclass(frozen=True)
-class Column:
+class Column(NamedTuple):
     """Column of progress: heading, factor from SI units, format."""
 
     heading: str

@@ -50,12 +50,7 @@ def celsius(key: Key, value: object) -> str:
 
 def show(value: object) -> str:
     """Value as in the case file, shortened."""
-    try:
-        text = json.dumps(value, ensure_ascii=False, default=str)
-    except ValueError:  # Python does not print an integer of thousands of digits
-        text = "a number of thousands of digits"
-    except RecursionError:
-        text = "tables in tables without end"
+    text = json.dumps(value, ensure_ascii=False, default=str)
     text = "nan" if text == "NaN" else text
     return shortened(text.encode(errors="backslashreplace").decode())
 

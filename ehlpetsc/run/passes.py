@@ -38,10 +38,6 @@ class Passes:
         """Result file of a pass."""
         return self.stem.with_name(f"{self.stem.name}.pass{number}.h5")
 
-    def restart(self, number: int) -> Path:
-        """Restart file of a pass."""
-        return self.file(number).with_suffix(".restart.h5")
-
     def run(self, restart: Path | None = None, overwrite: bool = False) -> ExitStatus:
         """Run every unfinished pass; a finished series of passes is run again.
 
@@ -80,8 +76,9 @@ class Passes:
         passes = range(1, self.case.time.passes + 1)
         begun = next((n for n in passes if n not in noted or not is_done(self.file(n), text)), 0)
         for number in range(begun, 0, -1):
-            if self.file(number).exists() and is_restart_of(self.restart(number), text):
-                return self.restart(number)
+            restart = self.file(number).with_suffix(".restart.h5")
+            if self.file(number).exists() and is_restart_of(restart, text):
+                return restart
         return None
 
     def _note(self, number: int) -> None:

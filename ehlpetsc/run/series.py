@@ -8,6 +8,7 @@ with a complete file of the same case are not computed again; unfinished ones ar
 from __future__ import annotations
 
 import contextlib
+import io
 import re
 import sys
 import time as clock
@@ -121,8 +122,8 @@ class Member:
         return Totals()
 
 
-class PrefixedStream:
-    """Output stream that puts a name before every line."""
+class PrefixedStream(io.TextIOBase):
+    """Output stream that puts a name before every line; no terminal, as bars would draw over each other."""
 
     def __init__(self, name: str, stream: TextIO) -> None:
         self._name, self._stream, self._line = f"[{name}] ", stream, ""
@@ -134,9 +135,6 @@ class PrefixedStream:
 
     def flush(self) -> None:
         self._stream.flush()
-
-    def isatty(self) -> bool:
-        return False  # no bar: several members would draw over each other
 
 
 class Series:

@@ -26,27 +26,22 @@ OUTPUT = KeyTable("output", "content of the result file", OUTPUT_KEYS, always=Tr
 
 def _one_or_several(series: Values) -> dict[str, Any]:
     """Refuse values that do not fit the keys of a series."""
-    keys, lists = series.keys, series.values
-    for name in ("key", "keys"):
-        given = [series.key] if name == "key" else keys
-        if getattr(series, name) is not None and not all(map(DOTTED_KEY.fullmatch, given)):
-            raise Refused(key=name)
-    if (series.key is None) == (keys is None):
+    if (series.key is None) == (series.keys is None):
         raise Refused("needs either key or keys: one of them")
-    if keys is None:
-        if series.combine:
-            raise Refused("combine is for several keys")
-        members = len(lists)
-    else:
-        if len(set(keys)) < len(keys):
-            raise Refused("keys: the same one twice")
-        if len(lists) != len(keys) or not all(isinstance(entries, list) and entries for entries in lists):
-            raise Refused(f"values: allowed: {len(keys)} lists of values, one for each of the keys")
-        counts = [len(entries) for entries in lists]
-        if series.combine == "step" and len(set(counts)) > 1:
-            shown = ", ".join(map(str, counts))
-            raise Refused(f'values: lists of {shown}; allowed with combine = "step": lists of one length')
-        members = counts[0] if series.combine == "step" else math.prod(counts)
+    keys, lists = (series.keys, series.values) if series.keys else ([series.key], [series.values])
+    if not all(map(DOTTED_KEY.fullmatch, keys)):
+        raise Refused(key="keys" if series.keys else "key")
+    if series.combine and not series.keys:
+        raise Refused("combine is for several keys")
+    if len(set(keys)) < len(keys):
+        raise Refused("keys: the same one twice")
+    if len(lists) != len(keys) or not all(isinstance(entries, list) and entries for entries in lists):
+        raise Refused(f"values: allowed: {len(keys)} lists of values, one for each of the keys")
+    counts = [len(entries) for entries in lists]
+    if series.combine == "step" and len(set(counts)) > 1:
+        shown = ", ".join(map(str, counts))
+        raise Refused(f'values: lists of {shown}; allowed with combine = "step": lists of one length')
+    members = counts[0] if series.combine == "step" else math.prod(counts)
     if members > MAX_MEMBERS:
         raise Refused(f"{members} members; allowed: at most {MAX_MEMBERS}")
     return {}

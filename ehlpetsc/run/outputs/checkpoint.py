@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -32,8 +31,7 @@ SCALES = ("a", "p0", "h")  # of load, radius and elasticity
 SPEEDS = ("motion", "operation", "gears")  # tables
 
 
-@dataclass(frozen=True)
-class Checkpoint:
+class Checkpoint(NamedTuple):
     """State from which a run continues.
 
     `baseline` are steady q and w for the predictor, `contact_count` the steps in contact of each node,
