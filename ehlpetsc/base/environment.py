@@ -38,7 +38,7 @@ def prepare() -> list[str]:
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
     if not has("petsc4py"):
-        sys.path += map(str, [*_of_petsc_dir(), *_debians()][:1])
+        sys.path += map(str, _petsc4py_folders()[:1])
     return missing(NEEDED)
 
 
@@ -53,20 +53,14 @@ def missing(names: Iterable[str]) -> list[str]:
     return [name for name in names if not has(name)]
 
 
-def _of_petsc_dir() -> list[Path]:
-    """Folders of the petsc4py of ``PETSC_DIR``."""
-    if "PETSC_DIR" not in os.environ:
-        return []
-    home, arch = Path(os.environ["PETSC_DIR"]), os.environ.get("PETSC_ARCH", "")
+def _petsc4py_folders() -> list[Path]:
+    """Folders of the petsc4py of ``PETSC_DIR``, then of Debian's for this release of Python, newest first."""
+    home, arch = Path(os.environ.get("PETSC_DIR", os.devnull)), os.environ.get("PETSC_ARCH", "")
     folders = (home / arch / "lib", home / "lib", home / "lib/python3/dist-packages")
-    return [folder for folder in folders if (folder / "petsc4py").is_dir()]
-
-
-def _debians() -> list[Path]:
-    """Folders of Debian's petsc4py for this release of Python, newest first."""
     built = f"petsc4py/lib/PETSc.{sys.implementation.cache_tag}-*.so"
-    folders = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
-    return sorted(folders, key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
+    debians = [p for p in DEBIAN.glob("petsc*/*-real/lib/python3/dist-packages") if list(p.glob(built))]
+    debians.sort(key=lambda path: [int(n) for n in re.findall(r"\d+", path.parts[4])], reverse=True)
+    return [folder for folder in folders if (folder / "petsc4py").is_dir()] + debians
 
 
 def advice(lacks: list[str], arguments: list[str]) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
     from petsc4py import PETSc
 
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.stop import StopRequest
 
 NO_SIGNAL_HANDLER = "-no_signal_handler"  # PETSc's handler would end the process with its own report
@@ -159,22 +159,19 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
         from ehlpetsc.run.passes import Passes
 
         return Passes(comm, case, output, stop).run(restart, overwrite)
-    return _run_single(comm, case, stop, output, restart, overwrite)
-
-
-def _run_single(
-    comm: MPI.Comm, case: Case, stop: StopRequest, output: Path, restart: Path | None, overwrite: bool
-) -> int:
-    """Run a case that is not a series."""
-    from ehlpetsc.run.forecast import banner
-    from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import Run
-    from ehlpetsc.run.validity import warnings
 
     simulation = Simulation(case, comm)
     if comm.rank == 0:
-        for line in banner(case, simulation.scales, simulation.roughness, comm.size):
-            print(line)
-        for line in warnings(case, simulation.scales):
-            print(f"warning: {line}", flush=True)
+        _print_heading(simulation)
     return Run(simulation, output, stop).run(restart, overwrite)[0]
+
+
+def _print_heading(simulation: Simulation) -> None:
+    from ehlpetsc.run.forecast import banner
+    from ehlpetsc.run.validity import warnings
+
+    case, scales = simulation.case, simulation.scales
+    print(*banner(case, scales, simulation.roughness, simulation.comm.size), sep="\n")
+    for line in warnings(case, scales):
+        print(f"warning: {line}", flush=True)

@@ -17,7 +17,7 @@ from ehlpetsc.physics.scales import Scales, hertz_line, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing
 from ehlpetsc.pictures import over_time, style
-from ehlpetsc.pictures.case_profiles import draw_case, passing
+from ehlpetsc.pictures.profiles import draw_case, passing
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces.roughness import Roughness
