@@ -41,7 +41,7 @@ def drop_stale_code(package: Path) -> None:
     module has moved.
     """
     stamp = package / "__pycache__" / "compiled.json"
-    with contextlib.suppress(OSError):  # read-only: numba then has its cache elsewhere
+    with contextlib.suppress(OSError):  # read-only, or a module is removed at the same time
         files = {str(path.relative_to(package)): path.stat() for path in package.rglob("*.py")}
         state = repr(sorted((name, status.st_size, status.st_mtime_ns) for name, status in files.items()))
         kept = json.loads(stamp.read_text()) if stamp.exists() else {}
@@ -85,8 +85,7 @@ def _imported_files(text: str, package: str, files: Container[str]) -> set[str]:
 
 
 if COMPILED:
-    with contextlib.suppress(OSError):  # a module is removed at the same time
-        drop_stale_code(Path(__file__).parents[1])
+    drop_stale_code(Path(__file__).parents[1])
 
 
 def compiled(function: Callable | None = None, **options: Any) -> Any:

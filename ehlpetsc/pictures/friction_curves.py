@@ -117,9 +117,8 @@ def draw_traction(results: list[Result], _options: argparse.Namespace | None) ->
     ratios = np.unique(np.concatenate([ratios[ratios > 0.0] for ratios, _ in found.values()]))
     if len(found) == 1 and results[0].case.fluid:
         axes.set_ylim(top=1.6 * axes.get_ylim()[1])  # a correlation without bound is cut
-        for (label, friction), dashes in zip(
-            correlations(results[0], ratios).items(), (":", "-."), strict=True
-        ):
+        published = correlations(results[0], ratios).items()
+        for (label, friction), dashes in zip(published, (":", "-."), strict=True):
             axes.plot(ratios, friction, dashes, color="0.35", lw=1.0, label=label)
     axes.set(xlabel=style.UNITS[RATIO], ylabel="friction coefficient", xlim=(0.0, None))
     if ratios.size and ratios[-1] > MIN_LOGARITHMIC_RATIO * ratios[0]:

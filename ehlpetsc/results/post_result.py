@@ -40,15 +40,9 @@ DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "asperities/{n}_height": Dataset("m", "height of asperity peaks", "peak"),
     "asperities/{n}_damage": Dataset("1", "damage under asperity peaks, at the nearest body point", "z peak"),
     "criteria/{criterion}/{n}_damage": Dataset("1", "damage of one pass on the worst plane", "z s"),
-    "criteria/{criterion}/{n}_inclination": Dataset(
-        "degrees", "of the worst plane's normal, from x towards z in the section", "z s"
-    ),
-    "criteria/{criterion}/{n}_tilt": Dataset(
-        "degrees", "of the worst plane's normal, out of the section", "z s"
-    ),
-    "criteria/{criterion}/{n}_utilisation": Dataset(
-        "1", "of the fatigue limit; up to 1 no crack starts", "z s"
-    ),
+    "criteria/{criterion}/{n}_inclination": Dataset("degrees", "worst plane's normal, from x to z", "z s"),
+    "criteria/{criterion}/{n}_tilt": Dataset("degrees", "worst plane's normal, out of the section", "z s"),
+    "criteria/{criterion}/{n}_utilisation": Dataset("1", "of the fatigue limit; to 1 no crack starts", "z s"),
     "weibull/{n}_alpha": Dataset("1", "Weibull scale of -log10 of the damage under asperities", "z"),
     "weibull/{n}_beta": Dataset("1", "Weibull shape", "z"),
     "weibull/{n}_r_squared": Dataset("1", "squared correlation of the median rank regression", "z"),

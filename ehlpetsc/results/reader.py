@@ -103,7 +103,6 @@ class Result:
 
     def __init__(self, file: h5py.File, path: Path) -> None:
         self._file, self.path = file, Path(path)
-        self._read: dict[str, np.ndarray] = {}
         self.attrs = attributes(file)
         self.time = file["time"][:]  # written last, as in Steps
         self._frames = len(self.time)
@@ -135,9 +134,8 @@ class Result:
     def __getattr__(self, name: str) -> np.ndarray:
         if name not in self.__dict__.get("fields", ()):
             raise AttributeError(f"{name}: no field of this result")
-        if name not in self._read:
-            self._read[name] = self[name][: self._frames]
-        return self._read[name]
+        self.__dict__[name] = values = self[name][: self._frames]
+        return values
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self.fields]

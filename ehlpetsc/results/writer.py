@@ -29,8 +29,6 @@ from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
-MAX_STEPS = 1024  # in the buffer
-MAX_FIELD_BYTES = 2**20  # of each field in the buffer
 FLUSH_SECONDS = 2.0  # between two flushes: a kill can lose the steps of this time and the current one
 ROWS_PER_BLOCK = 1024  # copied at once
 
@@ -157,7 +155,6 @@ class ResultWriter:
                     self._file.flush()
         self._flushed = clock.monotonic()
         self._fields = [name for name in FIELDS if name in self._file]
-        self._max_frames = max(1, MAX_FIELD_BYTES // (8 * len(layout.x)))
 
     def _create(self, target: Path | BinaryIO, layout: Layout, attributes: dict[str, Any]) -> None:
         self._file = file = h5py.File(target, "w", libver=LIBVER)
@@ -177,7 +174,7 @@ class ResultWriter:
         in_contact: np.ndarray,
         frame: bool = True,
     ) -> None:
-        """Add an accepted time step to the buffer, with its fields if `frame`; write the buffer if full.
+        """Add an accepted time step to the buffer, with its fields if `frame`; write the buffer if it is due.
 
         Missing scalars become nan, missing counts 0.
         """
@@ -187,8 +184,7 @@ class ResultWriter:
             values = {**fields, "in_contact": in_contact}
             stored = {name: np.array(values[name]) for name in self._fields}
             self._frames.append(stored | {"step": step, "time": time})
-        full = len(self._steps) == MAX_STEPS or len(self._frames) == self._max_frames
-        if full or clock.monotonic() - self._flushed > FLUSH_SECONDS:
+        if clock.monotonic() - self._flushed > FLUSH_SECONDS:
             self.flush()
 
     def flush(self) -> None:

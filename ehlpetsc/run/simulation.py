@@ -131,9 +131,8 @@ class Simulation:
     ) -> None:
         self.case = case = case if isinstance(case, Case) else load(case)
         if case.series:
-            raise CaseError(
-                [f"{case.path}: a [series]: solve its members one by one, ehlpetsc.members(case)"]
-            )
+            one_by_one = "solve its members one by one, ehlpetsc.members(case)"
+            raise CaseError([f"{case.path}: a [series]: {one_by_one}"])
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}))
         self.scales = Scales.of(case)

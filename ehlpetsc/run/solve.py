@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from ehlpetsc.run.stop import StopRequest
 
 
+Outcome = tuple[ExitStatus, NotConverged | OutputError | None]  # of a run, with the reason of a failure
+
+
 class Output(Protocol):
     """Observer of a run, which receives every accepted state."""
 
@@ -58,13 +61,9 @@ class Run:
         self.out, self.err = out or sys.stdout, err or sys.stderr
         self._unused: set[str] = set()
 
-    def run(
-        self, restart: Path | None = None, overwrite: bool = False
-    ) -> tuple[ExitStatus, NotConverged | OutputError | None]:
+    def run(self, restart: Path | None = None, overwrite: bool = False) -> Outcome:
         """Run to the end, or from a restart file, and print a report; see `Recorder.lock_output`."""
         begun = clock.monotonic()
-        status: ExitStatus
-        failure: NotConverged | OutputError | None
         try:
             status, failure = self._solve(restart, overwrite)
         except OutputError as error:
@@ -76,7 +75,7 @@ class Run:
         self._print(summary_line(status, self.recorder.totals, clock.monotonic() - begun))
         return status, failure
 
-    def _solve(self, restart: Path | None, overwrite: bool) -> tuple[ExitStatus, NotConverged | None]:
+    def _solve(self, restart: Path | None, overwrite: bool) -> Outcome:
         with self.simulation.options, self.recorder:
             restart = self.recorder.lock_output(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
@@ -100,7 +99,7 @@ class Run:
         if new:
             self._print(f"note: unused options: -{', -'.join(sorted(new))}")
 
-    def _report(self, status: ExitStatus, failure: NotConverged | OutputError | None) -> None:
+    def _report(self, status: ExitStatus, failure: Exception | None) -> None:
         recorder, state = self.recorder, self.simulation.solution
         if isinstance(failure, OutputError):
             saved = f"; the same command continues from {recorder.restart}"

@@ -272,10 +272,12 @@ def test_result_of_another_run_is_refused_and_kept(tmp_path, changes, message):
 
 def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, disk):
     writer = make_writer(tmp_path / "r.h5")
-    put(writer, range(1100))  # one batch of 1024 is in the file
+    put(writer, range(1024))
+    writer.flush()
     disk[0] = 1_000_000
     with pytest.raises(OutputError, match=r"r\.h5: .* No space left on device$"):
-        put(writer, range(1100, 20_000))
+        put(writer, range(1024, 20_000))
+        writer.flush()
     with h5py.File(tmp_path / "r.h5", "r"):
         pass  # closed cleanly
     with read_result(tmp_path / "r.h5") as result:

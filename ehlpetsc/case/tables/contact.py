@@ -40,9 +40,7 @@ def _complete(contact: Contact) -> dict[str, Any]:
 
 
 KEYS = {
-    "radius": Required(
-        "radius of relative curvature, `1/R = 1/R1 + 1/R2`", "m", 1e-9, 100, replaced_by=CONDITIONS
-    ),
+    "radius": Required("reduced radius, `1/R = 1/R1 + 1/R2`", "m", 1e-9, 100, replaced_by=CONDITIONS),
     "load": Required(
         "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`",
         *("N/m", 1e-3, 1e10),
@@ -58,9 +56,7 @@ KEYS = {
         replaced_by=("material",),
     ),
     "poisson_ratio": Required("Poisson's ratio `nu`", "", 0, 0.5, many="both", replaced_by=("material",)),
-    "boundary_friction": Key(
-        "friction coefficient of the solids, `|q| = boundary_friction p_c`", "", 0, 2, default=0.0
-    ),
+    "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.0),
     "model": Key(
         "direct: where `h = 0` the Reynolds equation is dropped; mixed: oil and solids share the load",
         choices=("direct", "mixed"),
@@ -138,9 +134,7 @@ KEYS = {
         choices=tuple(OILS),
         needs=("fluid.grade left out",),
     ),
-    "temperature": Key(
-        "at which grade, oil or a law gives the viscosity; left out: that of [heat]", "K", 200, 700
-    ),
+    "temperature": Key("at which grade, oil or law gives the viscosity; left out: of [heat]", "K", 200, 700),
     "law": Required("viscosity law", choices=LAWS, equation=VISCOSITY, replaced_by=("oil",)),
     "pressure_viscosity": Key("`alpha`; left out: of grade, or of a law that has it", "1/Pa", 1e-12, 1e-6),
     "density": Required("density law", choices=tuple(DENSITY_LAWS), equation=DENSITY, replaced_by=("oil",)),

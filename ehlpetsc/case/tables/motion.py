@@ -24,9 +24,7 @@ MOTION_KEYS = {
         "mean speed `u = (u1 + u2)/2`, not zero", "m/s", 1e-9, 1e3, replaced_by=CONDITIONS
     ),
     "slide_roll_ratio": Key(
-        "slide/roll ratio `xi = (u1 - u2)/u`; `u1 = u (1 + xi/2)`, `u2 = u (1 - xi/2)`",
-        *("", -100, 100),
-        default=0.0,
+        "`xi = (u1 - u2)/u`; `u1 = u (1 + xi/2)`, `u2 = u (1 - xi/2)`", "", -100, 100, default=0.0
     ),
 }
 MOTION = KeyTable("motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS)
@@ -89,9 +87,7 @@ GEARS_KEYS = {
     "module": Required("normal module", "m", 1e-5, 1),
     "teeth": Required("of pinion and wheel", "", 5, 10_000, kind=int, many="two"),
     "pressure_angle": Key("of the basic rack", "degrees", 5, 40, default=20.0),
-    "helix_angle": Key(
-        "at the reference circle; solved is the slice in the middle", "degrees", 0, 45, default=0.0
-    ),
+    "helix_angle": Key("at the reference circle; the middle slice is solved", "degrees", 0, 45, default=0.0),
     "profile_shift": Key("`x1` and `x2`, of the play-free pair (DIN 3960)", "", -2, 4, many="two"),
     "addendum": Key("of the basic rack, over the module", "", 0.1, 2, default=1.0),
     "tip_clearance": Key("to the root of the other gear, over the module", "", 0, 1, default=0.25),
@@ -105,9 +101,7 @@ GEARS_KEYS = {
     "load_sharing": Key(
         "left out: tip-relief with a relief, stiffness with helix_angle, else thirds", choices=tuple(RULES)
     ),
-    "mesh_stiffness": Key(
-        "`c'` of one tooth pair per face width; left out: by ISO 6336-1, steel", "Pa", 1e6, 1e12
-    ),
+    "mesh_stiffness": Key("`c'` of a tooth pair per width; left out: by ISO 6336-1, steel", "Pa", 1e6, 1e12),
     "load_file": Key(
         "CSV table beside the case file: load of a pair over the path, from a tooth contact analysis, "
         "path [m] from the pitch point, load [N/m]; instead of load_sharing",
@@ -155,11 +149,7 @@ MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete
 
 TIME_KEYS = {
     "travel": Required(
-        "distance travelled by the faster surface, `travel a = u_max t`",
-        "half-widths",
-        1e-6,
-        1e5,
-        replaced_by=CONDITIONS,
+        "travel of the faster surface, `travel a = u_max t`", "half-widths", 1e-6, 1e5, replaced_by=CONDITIONS
     ),
     "start": Key(
         "smooth: profiles enter the contact from time 0; rough: they fill it, after a ramp before time 0",

@@ -99,9 +99,7 @@ POST_KEYS = {
         choices=("von-mises", "fatemi-socie"),
         default="von-mises",
     ),
-    "residual_stress": Key(
-        "[[z/a, Pa], ...], stress along the surface, depths increasing", kind=object, many="list"
-    ),
+    "residual_stress": Key("[[z/a, Pa], ...] along the surface, depths increasing", kind=object, many="list"),
     "normal_sensitivity": Key(
         "`k` of Fatemi and Socie",
         *("", 0, 10),

@@ -66,9 +66,7 @@ KEYS = {
     "unit": Key("of the heights in the file; left out: m", choices=UNITS),
     "x_unit": Key("of x in the file; left out: as unit", choices=UNITS),
     "spacing": Key("distance of points without x in the file", *LENGTH),
-    "columns": Key(
-        "of x and z in the file, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2
-    ),
+    "columns": Key("of x and z, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2),
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
     "fill_gaps": Key("longest gap of missing heights that the spline bridges", "m", 0, 1),
@@ -77,9 +75,7 @@ KEYS = {
     "level": Key("subtract the least-squares line", kind=bool, default=False),
     "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave `L` loses `2^(-(cutoff/L)^2)` of it", *LENGTH),
     "short_cutoff": Key(
-        "Gaussian low-pass, ISO 3274: a wave `L` keeps `2^(-(short_cutoff/L)^2)` of it",
-        *LENGTH,
-        below="cutoff",
+        "Gaussian low-pass, ISO 3274: a wave `L` keeps `2^(-(short_cutoff/L)^2)`", *LENGTH, below="cutoff"
     ),
     "flip": Key("run the profile from its other end", kind=bool, default=False),
     "synthetic": Key('{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }', kind=dict, variants=SYNTHETIC),
