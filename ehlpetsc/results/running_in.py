@@ -44,16 +44,18 @@ def heights(result: Result, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def statistics(result: Result, side: str) -> dict[str, float] | None:
-    """Ra, Rq [m] and Rsk of a surface after a pass."""
+    """Ra, Rq [m], Rsk and maximum indentation [m] of a surface after a pass."""
     surface = heights(result, side)
     if surface is None:
         return None
-    height = surface[2] - surface[2].mean()
+    _, z, z_after = surface
+    height = z_after - z_after.mean()
     rq = float(np.sqrt((height**2).mean()))
     return {
         "ra": float(np.abs(height).mean()),
         "rq": rq,
         "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
+        "deepest": float((z - z_after).max()),
     }
 
 

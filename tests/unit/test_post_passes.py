@@ -82,5 +82,6 @@ def test_depths_of_all_effects_are_taken_from_the_heights(tmp_path):
         _, before, after = heights(result, "1")
         np.testing.assert_allclose(before - after, 1.5 * depth, atol=1e-20)
         found = statistics(result, "1")
+    assert found["deepest"] == pytest.approx(3e-8)
     assert found["rq"] == pytest.approx(np.std(after))
     assert found["ra"] == pytest.approx(np.abs(after - after.mean()).mean())
