@@ -50,7 +50,10 @@ def celsius(key: Key, value: object) -> str:
 
 def show(value: object) -> str:
     """Value as in the case file, shortened."""
-    text = json.dumps(value, ensure_ascii=False, default=str)
+    try:
+        text = json.dumps(value, ensure_ascii=False, default=str)
+    except (ValueError, RecursionError):  # integers of thousands of digits, tables in tables without end
+        text = "a value too large to print"
     text = "nan" if text == "NaN" else text
     return shortened(text.encode(errors="backslashreplace").decode())
 

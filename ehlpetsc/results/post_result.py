@@ -118,8 +118,10 @@ class PostResult:
             self.attrs = attributes(file)
             names = [name for surface in SURFACES for name in stored_names(surface)]
             self._arrays = {name: file[name][:] for name in names if name in file}
-        self.a, self.ratio, self.main = (self.attrs[name] for name in ("a", "slide_roll_ratio", "surface"))
-        self.height, self.under = (self._arrays[f"asperities/{self.main}_{k}"] for k in ("height", "damage"))
+        named = ("a", "slide_roll_ratio", "surface")
+        self.a, self.ratio, self.main = (self.attrs.get(name) for name in named)
+        asperities = (f"asperities/{self.main}_{name}" for name in ("height", "damage"))
+        self.height, self.under = map(self._arrays.get, asperities)
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
