@@ -136,7 +136,7 @@ def _checked(
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append(Fault("motion", SPEEDS, "gears" in data or "operation" in data))
     case, found = check(CASE, data, known=known)
-    if case:
+    if case and case.contact:  # their faults are reported with their keys
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
         faults += [Fault("mesh", line) for line in reversed_flow]
@@ -214,7 +214,7 @@ def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
     from ehlpetsc.surfaces.samples import samples
 
     given = samples(folder, spec)
-    if case:
+    if case and case.contact:  # their faults are reported with their keys
         scales = Scales.of(case)
         film = scales.h * expected_film(case, scales) if case.fluid else 0.0
         if fault := absurd(given, scales.a, scales.dx, scales.h, film):
