@@ -136,7 +136,7 @@ def _checked(
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append(Fault("motion", SPEEDS, "gears" in data or "operation" in data))
     case, found = check(CASE, data, known=known)
-    if case and case.contact:  # their faults are reported with their keys
+    if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
         faults += [Fault("mesh", line) for line in reversed_flow]
