@@ -225,6 +225,7 @@ def test_columns_within_a_stretch_reach_a_quarter_of_a_column_further():
     one = body()._replace(s=1e-5 * np.arange(8.0))
     assert np.flatnonzero(one.columns_within((2.2e-5, 4.8e-5))).tolist() == [2, 3, 4, 5]
     assert np.flatnonzero(one.columns_within((2.3e-5, 4.7e-5))).tolist() == [3, 4]
+    assert one.faces() == pytest.approx(1e-5 * (np.arange(9.0) - 0.5))
 
 
 def test_body_field_grows_by_added_cells_only():

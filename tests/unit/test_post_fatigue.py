@@ -80,6 +80,15 @@ def test_one_pulse_is_one_cycle():
     assert result.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL), rel=1e-9)
 
 
+@pytest.mark.parametrize("first", [True, False])
+def test_component_of_most_damage_counts_not_that_of_the_largest_range(first):
+    many = np.append(1.5e9 * np.sin(np.linspace(0, 20 * np.pi, 401)) ** 2, np.zeros(41))
+    one = np.append(np.zeros(401), 1.6e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2)
+    both = damage(*((many, one) if first else (one, many)), 0 * one, STEEL)
+    assert both.cycles == 20 and both.damage == pytest.approx(20 * float(damage(*pulse(1.5e9), STEEL).damage))
+    assert both.peak_range == pytest.approx(1.5e9 * np.sqrt(0.79))
+
+
 def test_rotating_shear_is_counted_at_constant_von_mises_stress():
     t = np.linspace(0, 2 * np.pi, 81)
     parts = np.zeros(81), np.zeros(81), 5e8 * np.sin(t)
