@@ -1,5 +1,7 @@
 """Profiles: reading, filters, synthetic heights, motion through the contact, coarse meshes."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from support import CASES
@@ -15,7 +17,7 @@ from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
-from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
+from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness, directed_speeds
 from ehlpetsc.surfaces.samples import Samples, samples
 
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
@@ -355,6 +357,13 @@ def test_travel_to_entry_and_filling():
     assert entry_times(ridge.surface_2, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
     still, s = rough("dry_rough.toml")
     assert entry_times(still.surface_2, s) is None
+
+
+def test_surface_at_rest_in_the_reference_state_enters_slowly():
+    """In the direction in which it moves later, at a thousandth of the faster speed, slow as that may be."""
+    scales = SimpleNamespace(u1=0.02, u2=0.0, u_max=0.02)
+    later = SimpleNamespace(conditions=SimpleNamespace(directions=lambda: (1.0, -1.0)))
+    assert directed_speeds(later, scales) == pytest.approx((0.02, -2e-5))
 
 
 def test_levelling_removes_a_line_only():
