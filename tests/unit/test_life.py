@@ -25,8 +25,8 @@ EDGES = np.array([0.0, 1.0, 2.0, 4.0])
 
 
 def jumps(wear_jump=0.05, damage_jump=0.1, passes=1000, break_out="connected"):
-    table = SimpleNamespace(passes=passes, wear_jump=wear_jump, damage_jump=damage_jump, break_out=break_out)
-    return Jumps(table, 1.0)
+    keys = {"passes": passes, "damage_jump": damage_jump, "break_out": break_out}
+    return Jumps(SimpleNamespace(wear_jump=0.25 * wear_jump, **keys), 4.0)  # of a roughness rq of 4
 
 
 def round_of(rates):

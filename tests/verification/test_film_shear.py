@@ -113,6 +113,16 @@ def start_of(
     return 0.9999 * float(closed.stress), -2.0 / beta * np.log(shape / np.sinh(y))
 
 
+@pytest.mark.parametrize("y", [0.05, 0.099, 0.5, 4.0])
+def test_derivatives_of_shear_rate_and_heating(y):
+    """Against the complex step, on both sides of the border of the series."""
+    across, d = getattr(film_shear.across, "py_func", film_shear.across), 0.5 * y
+    _, by_y, _, heating_by_y, heating_by_d = across(y, d)
+    stepped = [np.imag(across(*at)) / 1e-30 for at in ((y + 1e-30j, d), (y, d + 1e-30j))]
+    found = stepped[0][0], stepped[0][2], stepped[1][2]
+    assert found == pytest.approx((by_y, heating_by_y, heating_by_d), rel=1e-11)
+
+
 @pytest.mark.parametrize("difference", [0.0, -50.0])
 @pytest.mark.parametrize("limited", [False, True])
 @pytest.mark.parametrize("name", LAWS)
