@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
+from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
 from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
+from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
-from ehlpetsc.discretisation.contact.yielding import limit_yield_switch
+from ehlpetsc.discretisation.contact.yielding import YieldingContact, limit_yield_switch
+from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import LayerLaw
 
 
@@ -59,13 +62,37 @@ def test_contact_precedes_yielding_in_a_step():
     assert (q[2], w[2]) == pytest.approx((0.5, -0.02))
 
 
-def test_compliant_node_changes_follow_from_its_unknown_pair():
-    """Full of oil (p, h), under a void (q, h), and (p, q) where asperities are stiff there."""
-    layer = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2, high_pressure=0.1)
-    model, w = CompliantContact(layer), np.array([5e-3, 20e-3, 2e-3])
-    nodes = model.state(np.array([0.5, -0.3, -0.3]), w)
-    q_change, w_change = np.array([0.1, 0.2, -0.1]), np.array([1e-4, -2e-4, 3e-5])
-    p_change = nodes.p_q * q_change + nodes.p_w * w_change
-    found = np.array([[p_change[0], w_change[0]], [q_change[1], w_change[1]], [p_change[2], q_change[2]]])
-    model.from_band(nodes, slice(0, 3), found)
-    np.testing.assert_allclose(found, np.stack([q_change, w_change], axis=1), rtol=1e-12)
+LAYER = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2, high_pressure=0.1)
+YIELDING, PLASTIC = YieldingContact(0.1, 10.0, 0.6), CompliantYieldingContact(LAYER, 0.6, 0.1)
+
+
+@pytest.mark.parametrize(
+    "model, q, w",
+    [
+        (MixedContact(0.1, 10.0), [0.5, -0.3, -0.3, 0.2], [1.0, 0.2, -0.02, -0.05]),
+        (YIELDING, [0.5, 0.4, -0.3, -0.3], [1.0, -0.05, -0.02, -0.07]),
+        (YIELDING, [0.02, 0.4, -0.3, -0.3], [1.0, -0.05, -0.07, -0.07]),  # all that carry yield
+        (CompliantContact(LAYER), [0.5, -0.3, -0.3, 0.2], [5e-3, 0.5, 2e-3, 2e-3]),  # one void on asperities
+        (PLASTIC, [0.5, 0.4, -0.3, -0.3], [20e-3, 1.1 * PLASTIC.smallest, 3e-3, 0.9 * PLASTIC.smallest]),
+        (PLASTIC, [0.02, 0.6, -0.3, -0.3], [20e-3, 1.1 * PLASTIC.smallest, 9e-3, 0.9 * PLASTIC.smallest]),
+    ],
+)
+def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
+    """Changes of pressure, separation and Reynolds rows, by the pairs of the band and by q and w."""
+    rng, owned = np.random.default_rng(5), slice(0, len(q))
+    state = model.linearised(model.state(np.array(q), np.array(w)), owned, lambda sums: sums)
+    rows, stencil = rng.standard_normal((len(q), 8)), np.arange(len(q))[:, None] - np.arange(4)
+    (p_first, separation_first, separation_second, by_pairs) = model.band_entries(state, rows, stencil)
+    pairs = rng.standard_normal((len(q), 2))
+    changes = pairs.copy()
+    model.from_band(state, owned, changes)
+    pressure, oil, film, separation = (state.derivatives() * changes.T).sum(axis=1)
+    (first, second), places = pairs.T, (q_columns, w_columns)
+    np.testing.assert_allclose(p_first * first, pressure, rtol=1e-12, atol=1e-12)
+    found = separation_first * first + separation_second * second
+    np.testing.assert_allclose(found, separation, rtol=1e-12, atol=1e-12)
+    found = sum((of(by_pairs) * change[stencil]).sum(1) for of, change in zip(places, pairs.T, strict=True))
+    expected = sum(
+        (of(rows) * change[stencil]).sum(1) for of, change in zip(places, (oil, film), strict=True)
+    )
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
