@@ -96,3 +96,10 @@ def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
         (of(rows) * change[stencil]).sum(1) for of, change in zip(places, (oil, film), strict=True)
     )
     np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_depth_of_yielding_solids_remains_where_oil_returns():
+    now, step = pairs((-0.3, 0.9 * PLASTIC.smallest)), pairs((-0.5, 0.0))
+    PLASTIC.clip_step(now, step, 0.0)
+    before, after = (PLASTIC.state(*unknowns.T).plastic for unknowns in (now, now - step))
+    assert after.depth == pytest.approx(before.depth, rel=1e-5) and after.depth_q[0] > before.depth_q[0]
