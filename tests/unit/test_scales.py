@@ -12,6 +12,7 @@ from support.published_values import Film
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.physics import scales as hertz
+from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.physics.scales import Scales, hertz_line, moes_groups, reduced_modulus
 
 
@@ -64,6 +65,8 @@ def test_time_step_and_duration_follow_the_faster_surface():
     assert s.duration * s.u1 == pytest.approx(6 * s.a)
     backwards = scales("table1_rough.toml", "motion.slide_roll_ratio=-4")
     assert backwards.dt * abs(backwards.u2) == pytest.approx(0.5 * s.a / 200)
+    operation = ConstantOperation(Conditions(s.load, s.R, backwards.u1, backwards.u2), 6 * s.a)
+    assert operation.duration == operation.remaining(0.0, (0.0, 0.0)) == 6 * s.a / abs(backwards.u2)
 
 
 def test_nodes_run_from_inlet_to_outlet():
