@@ -132,6 +132,12 @@ def test_temperatures_stay_above_bulk_at_any_step():
         diffuse(terms, ratio, new)
         assert new.min() >= 0.0
         np.testing.assert_allclose(new.sum(axis=0), terms.sum(axis=0), rtol=1e-12)
+        hot, spread = np.zeros((2, 41, 1))
+        hot[20] = 1.0
+        diffuse(hot, ratio, spread)
+        implicit = max(0.5 * ratio, ratio - 0.5)  # no more of it than keeps the explicit part positive
+        kept = spread[20] - implicit * (spread[19] - 2.0 * spread[20] + spread[21])
+        assert kept == pytest.approx(max(1.0 - ratio, 0.0), abs=1e-8)
 
 
 def test_blok_is_the_largest_temperature_of_a_fast_hertz_band():
