@@ -360,6 +360,18 @@ def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsy
     assert is_line_with(capsys.readouterr().err, "no.toml: ", "No such file")
 
 
+def write_damage(path):
+    """Damage of two flanks at a point of the surface and at one below it."""
+    with h5py.File(path, "w") as file:
+        file.attrs["a"] = 0.25e-3
+        s = np.linspace(-8e-3, 0.0, 81)
+        file["damage/s"], file["damage/z_over_a"] = s, [0.0, 0.1]
+        damage = np.full((2, 81), np.nan)
+        damage[1, 20] = 2e-3  # s = -6 mm
+        damage[0, 60] = 1e-3
+        file["damage/1"], file["damage/2"] = damage, 0.5 * damage
+
+
 def test_runs_until_bulk_temperatures_are_those_of_the_losses(tmp_path, monkeypatch, capsys):
     """And pictures of one run, of two side by side, of stages, each with figures of the standards."""
     monkeypatch.chdir(tmp_path)
@@ -370,10 +382,12 @@ def test_runs_until_bulk_temperatures_are_those_of_the_losses(tmp_path, monkeypa
     used, found = ([float(word) for word in re.findall(r"\d+\.\d", part)] for part in last.split(";"))
     assert file == "gear.h5" and 368.0 < found[0] < 378.0
     assert abs(used[0] - found[0]) < 1.0
+    write_damage(tmp_path / "gear.post.h5")
     assert main(["gear.h5", "gear.h5"]) == 0
     printed = capsys.readouterr().out
     assert re.search(r"loss factor H_V 0.18\d*, 0.18\d*; 0.1958, 0.1958 by Niemann", printed)
-    assert {path.name for path in tmp_path.glob("*.png")} == {"gear.gears.png", "gear.gears.temperatures.png"}
+    endings = (".gears", ".gears.temperatures", ".gears.flanks")
+    assert {path.name for path in tmp_path.glob("*.png")} == {f"gear{ending}.png" for ending in endings}
     index = {"members": [{"file": "gear.h5", "value": 302.0}]}
     (tmp_path / "gear.series.json").write_text(json.dumps(index))
     assert main(["gear.series.json"]) == 0
@@ -388,14 +402,7 @@ def test_scalars_are_averaged_over_a_fiftieth_of_the_path():
 
 def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
     path = path_of_contact(FZG)
-    with h5py.File(tmp_path / "run.post.h5", "w") as file:
-        file.attrs["a"] = 0.25e-3
-        s = np.linspace(-8e-3, 0.0, 81)
-        file["damage/s"], file["damage/z_over_a"] = s, [0.0, 0.1]
-        damage = np.full((2, 81), np.nan)
-        damage[1, 20] = 2e-3  # s = -6 mm
-        damage[0, 60] = 1e-3
-        file["damage/1"], file["damage/2"] = damage, 0.5 * damage
+    write_damage(tmp_path / "run.post.h5")
     found = FlankDamage(tmp_path / "run.post.h5", (1e-5, 5e-5))
     assert found.arcs[0][0] == pytest.approx(1e-5) and (np.diff(found.arcs[1]) > 0).all()
     maxima = found.maxima()
