@@ -194,6 +194,9 @@ def test_viscosity_of_a_grade(celsius, nu):
     secant = 9.904e-9 * (1e6 * nu) ** 0.139  # over 2000 bar: the initial slope is steeper
     assert laws.viscosity(2e8, case.fluid)[0] == pytest.approx(2e8 * secant, rel=1e-10)
     assert 1.05 * secant < case.fluid.pressure_viscosity < 1.25 * secant
+    given = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"fluid.temperature": 350.0, "fluid.roelands_z": 0.55})
+    nu = given.fluid.viscosity / 880e-6
+    assert laws.viscosity(2e8, given.fluid)[0] == pytest.approx(2e8 * 9.904e-9 * nu**0.139, rel=1e-10)
     barus = load(CASE, GRADE | LEFT_OUT | BARUS | {"fluid.temperature": celsius + 273.15})
     assert barus.fluid.pressure_viscosity == pytest.approx(secant, rel=1e-10)
 
