@@ -13,6 +13,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, stored_or_new
+from ehlpetsc.life.command import main
 from ehlpetsc.life.driver import line_of
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps, Rates
@@ -313,8 +314,9 @@ def made_life(pits=0, ahead=0.5, rows=2):
             one = one._replace(failed=np.full((3, 8), 8e5))
         figures = {"passes": 10 * row, "jump": 10, "solved": 1, "friction": 0.1}
         for k in (1, 2):
-            figures |= {f"pits_{k}": pits, f"pitted_share_{k}": 0.1 * pits, f"ra_{k}": one.ra}
-            figures |= {f"damage_{k}": 0.1 * row, f"damage_ahead_{k}": ahead, f"wear_volume_{k}": 1e-12 * row}
+            figures |= {f"pits_{k}": pits, f"pitted_share_{k}": 0.05 * k * pits, f"ra_{k}": one.ra}
+            figures |= {f"damage_{k}": 0.1 * row, f"damage_ahead_{k}": 0.5 * k * ahead}
+            figures[f"wear_volume_{k}"] = 1e-12 * row
         found.add(figures, (one._replace(failed=2.0 * one.failed), one), {})  # the first one fails later
     return found
 
@@ -324,12 +326,14 @@ def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, w
     assert winner(made_life(pits, ahead)) == wins
     found = outcome(made_life(pits, ahead))
     assert found["first_failure"] == (8e5 if pits else None) and found["solved"] == 2
+    worse = 0.1 * pits, ahead
+    assert (found["pitted_share"], found["damage_ahead"]) == worse, "the larger of both surfaces"
 
 
 def test_line_of_a_round_names_its_figures():
     figures = dict(entry.split("=") for entry in line_of(made_life(pits=2, rows=3), 3.4).split())
     assert figures.pop("friction") == "0.1000" and figures.pop("wall") == "3s"
-    expected = {"solved": 3, "passes": 30, "D1": 0.3, "D2": 0.3, "pitted1": 0.2, "pitted2": 0.2}
+    expected = {"solved": 3, "passes": 30, "D1": 0.3, "D2": 0.3, "pitted1": 0.1, "pitted2": 0.2}
     assert {name: float(value) for name, value in figures.items()} == expected | {
         "worn1": 3e-12,
         "worn2": 3e-12,
@@ -343,3 +347,9 @@ def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
     assert drawn[0]._suptitle.get_text() == "title (100Cr6, 16MnCr5)"
     ra = next(axes for axes in drawn[0].axes if axes.get_ylabel() == "Ra [µm]")
     assert [line.get_linestyle() for line in ra.lines] == ["-", "--"], "surface 1 shows through"
+
+
+def test_stored_life_is_not_drawn_where_no_picture_is_wanted(tmp_path):
+    save_life(made_life(), tmp_path / "a.life.h5")
+    assert main([str(tmp_path / "a.life.h5"), "--no-picture"]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["a.life.h5"]
