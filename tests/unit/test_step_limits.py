@@ -1,5 +1,7 @@
 """Limits of the Newton step, and unknowns of the banded factorisation."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -63,23 +65,25 @@ def test_contact_precedes_yielding_in_a_step():
 
 
 LAYER = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2, high_pressure=0.1)
-YIELDING, PLASTIC = YieldingContact(0.1, 10.0, 0.6), CompliantYieldingContact(LAYER, 0.6, 0.1)
+SOLIDS, COMPLIANT = partial(MixedContact, 0.1, 10.0), partial(CompliantContact, LAYER)
+YIELDING = partial(YieldingContact, 0.1, 10.0, 0.6)
+PLASTIC, SMALLEST = partial(CompliantYieldingContact, LAYER, 0.6, 0.1), 1e-3 * np.log(100.0 / 0.6)
 
 
 @pytest.mark.parametrize(
     "model, q, w",
     [
-        (MixedContact(0.1, 10.0), [0.5, -0.3, -0.3, 0.2], [1.0, 0.2, -0.02, -0.05]),
+        (SOLIDS, [0.5, -0.3, -0.3, 0.2], [1.0, 0.2, -0.02, -0.05]),
         (YIELDING, [0.5, 0.4, -0.3, -0.3], [1.0, -0.05, -0.02, -0.07]),
         (YIELDING, [0.02, 0.4, -0.3, -0.3], [1.0, -0.05, -0.07, -0.07]),  # all that carry yield
-        (CompliantContact(LAYER), [0.5, -0.3, -0.3, 0.2], [5e-3, 0.5, 2e-3, 2e-3]),  # one void on asperities
-        (PLASTIC, [0.5, 0.4, -0.3, -0.3], [20e-3, 1.1 * PLASTIC.smallest, 3e-3, 0.9 * PLASTIC.smallest]),
-        (PLASTIC, [0.02, 0.6, -0.3, -0.3], [20e-3, 1.1 * PLASTIC.smallest, 9e-3, 0.9 * PLASTIC.smallest]),
+        (COMPLIANT, [0.5, -0.3, -0.3, 0.2], [5e-3, 0.5, 2e-3, 2e-3]),  # one void on asperities
+        (PLASTIC, [0.5, 0.4, -0.3, -0.3], [20e-3, 1.1 * SMALLEST, 3e-3, 0.9 * SMALLEST]),
+        (PLASTIC, [0.02, 0.6, -0.3, -0.3], [20e-3, 1.1 * SMALLEST, 9e-3, 0.9 * SMALLEST]),
     ],
 )
 def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
     """Changes of pressure, separation and Reynolds rows, by the pairs of the band and by q and w."""
-    rng, owned = np.random.default_rng(5), slice(0, len(q))
+    model, rng, owned = model(), np.random.default_rng(5), slice(0, len(q))
     state = model.linearised(model.state(np.array(q), np.array(w)), owned, lambda sums: sums)
     rows, stencil = rng.standard_normal((len(q), 8)), np.arange(len(q))[:, None] - np.arange(4)
     (p_first, separation_first, separation_second, by_pairs) = model.band_entries(state, rows, stencil)
@@ -99,7 +103,8 @@ def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
 
 
 def test_depth_of_yielding_solids_remains_where_oil_returns():
-    now, step = pairs((-0.3, 0.9 * PLASTIC.smallest)), pairs((-0.5, 0.0))
-    PLASTIC.clip_step(now, step, 0.0)
-    before, after = (PLASTIC.state(*unknowns.T).plastic for unknowns in (now, now - step))
+    now, step = pairs((-0.3, 0.9 * SMALLEST)), pairs((-0.5, 0.0))
+    model = PLASTIC()
+    model.clip_step(now, step, 0.0)
+    before, after = (model.state(*unknowns.T).plastic for unknowns in (now, now - step))
     assert after.depth == pytest.approx(before.depth, rel=1e-5) and after.depth_q[0] > before.depth_q[0]
