@@ -38,6 +38,13 @@ def test_iterations_include_failed_attempts(monkeypatch):
     assert (attempt.made, attempt.spent, str(attempt.failure)) == (2, 14, "SNES diverged after 7 iterations")
 
 
+def test_continuation_ends_at_the_case_itself():
+    """By steps of less than 0.3, as longer ones fail; the state is the share of the roughness here."""
+    continuation = steady_start.Continuation(SimpleNamespace(start_iterations=lambda max_it: 30), None)
+    continuation._try = lambda state, _, share: share if share - state < 0.3 else None
+    assert continuation._ramp(0.0, 0.0, lambda share: (1.0, share)) == 1.0
+
+
 @pytest.mark.parametrize("xi", [2.0, -2.0, 8.0, -8.0])
 def test_results_are_independent_of_surface_names(xi):
     """The rough fast surface at xi is the rough slow one at -xi, to the last digit of Newton's method."""
