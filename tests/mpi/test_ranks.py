@@ -27,6 +27,7 @@ SHORT = [
 
 MODELS = {
     "direct": ["contact.model=direct"],
+    "direct, touching all over": ["contact.model=direct", "time.start=rough", "time.travel=0.1"],
     "mixed": ["contact.model=mixed"],
     "compliant": ["contact.model=mixed", "contact.asperity_height=20e-9"],
     "compliant, yielding": [
