@@ -18,7 +18,9 @@ from ehlpetsc.life.driver import line_of
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps, Rates
 from ehlpetsc.life.one_pass import OfBody
+from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.life.regimes import outcome, winner
+from ehlpetsc.life.rounds import Round
 from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.body_field import BodyField
 
@@ -51,12 +53,27 @@ def test_jump_ends_at_the_allowed_wear_or_damage():
     assert jump(added=0.01, damage=1.0) == 1000, "cells that have failed do not count"
 
 
-def test_jump_ends_where_wear_exposes_failed_cells():
+@pytest.mark.parametrize("worn", [0.0, 0.5])
+def test_jump_ends_where_wear_exposes_failed_cells(worn):
     damage = np.zeros((3, 8))
     damage[1] = 1.0
-    one, rates = body()._replace(damage=damage), Rates(np.full(8, 1e-3), np.zeros((3, 8)), 0.0)
-    bodies, jump, _ = jumps(wear_jump=5.0, passes=1500).jump((one, one), round_of(lambda body: rates), 0)
-    assert jump == 1001 and bodies[0].pit == pytest.approx(2.0 - 1.001)
+    one = body()._replace(damage=damage, wear=np.full(8, worn))
+    rates = Rates(np.full(8, 1e-3), np.zeros((3, 8)), 0.0)
+    bodies, jump, _ = jumps(wear_jump=5.0, passes=1400).jump((one, one), round_of(lambda body: rates), 0)
+    assert jump == 1001 - 1000 * worn and bodies[0].pit == pytest.approx(2.0 - 1.001)
+
+
+def test_round_has_a_position_for_each_partner_and_the_largest_pressure():
+    """No more positions than the wheel has partners of a tooth."""
+    gears = SimpleNamespace(pair=SimpleNamespace(partners=24))
+    for partners, pair, positions in ((30, gears, 24), (3, gears, 3), (30, None, 30)):
+        life, time = SimpleNamespace(partners=partners), SimpleNamespace(pass_shift=1e-5)
+        assert number_of_positions(SimpleNamespace(time=time, life=life, gears=pair)) == positions
+    passes = [
+        SimpleNamespace(figures={"p_max": p, "friction_coefficient": 1e-9 * p}) for p in (1e9, 3e9, 2e9)
+    ]
+    found = Round(passes, 1.0).figures()
+    assert found["p_max"] == 3e9 and found["friction"] == pytest.approx(2.0)
 
 
 @pytest.mark.parametrize("slope", [-3e-4, 0.0, 2e-3])
@@ -321,7 +338,7 @@ def made_life(pits=0, ahead=0.5, rows=2):
     return found
 
 
-@pytest.mark.parametrize("pits, ahead, wins", [(1, 0.5, "fatigue"), (0, 0.5, "wear"), (0, 1.5, "neither")])
+@pytest.mark.parametrize("pits, ahead, wins", [(1, 0.5, "fatigue"), (0, 0.5, "wear"), (0, 1.02, "neither")])
 def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, wins):
     assert winner(made_life(pits, ahead)) == wins
     found = outcome(made_life(pits, ahead))

@@ -163,6 +163,10 @@ def test_distances_are_integrals_of_speeds():
         )
     parts = [operation.displacement(k * 1e-3, 1e-3) for k in range(9)]
     np.testing.assert_allclose(np.sum(parts, axis=0), operation.travelled(9e-3), rtol=1e-12)
+    places = np.array([operation.travelled(t) for t in np.linspace(0.0, 9e-3, 3001)])
+    np.testing.assert_allclose(
+        operation.extent(), np.stack([places.min(0), places.max(0)], axis=1), atol=1e-8
+    )
 
 
 def test_interpolation_does_not_overshoot():

@@ -111,7 +111,7 @@ def test_invalid_filter_input_is_refused():
     with pytest.raises(ProfileError, match="^cutoff = 5e-06 m; .* 4e-06 m"):
         high_pass(np.arange(5) * 1e-6, np.zeros(5), 5e-6)
     with pytest.raises(ProfileError, match=r"^short_cutoff = 1\.9e-06 m; .* 2e-06 m"):
-        low_pass(np.arange(5) * 1e-6, np.zeros(5), 1.9e-6)
+        low_pass(np.arange(1, 6) * 1e-6, np.zeros(5), 1.9e-6)
 
 
 def test_surface_keys_are_applied_in_order():
