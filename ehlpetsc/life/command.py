@@ -38,10 +38,10 @@ def main(words: list[str]) -> int:
 def _run(chosen: Namespace) -> None:
     """Run a life or a series of them, where a case is given; draw a life on the first rank."""
     path = Path(chosen.case)
-    if path.suffix == ".h5":
-        _draw(_picture(path, [path]), path)
-    else:
+    if path.suffix != ".h5":
         _run_lives(chosen)
+    elif not chosen.no_picture:
+        _draw(_picture(path, [path]), path)
 
 
 def _picture(path: Path, inputs: list[Path]) -> Path:

@@ -123,7 +123,9 @@ POST = KeyTable(
 
 LIFE_KEYS = {
     "passes": Key("passes of both surfaces over each other", "", 1, 1e12, default=1e6),
-    "wear_jump": Key("wear depth between two solved passes over the combined Rq", gt=0, le=1, default=0.05),
+    "wear_jump": Key(  # less than a cell, or a jump may pass over a break-out
+        "wear depth between two solved passes over the combined Rq", gt=0, le=0.25, default=0.05
+    ),
     "damage_jump": Key("damage of any point between two solved passes", gt=0, le=1, default=0.1),
     "break_out": Key(
         "cells that a failed one takes out: all above it, those connected to the surface, or none",
