@@ -467,6 +467,7 @@ def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tup
     return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
 
 
+@cache
 def is_linear_in_temperature(law: OilLaw, name: str) -> bool:
     """Whether the logarithm of the viscosity is linear in temperature, by the law of this name."""
     function, rise = LAWS[name], 0.1 * law.temperature

@@ -26,10 +26,13 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
     positive_extrapolation,
 )
-from ehlpetsc.effects.heat.film_law import REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import MIN_SLOPE, REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
 from ehlpetsc.effects.heat.half_spaces import BodyStep
-from ehlpetsc.physics.laws import ln_viscosities
+from ehlpetsc.physics.film_shear import wall_exchange
+from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
 from ehlpetsc.physics.rheology import MIN_RATE, stress_spread
+
+TINY = 1e-6  # y whose sinh(y)/y is 1
 
 
 class FilmHeat(NamedTuple):
@@ -142,6 +145,33 @@ def _fill_fluidity(
     at[THERMAL, i] = np.exp(0.5 * (ln_eta_0 - ln_eta))
     at[LN_THERMAL_P, i] = 0.5 * p0 * (by_p_0 - by_p - by_t * t_p)
     at[LN_THERMAL_H, i] = -0.5 * film * by_t * t_h
+
+
+@compiled
+def last_profile(
+    profile: np.ndarray,
+    pressure: np.ndarray,
+    walls_apart: np.ndarray,
+    law: tuple,
+    between: np.ndarray,
+    middle: np.ndarray,
+) -> None:
+    r"""Fill in 1/X of :mod:`.film_law`, and the temperature in the middle of the film [K], at the last level.
+
+    There :math:`\ln\eta` is lower by 2 ln(cosh(y/2)). `middle` is the base temperature before, and remains so
+    with a law that is linear in temperature. `walls_apart`: difference of the walls' temperatures [K].
+    """
+    law = FilmLaw(*law)
+    for i in range(len(profile)):
+        y, at = profile[i], middle[i]
+        value, _, slope = ln_viscosity(law.viscosity, pressure[i], at)
+        slope = min(slope, -MIN_SLOPE)
+        between[i] = 1.0 / wall_exchange(max(y, TINY), min(-0.5 * slope * walls_apart[i], y))
+        if not law.is_linear:
+            bottom = value - 2.0 * np.log(np.cosh(0.5 * y))
+            at += (bottom - value) / slope
+            value, _, slope = ln_viscosity(law.viscosity, pressure[i], at)
+            middle[i] = at + (bottom - value) / min(slope, -MIN_SLOPE)
 
 
 @compiled

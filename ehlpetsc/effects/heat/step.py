@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,13 +12,12 @@ from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Scene, Step
-from ehlpetsc.effects.heat.film import FilmHeat, faces
-from ehlpetsc.effects.heat.film_law import MEAN, MIN_SLOPE, R1, R2, SPREAD, W1, W2, FilmLaw, G, film_law
+from ehlpetsc.effects.heat.film import FilmHeat, faces, last_profile
+from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G, film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
 from ehlpetsc.physics.flash_temperature import Solid
-from ehlpetsc.physics.laws import LAWS, viscosity_law
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
@@ -26,7 +25,6 @@ HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the sur
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the maximum
 MIN_TEMPERATURE_RISE = 1e-3  # K
-TINY = 1e-6  # y whose sinh(y)/y is 1
 DEPTH = 6
 ITERATIONS = 200
 ACCURACY = 1e-11  # of the maximum
@@ -89,32 +87,13 @@ class HeatStep:
         rows = *explicit_transport(stored, record.flow, record.film, self.inlet), record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
-        of_nodes = np.array(
-            (*rows, *rubbed, *responses, *self._across(record, inputs.fluid, law), record.base)
-        )
+        between, middle = np.ones(n), record.base.copy()
+        if inputs.fluid is not None:
+            walls_apart = np.abs(record.wall_1 - record.wall_2)
+            last_profile(record.profile, record.pressure, walls_apart, tuple(law), between, middle)
+        of_nodes = np.array((*rows, *rubbed, *responses, between, middle, record.base))
         guess = np.array((record.base, record.profile, record.film))
         return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
-
-    def _across(self, record: HeatRecord, fluid: Any, law: FilmLaw) -> tuple[np.ndarray, np.ndarray]:
-        r"""1/X of :mod:`.film_law` and temperatures in the middle of the film [K].
-
-        There :math:`\ln\eta` is lower by 2 ln(cosh(y/2)).
-        """
-        at, y = record.base, record.profile
-        if fluid is None:
-            return np.ones_like(at), at
-        constants, viscosity = viscosity_law(fluid, self.heat).constants, LAWS[fluid.law]
-        value, _, slope = viscosity(record.pressure, at, constants)
-        slope = np.minimum(slope, -MIN_SLOPE)
-        d = np.minimum(0.5 * np.abs(slope * (record.wall_1 - record.wall_2)), y)
-        (y_over_sinh, d_over_sinh) = (x / np.sinh(x) for x in (np.maximum(y, TINY), np.maximum(d, TINY)))
-        between = d_over_sinh / y_over_sinh
-        if law.is_linear:
-            return between, at
-        bottom = value - 2.0 * np.log(np.cosh(0.5 * y))
-        at = at + (bottom - value) / slope
-        value, _, slope = viscosity(record.pressure, at, constants)
-        return between, at + (bottom - value) / np.minimum(slope, -MIN_SLOPE)
 
     def solve(
         self, record: HeatRecord, solution: Solution, step: Step
