@@ -7,13 +7,8 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
-from ehlpetsc.physics.laws import (
-    LAWS,
-    ROELANDS_PRESSURE,
-    ROELANDS_VISCOSITY,
-    ROELANDS_ZERO,
-    STANDARD_TEMPERATURE,
-)
+from ehlpetsc.physics.laws import LAWS, ROELANDS_PRESSURE, ROELANDS_VISCOSITY
+from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO, STANDARD_TEMPERATURE
 
 
 @dataclass(frozen=True)

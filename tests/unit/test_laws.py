@@ -9,14 +9,15 @@ from support import CASES
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics import laws, oils
+from ehlpetsc.physics import laws, oils, viscosity_laws
 from ehlpetsc.run.simulation import Simulation
 
 STEP = 1e-20
 V40, V100 = 220e-6, 19e-6
+WALTHER_CONSTANTS = viscosity_laws.walther_constants(V40, V100)
 GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
 T9 = oils.OILS["t9"].fluid
-YASUTOMI = [T9[name] for name in laws.YASUTOMI]
+YASUTOMI = [T9[name] for name in viscosity_laws.YASUTOMI]
 
 
 def oil(**changes):
@@ -51,11 +52,11 @@ def test_derivative_of_the_density(density):
 
 
 TEMPERATURE = {
-    "isothermal": (laws.ISOTHERMAL, 0.0, 0.0, 363.0),
-    "exponential": (laws.EXPONENTIAL, 0.04, 0.0, 363.0),
-    "roelands": (laws.ROELANDS, 1.1, 0.0, 363.0),
-    "walther": (laws.WALTHER, *laws.walther_constants(V40, V100), 363.0),
-    "walther and roelands": (laws.ROELANDS_WALTHER, *laws.walther_constants(V40, V100), 363.0),
+    "isothermal": (viscosity_laws.ISOTHERMAL, 0.0, 0.0, 363.0),
+    "exponential": (viscosity_laws.EXPONENTIAL, 0.04, 0.0, 363.0),
+    "roelands": (viscosity_laws.ROELANDS, 1.1, 0.0, 363.0),
+    "walther": (viscosity_laws.WALTHER, *WALTHER_CONSTANTS, 363.0),
+    "walther and roelands": (viscosity_laws.ROELANDS_WALTHER, *WALTHER_CONSTANTS, 363.0),
 }
 
 
@@ -64,12 +65,12 @@ TEMPERATURE = {
 @pytest.mark.parametrize("p", [0.0, 1.3e9])
 def test_derivatives_of_the_viscosity(thermal, pressure, p):
     constants = *pressure, *thermal
-    value, by_p, by_t = laws.power_law(p, 371.0, *constants)
-    stepped = laws.power_law(p + STEP * 1j, 371.0 + 0j, *constants)[0]
+    value, by_p, by_t = viscosity_laws.power_law(p, 371.0, *constants)
+    stepped = viscosity_laws.power_law(p + STEP * 1j, 371.0 + 0j, *constants)[0]
     assert stepped.imag / STEP == pytest.approx(by_p, rel=1e-12)
-    stepped = laws.power_law(p + 0j, 371.0 + STEP * 1j, *constants)[0]
+    stepped = viscosity_laws.power_law(p + 0j, 371.0 + STEP * 1j, *constants)[0]
     assert stepped.imag / STEP == pytest.approx(by_t, rel=1e-12, abs=1e-30)
-    assert laws.power_law(0.0, 363.0, *constants)[0] == pytest.approx(0.0, abs=1e-14)
+    assert viscosity_laws.power_law(0.0, 363.0, *constants)[0] == pytest.approx(0.0, abs=1e-14)
 
 
 @compiled
@@ -87,20 +88,20 @@ def test_compiled_loops_get_the_law_of_the_case(law, density):
 
 
 def test_walther_law_at_data_sheet_and_iso_vg_220():
-    a, b = laws.walther_constants(V40, V100)
-    assert laws.walther(313.15, a, b)[0] == pytest.approx(220.0, rel=1e-12)
-    assert laws.walther(373.15, a, b)[0] == pytest.approx(19.0, rel=1e-12)
-    assert 50.0 < laws.walther(343.15, a, b)[0] < 60.0  # VI 97: charts show about 54 mm^2/s
+    a, b = WALTHER_CONSTANTS
+    assert viscosity_laws.walther(313.15, a, b)[0] == pytest.approx(220.0, rel=1e-12)
+    assert viscosity_laws.walther(373.15, a, b)[0] == pytest.approx(19.0, rel=1e-12)
+    assert 50.0 < viscosity_laws.walther(343.15, a, b)[0] < 60.0  # VI 97: charts show about 54 mm^2/s
 
 
 def test_gold_of_a_mineral_oil():
-    assert laws.gold_pressure_viscosity(20.0) == pytest.approx(15.02e-9, rel=1e-3)
+    assert viscosity_laws.gold_pressure_viscosity(20.0) == pytest.approx(15.02e-9, rel=1e-3)
 
 
 def test_yasutomi_by_the_equation_in_degrees_celsius():
     """lg(eta/1e12) = -C1 (T - Tg) F/(C2 + (T - Tg) F), values [Pa s] of a second program."""
     p, celsius = np.array([1e5, 1e8, 3.5e8, 6e8]), np.array([20.0, 40.0, 80.0, 100.0])
-    found = 1e12 * np.exp(laws.yasutomi(p, celsius[:, None] + 273.15, *YASUTOMI, 0.0)[0])
+    found = 1e12 * np.exp(viscosity_laws.yasutomi(p, celsius[:, None] + 273.15, *YASUTOMI, 0.0)[0])
     expected = [
         [0.01699, 0.1893, 69.55, 7.268e4],
         [0.007946, 0.05947, 6.638, 1171.0],
@@ -138,8 +139,8 @@ def test_squalane():
 
 
 FREE_VOLUME = {
-    "yasutomi": (laws.yasutomi, (*YASUTOMI, 0.9)),
-    "doolittle": (laws.doolittle, laws.viscosity_law(squalane(313.15)).constants[:9]),
+    "yasutomi": (viscosity_laws.yasutomi, (*YASUTOMI, 0.9)),
+    "doolittle": (viscosity_laws.doolittle, laws.viscosity_law(squalane(313.15)).constants[:9]),
 }
 
 
@@ -211,7 +212,7 @@ def test_grade_sets_the_thermal_law():
     assert case.fluid.viscosity == pytest.approx(880.0 * 19e-6, rel=1e-10)
     assert case.heat.oil_density == 880.0
     kind, _, _, reference = laws.temperature_constants(case.fluid, case.heat)
-    assert kind == laws.WALTHER and reference == 373.15
+    assert kind == viscosity_laws.WALTHER and reference == 373.15
 
 
 def test_faulty_temperature_of_a_grade_is_the_only_fault():

@@ -39,7 +39,6 @@ import numpy as np
 from ehlpetsc.base.compiled import inlined
 from ehlpetsc.physics.film_shear import across, mean_rise, resolved_stress
 from ehlpetsc.physics.laws import (
-    ROELANDS_ZERO,
     SLOTS,
     conductivity,
     is_linear_in_temperature,
@@ -48,6 +47,7 @@ from ehlpetsc.physics.laws import (
     viscosity_law,
 )
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
+from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 30  # of Newton's method, before bisection
