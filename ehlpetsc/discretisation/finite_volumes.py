@@ -20,7 +20,8 @@ from ehlpetsc.base.compiled import compiled, inlined, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.physics.asperities import flow_factor
 from ehlpetsc.physics.laws import relative_density
-from ehlpetsc.physics.rheology import mobilities, tabulated_mobilities
+from ehlpetsc.physics.rheology import mobilities
+from ehlpetsc.physics.tabulated_flow import tabulated_mobilities
 
 STENCIL = 4  # nodes i-2 .. i+1 in row i
 ONE = unsigned(1)
@@ -119,7 +120,7 @@ def flux_through(at: np.ndarray, left: int, table: np.ndarray, law: tuple) -> tu
     ----------
     at : shape (10 or 13, nodes)
     table
-        Of :func:`ehlpetsc.physics.rheology.flow_table`.
+        Of :func:`ehlpetsc.physics.tabulated_flow.flow_table`.
     law
         p0 over the spacing [Pa/m]; a^2/R [m]; stress of the shear law without pressure, infinite: Newtonian,
         its rise over p0 [Pa]; |u1 - u2| [m/s]; entrainment speed over that of the scales; rms height of the

@@ -36,8 +36,9 @@ from ehlpetsc.discretisation.finite_volumes import (
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 from ehlpetsc.physics.laws import density, ln_viscosity
-from ehlpetsc.physics.rheology import NEWTON, flow_law, flow_table, stress_pressure
+from ehlpetsc.physics.rheology import NEWTON, flow_law, stress_pressure
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.tabulated_flow import flow_table
 
 
 class Reynolds:

@@ -6,15 +6,8 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.physics.laws import viscosity
-from ehlpetsc.physics.rheology import (
-    NEWTON,
-    FlowLaw,
-    flow_law,
-    flow_stress,
-    flow_table,
-    stress_pressure,
-    stress_spread,
-)
+from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
+from ehlpetsc.physics.tabulated_flow import flow_table, stress_spread
 
 
 def shear_stresses(

@@ -1,8 +1,8 @@
 r"""Viscosity of the oil by pressure and temperature: laws as pure functions, and data sheets.
 
-A law is a function of p [Pa] and T [K], numbers or arrays, complex ones too, and of its constants. It returns
-:math:`\ln(\eta/\eta_0)` and the derivatives by p and T. Its keys of `[fluid]` are beside it; the table of laws
-is in :mod:`ehlpetsc.physics.laws`.
+A law is a function of p [Pa] and T [K], numbers or arrays, complex ones too, and of its constants. It
+returns :math:`\ln(\eta/\eta_0)` and the derivatives by p and T. Its keys of `[fluid]` are beside it. The
+table of laws is in :mod:`ehlpetsc.physics.laws`.
 """
 
 from __future__ import annotations

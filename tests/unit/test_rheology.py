@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ehlpetsc.physics import rheology, traction
+from ehlpetsc.physics import rheology, tabulated_flow, traction
 
 STEP = 1e-30
 OIL = SimpleNamespace(viscosity=0.005, eyring_stress=10e6)
@@ -90,7 +90,7 @@ def carreau(n, a):
 def test_rate_inverts_the_stress_of_carreaus_law(n, a):
     for x in np.linspace(-15.0, 15.0, 31):
         stress, by_x, _ = rheology.flow_stress(x, carreau(n, a), np.inf)
-        rate, slope = rheology.rate_of_stress(-stress / STRESS, n, a)
+        rate, slope = tabulated_flow.rate_of_stress(-stress / STRESS, n, a)
         assert -rate == pytest.approx(np.exp(x), rel=1e-12)
         assert slope == pytest.approx(-rate * STRESS / by_x, rel=1e-9)
 
@@ -102,16 +102,16 @@ def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
     """Mobility and stress by the table, against 2,000 points across the film."""
     gradient = drop * STRESS / FILM
     flow = carreau(n, a)
-    table = rheology.flow_table(*flow[:1], n, a)
+    table = tabulated_flow.flow_table(*flow[:1], n, a)
     state = FILM, gradient, 1.0 / ETA, 1.0, STRESS, sliding / STRESS
-    (mobility, *_), _ = rheology.tabulated_mobilities(*state, table)
+    (mobility, *_), _ = tabulated_flow.tabulated_mobilities(*state, table)
     fluid = SimpleNamespace(viscosity=ETA, carreau_stress=STRESS, carreau_exponent=n, carreau_width=a)
     zero = np.zeros(1)
     (lower,), (upper,) = traction.wall_shear(np.full(1, FILM), gradient, zero, fluid, sliding, zero)
     z = (np.arange(2000) + 0.5) / 2000 - 0.5
     gamma = ETA * sliding / FILM / STRESS
     stress = 0.5 * (lower + upper) / STRESS
-    rate = np.array([rheology.rate_of_stress(stress + at * drop, n, a)[0] for at in z])
+    rate = np.array([tabulated_flow.rate_of_stress(stress + at * drop, n, a)[0] for at in z])
     assert rate.mean() == pytest.approx(gamma, rel=5e-4, abs=1e-12)
     if drop:
         moment = 12.0 * (z * rate).mean() / drop
@@ -123,11 +123,11 @@ def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
 @pytest.mark.parametrize("gradient", [1e10, -8e12, 6e13])
 def test_derivatives_of_carreaus_flow(gradient):
     state = {"h": FILM, "gradient": gradient, "ln_eta": np.log(ETA)}
-    table = rheology.flow_table(rheology.CARREAU, 0.45, 2.0)
+    table = tabulated_flow.flow_table(rheology.CARREAU, 0.45, 2.0)
 
     def mobility(values):
         fluidity = np.exp(-values["ln_eta"])
-        return rheology.tabulated_mobilities(
+        return tabulated_flow.tabulated_mobilities(
             values["h"], values["gradient"], fluidity, fluidity, STRESS, 2.0 / STRESS, table
         )[1]
 

@@ -30,7 +30,7 @@ from ehlpetsc.effects.heat.film_law import MIN_SLOPE, REFERENCE, A, B, FilmLaw, 
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.physics.film_shear import wall_exchange
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
-from ehlpetsc.physics.rheology import MIN_RATE, stress_spread
+from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 
 TINY = 1e-6  # y whose sinh(y)/y is 1
 
@@ -196,7 +196,7 @@ def faces(
     `couette`: filled in: mass flow of the mean speed through the faces i-1/2, in u a^2/R, shape (nodes + 1,).
     `pressure_heat`: filled in: :math:`M(dp/dx)^2` [W/m^2], half of each face's to either node, shape
         (nodes,).
-    `spread`: filled in: :func:`.rheology.stress_spread` of the nodes, shape (nodes,).
+    `spread`: filled in: :func:`.tabulated_flow.stress_spread` of the nodes, shape (nodes,).
     `gradient`: filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
