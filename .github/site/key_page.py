@@ -1,6 +1,6 @@
 """The page cases/keys.md, from the table of keys, with equations in TeX.
 
-To write it: ``PYTHONPATH=. python3 tests/support/key_page.py >cases/keys.md``.
+To write it: ``PYTHONPATH=. python3 .github/site/key_page.py >cases/keys.md``.
 """
 
 import re
