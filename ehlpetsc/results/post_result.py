@@ -75,7 +75,7 @@ class PointTemperatures(NamedTuple):
 def post_path(path: str | Path) -> Path:
     """``RESULT.post.h5`` in the folder of ``RESULT.h5``."""
     path = Path(path)
-    return path.with_name(f"{path.stem}.post.h5")
+    return path.parent / f"{path.stem}.post.h5"
 
 
 def stored_names(surface: str) -> dict[str, Dataset]:
