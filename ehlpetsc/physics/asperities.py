@@ -200,20 +200,15 @@ def real_area_fraction(pressure: np.ndarray, slope_modulus: float, hardness: flo
     hardness
         In the unit of the pressure.
     """
+    from scipy.special import erf, erfc
+
     width = 2.0 * slope_modulus / (math.sqrt(math.pi) * KAPPA)
-    area = [_area(float(p), width, hardness) for p in np.ravel(pressure)]
-    return np.array(area).reshape(np.shape(pressure))
-
-
-def _area(pressure: float, width: float, hardness: float) -> float:
-    if pressure >= hardness:
-        return 1.0
     if hardness == np.inf:
-        return math.erf(pressure / width)
+        return erf(pressure / width)
     if hardness < MIN_HARDNESS * width:
-        return pressure / hardness
-    apart = 0.0
+        return np.minimum(pressure / hardness, 1.0)
+    apart = np.zeros_like(pressure)
     for k in range(math.ceil(3.0 * width / hardness) + 1):  # beyond six widths erfc vanishes
-        near, far = 2.0 * k * hardness + pressure, 2.0 * (k + 1.0) * hardness - pressure
-        apart += math.erfc(near / width) - math.erfc(far / width)
-    return 1.0 - apart
+        apart += erfc((2.0 * k * hardness + pressure) / width)
+        apart -= erfc((2.0 * (k + 1.0) * hardness - pressure) / width)
+    return np.where(pressure < hardness, 1.0 - apart, 1.0)
