@@ -45,7 +45,7 @@ from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.physics.rheology import FlowLaw, flow_stress
 
 MIN_HEATING = 1e-280
-SERIES_LIMIT = 0.1  # y below which the series of coth(y) - 1/y is exact to 1e-13
+SERIES_LIMIT = 0.2  # y below which the series of :func:`across` are exact to 1e-12
 MEAN_SERIES_LIMIT = 0.2  # y/2 below which the series of the mean rise is exact to 1e-14
 ITERATIONS = 200
 ACCURACY = 1e-7  # relative change of y in an iteration of Newton's method, after which it is exact to 1e-14
@@ -91,21 +91,24 @@ def across(y: float, d: float) -> tuple[float, float, float, float, float]:
     heating, heating_by_y, heating_by_d
         :math:`y(\cosh y-\cosh d)/(2\sinh y)` and its derivatives.
     """
-    less = -np.expm1(-y)  # 1 - exp(-y)
-    e = 1.0 - less
-    down = less * (1.0 + e)  # 1 - exp(-2 y)
-    over = 1.0 / down
-    coth = (1.0 + e * e) * over
     if y.real < SERIES_LIMIT:
-        t = y * y
-        rate_by_y = y * (1 / 3 - t * (1 / 45 - t * (2 / 945 - t / 4725)))
+        less = -np.expm1(-y)  # 1 - exp(-y)
+        e, t = 1.0 - less, y * y
+        ln_rate = t * (1 / 6 - t * (1 / 180 - t * (1 / 2835 - t * (1 / 37800 - t / 467775))))
+        rate_by_y = y * (1 / 3 - t * (1 / 45 - t * (2 / 945 - t * (1 / 4725 - t * 2 / 93555))))
+        over = 1.0 / (less * (1.0 + e))  # 1/(1 - exp(-2 y))
+        coth = (1.0 + e * e) * over
     else:
-        rate_by_y = coth - 1.0 / y
+        e = np.exp(-y)
+        less = 1.0 - e
+        over = 1.0 / (less * (1.0 + e))
+        coth, over_y = (1.0 + e * e) * over, 1.0 / y
+        ln_rate, rate_by_y = y + np.log(0.5 * less * (1.0 + e) * over_y), coth - over_y
     up = np.expm1(d)
     below = -up / (1.0 + up)  # exp(-d) - 1
     ratio = (less - e * below) * (less - e * up) * over  # (cosh(y) - cosh(d))/sinh(y)
     return (
-        y + np.log(0.5 * down / y),
+        ln_rate,
         rate_by_y,
         0.5 * y * ratio,
         0.5 * (ratio + y * (1.0 - ratio * coth)),
