@@ -25,6 +25,7 @@ HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the sur
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the maximum
 MIN_TEMPERATURE_RISE = 1e-3  # K
+TINY = 1e-30  # m^2 K/W: bodies without response share equally
 DEPTH = 6
 ITERATIONS = 200
 ACCURACY = 1e-11  # of the maximum
@@ -253,8 +254,7 @@ def _rubbed(
     walls: Sequence[np.ndarray], responses: Sequence[np.ndarray], rubbing: np.ndarray
 ) -> tuple[list[np.ndarray], tuple[np.ndarray, np.ndarray]]:
     """Walls [K] with the heat of the solids, which warms both by the same, and the parts in either."""
-    total = responses[0] + responses[1]
-    first = np.divide(responses[1], total, out=np.full_like(total, 0.5), where=total > 0.0)
+    first = (responses[1] + TINY) / (responses[0] + responses[1] + 2.0 * TINY)
     rise = responses[0] * first * rubbing
     return [wall + rise for wall in walls], (first, 1.0 - first)
 
