@@ -25,7 +25,7 @@ def test_sum_of_exponentials():
 def test_uniform_flux(steps):
     time, dt = 1e-5, 1e-5 / steps
     rates, weights = exponentials(dt, 1e-3)
-    step = StepWeights.of(rates, weights, dt, STEEL.effusivity)
+    step = StepWeights.of(rates, dt, STEEL.effusivity)
     terms = np.zeros(len(rates))
     for _ in range(steps):
         begun = step.decay * terms + step.begin * FLUX
@@ -90,7 +90,7 @@ def test_a_sinusoid_along_the_surface(ratio):
     dt = ratio * dx**2 / STEEL.diffusivity
     flux = FLUX * (1.0 + np.cos(wave * np.arange(nodes)))
     rates, weights = exponentials(dt, 100 * dt)
-    step = StepWeights.of(rates, weights, dt, STEEL.effusivity)
+    step = StepWeights.of(rates, dt, STEEL.effusivity)
     terms = np.zeros((nodes, len(rates)))
     for _ in range(steps):
         given, new = step.decay * terms + flux[:, None] * step.begin, np.empty_like(terms)

@@ -69,26 +69,25 @@ class StepWeights:
     response: float
 
     @classmethod
-    def of(cls, rates: np.ndarray, weights: np.ndarray, dt: float, effusivity: float) -> StepWeights:
-        """Coefficients of a step of `dt` [s]; `rates` and `weights` as of :func:`exponentials`."""
-        # equal steps of a run differ by rounding, which the cache must not see
-        return cls._cached(
-            np.asarray(rates).tobytes(), np.asarray(weights).tobytes(), float(f"{dt:.12g}"), effusivity
-        )
+    def of(cls, rates: np.ndarray, dt: float, effusivity: float) -> StepWeights:
+        """Coefficients of a step of `dt` [s]; `rates` as of :func:`exponentials`."""
+        decay, begin, end = np.empty((3, len(rates)))
+        _step_weights(np.asarray(rates), dt, decay, begin, end)
+        # of the kernel itself: terms faster than the fastest one act at the end of the step only
+        return cls(decay, begin, end, 4.0 / 3.0 * np.sqrt(dt / np.pi) / effusivity)
 
-    @classmethod
-    @lru_cache(maxsize=8)
-    def _cached(cls, rates: np.ndarray, weights: np.ndarray, dt: float, effusivity: float) -> StepWeights:
-        rates, weights = np.frombuffer(rates), np.frombuffer(weights)
-        z = rates * dt
-        decay = np.exp(-z)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mean = np.where(z > 1e-4, -np.expm1(-z) / z, 1.0 - z / 2.0)  # of the kernel over the step
-            first = np.where(z > 1e-2, (mean - decay) / z, 0.5 - z / 3.0 + z * z / 8.0)
-        begin, end = dt * first, dt * (mean - first)
-        # the terms faster than the fastest one act at the end of the step only
-        tail = 4.0 / 3.0 * np.sqrt(dt / np.pi) - weights @ end
-        return cls(decay, begin, end, (weights @ end + tail) / effusivity)
+
+@compiled
+def _step_weights(
+    rates: np.ndarray, dt: float, decay: np.ndarray, begin: np.ndarray, end: np.ndarray
+) -> None:
+    """Fill in the coefficients of :class:`StepWeights`."""
+    for k in range(len(rates)):
+        z = rates[k] * dt
+        decay[k] = np.exp(-z)
+        mean = -np.expm1(-z) / z if z > 1e-4 else 1.0 - z / 2.0  # of the kernel over the step
+        first = (mean - decay[k]) / z if z > 1e-2 else 0.5 - z / 3.0 + z * z / 8.0
+        begin[k], end[k] = dt * first, dt * (mean - first)
 
 
 @compiled
@@ -272,7 +271,7 @@ class Body:
 
     @property
     def _tail(self) -> float:
-        step = StepWeights.of(self.rates, self.weights, self.dt, self.solid.effusivity)
+        step = StepWeights.of(self.rates, self.dt, self.solid.effusivity)
         return step.response - self.weights @ step.end / self.solid.effusivity
 
     def record(self, flux: np.ndarray, terms: np.ndarray) -> BodyHeat:
@@ -302,7 +301,7 @@ class Body:
         moved = -speed * dt / self.dx
         if abs(shift - moved) > RENUMBERED:  # the distance is counted from another place now
             shift = int(np.floor(moved))
-        step = StepWeights.of(body.rates, body.weights, dt, self.solid.effusivity)
+        step = StepWeights.of(body.rates, dt, self.solid.effusivity)
         ratio = self.solid.diffusivity * dt / self.dx**2
         terms, flux, rise = advance_terms(
             body.terms, body.flux, shift, step.decay, step.begin, ratio, body.weights / self.solid.effusivity
