@@ -54,7 +54,8 @@ def coarse_pictures():
 @pytest.fixture
 def uncompiled(monkeypatch):
     """Flow laws as Python code, for the complex step: no run needs them compiled for complex numbers."""
-    from ehlpetsc.physics import film_shear, rheology
+    from ehlpetsc.effects.heat import film_shear
+    from ehlpetsc.physics import rheology
 
     for module in (film_shear, rheology):
         for name, function in list(vars(module).items()):

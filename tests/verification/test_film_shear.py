@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.exact_solutions import band_kernel
 
-from ehlpetsc.physics import film_shear
-from ehlpetsc.physics.film_shear import film_stress
+from ehlpetsc.effects.heat import film_shear
+from ehlpetsc.effects.heat.film_shear import film_stress
 from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
 
 N = 80

@@ -27,8 +27,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     positive_extrapolation,
 )
 from ehlpetsc.effects.heat.film_law import MIN_SLOPE, REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
-from ehlpetsc.physics.film_shear import wall_exchange
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 

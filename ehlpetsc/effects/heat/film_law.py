@@ -4,18 +4,18 @@ With both surfaces' response :math:`R_i` to the present flux, a film of mean tem
 
 .. math:: aT-b=\Phi+G-q_1-q_2,\qquad T_i=W_i+R_iq_i,\qquad \Phi=\tau_m|u_1-u_2|.
 
-The shear stress is that of :mod:`ehlpetsc.physics.film_shear`, resolved across the film: the heat of shear
+The shear stress is that of :mod:`.film_shear`, resolved across the film: the heat of shear
 concentrates in its middle. Its base temperature is that of the walls and of all other heat,
 :math:`T_s=(T_1+T_2)/2+Hr/12`, :math:`H=q_1+q_2-\Phi`, :math:`r=h/k_f`. The fluxes are those of a parabola
 with the mean temperature :math:`T_e=(T_1+T_2)/2+(q_1+q_2)r/12`,
 
 .. math:: q_{1,2}=\frac1r\Big[6(T_e-T_w)\pm X(T_2-T_1)\Big],\qquad T_w=(T_1+T_2)/2,
 
-X the factor of :func:`ehlpetsc.physics.film_shear.wall_exchange` at the last level: the oil is most fluid
+X the factor of :func:`.film_shear.wall_exchange` at the last level: the oil is most fluid
 near the hotter wall, which gets more of the heat of shear than conduction alone leaves it. (X = 1 gives 8 %
 more friction at slide/roll 1.9, 2 % at 1.5.) The mean of the profile is :math:`T=T_s+m/\beta`. What is left
 are two equations, for :math:`T_s` and y, with one solution. (Heat in the middle of the film would need
-the weight of :func:`ehlpetsc.physics.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is
+the weight of :func:`.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is
 10 % of :math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
 
 Oil that enters cold between surfaces far apart in temperature has no parabola: the law would cool the colder
@@ -37,7 +37,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.physics.film_shear import across, mean_rise, resolved_stress
+from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
 from ehlpetsc.physics.laws import (
     SLOTS,
     conductivity,
