@@ -1,4 +1,4 @@
-"""Corrupted case files and profiles: faults in words or values that a run can use, never another exception.
+"""Corrupted case files and profiles give faults or values that a run can use, never another exception.
 
 EHL_FUZZ=10000 in the environment draws that many; EHL_FUZZ_SEED another series of them.
 """
@@ -143,7 +143,7 @@ PROFILE_KEYS = re.split(r" \| |\n", PROFILE_KEYS)
 
 
 def corrupted_profile(lines, rng):
-    """One to four faults in words, lines, separators and bytes."""
+    """One to four random faults: numbers, lines, separators, bytes."""
     for _ in range(rng.randint(1, 4)):
         n, kind = rng.randrange(len(lines)), rng.randrange(5)
         if kind == 0:
