@@ -20,7 +20,8 @@ from ehlpetsc.case.checking import FAULTY, Tables, check, is_number
 from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
-from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath

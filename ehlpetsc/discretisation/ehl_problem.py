@@ -84,7 +84,7 @@ class EHLProblem:
         last: int,
         bound_tolerance: float = 0.0,
     ):
-        self.n, self.x, self.scales = scales.nx, scales.x, scales
+        self.n, self.x, self.scales = scales.grid.n, scales.x, scales
         self.dx = self.x[1] - self.x[0]
         self.first, self.last, self.local = first, last, last - first
         self.fluid, self.boundary_friction = case.fluid, case.contact.boundary_friction

@@ -57,7 +57,7 @@ class Reynolds:
         self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0, layer: float = 0.0
     ):
         self.scales, self.film_scale, self.layer = scales, film_scale, layer
-        n = scales.nx
+        n = scales.grid.n
         self.local = slice(first, last)
         self.rows = slice(max(first, 1), last)
         self.has_inlet, self.has_outlet = first == 0, last == n

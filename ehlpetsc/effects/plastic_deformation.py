@@ -59,7 +59,7 @@ class PlasticDeformation(BodyDepth):
 
     def start(self, before: PlasticRecord | None = None, **entries: Any) -> PlasticRecord:
         """No deformation, or the deformation of the previous pass."""
-        return super().start(before, added=np.zeros(self.scene.scales.nx), **entries)
+        return super().start(before, added=np.zeros(self.scene.scales.grid.n), **entries)
 
     def accept(self, record: PlasticRecord, solution: Solution, step: Step) -> PlasticRecord:
         """Add the depth of the step to both bodies."""

@@ -10,7 +10,7 @@ import numpy as np
 from ehlpetsc.gears.load_sharing import edge_contact
 from ehlpetsc.gears.path import Path, describe, gear_loss_factor, hertz
 from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
-from ehlpetsc.physics.scales import hertz_line
+from ehlpetsc.physics.hertz import hertz_line
 
 EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
 EDGES = {"A": "before A, on the tip edge of the wheel", "E": "after E, on the tip edge of the pinion"}

@@ -64,10 +64,10 @@ class GaussSeidelSolver:
     """
 
     def __init__(self, case: Any, scales: Scales, film_scale: float, tolerance: float):
-        self.problem = EHLProblem(case, scales, film_scale, 0, scales.nx)
+        self.problem = EHLProblem(case, scales, film_scale, 0, scales.grid.n)
         self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
         self.tolerance = tolerance
-        curvature, near = self.deflection.curvature, min(NEAR_FIELD_NODES, scales.nx - 1)
+        curvature, near = self.deflection.curvature, min(NEAR_FIELD_NODES, scales.grid.n - 1)
         self.kernel = np.concatenate([curvature[near:0:-1], curvature[: near + 1]])
         distant = curvature.copy()
         distant[: near + 1] = 0.0

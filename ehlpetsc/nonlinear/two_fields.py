@@ -65,7 +65,7 @@ class TwoFields:
         comm: PETSc.Comm = PETSc.COMM_WORLD,
         bound_tolerance: float = ZERO_TOLERANCE,
     ):
-        n, rank = scales.nx, comm.rank
+        n, rank = scales.grid.n, comm.rank
         cuts = first_nodes(n, comm.size)
         first, last = cuts[rank], cuts[rank + 1]
         self.n, self.local, self.comm = n, last - first, comm

@@ -36,6 +36,31 @@ def moes_central_film(M: float, L: float) -> float:
     return (isoviscous + piezoviscous) ** (1.0 / s)
 
 
+def nijenbanning_central_film(M: float, L: float, ratio: float) -> float:
+    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes (1994).
+
+    .. math:: H=\left\{\left[H_{RI}^{3/2}+(H_{EI}^{-4}+H_{00}^{-4})^{-3/8}\right]^{2s/3}+
+       (H_{RP}^{-8}+H_{EP}^{-8})^{-s/8}\right\}^{1/s},\qquad s=1.5\,(1+e^{-1.2H_{EI}/H_{EP}})
+
+    with :math:`\lambda=R_x/R_y`, :math:`H_{RI}=145(1+0.796\lambda^{14/15})^{-15/7}\lambda^{-1}M^{-2}`,
+    :math:`H_{EI}=3.18(1+0.006\ln\lambda+0.63\lambda^{4/7})^{-14/25}\lambda^{-1/15}M^{-2/15}`,
+    :math:`H_{RP}=1.29(1+0.691\lambda)^{-2/3}L^{2/3}`,
+    :math:`H_{EP}=1.48(1+0.006\ln\lambda+0.63\lambda^{4/7})^{-7/20}\lambda^{-1/24}M^{-1/12}L^{3/4}`,
+    :math:`H_{00}=1.8\lambda^{-1}`.
+
+    `ratio`: :math:`R_y/R_x`.
+    """
+    lam = 1.0 / ratio
+    shape = 1.0 + 0.006 * math.log(lam) + 0.63 * lam ** (4.0 / 7.0)
+    rigid = 145.0 * (1.0 + 0.796 * lam ** (14.0 / 15.0)) ** (-15.0 / 7.0) / (lam * M**2)
+    elastic = 3.18 * shape ** (-14.0 / 25.0) * lam ** (-1.0 / 15.0) * M ** (-2.0 / 15.0)
+    rigid_piezo = 1.29 * (1.0 + 0.691 * lam) ** (-2.0 / 3.0) * L ** (2.0 / 3.0)
+    elastic_piezo = 1.48 * shape ** (-7.0 / 20.0) * lam ** (-1.0 / 24.0) * M ** (-1.0 / 12.0) * L**0.75
+    s = 1.5 * (1.0 + math.exp(-1.2 * elastic / elastic_piezo))
+    isoviscous = (rigid**1.5 + (elastic**-4 + (1.8 / lam) ** -4) ** -0.375) ** (2.0 * s / 3.0)
+    return (isoviscous + (rigid_piezo**-8 + elastic_piezo**-8) ** (-s / 8.0)) ** (1.0 / s)
+
+
 def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
@@ -53,14 +78,15 @@ def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[fl
         E' [Pa].
     """
     from ehlpetsc.physics.laws import density
-    from ehlpetsc.physics.scales import hertz_line, moes_groups
+    from ehlpetsc.physics.hertz import hertz_line
 
     load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)
     if speed == 0.0:
         return 0.0, 0.0
     alpha = fluid.pressure_viscosity
-    M, L = moes_groups(fluid.viscosity, speed, alpha, load, radius, modulus)
-    unit = radius * math.sqrt(2.0 * fluid.viscosity * speed / (modulus * radius))
+    two_u = 2.0 * fluid.viscosity * speed / (modulus * radius)
+    M, L = load / (modulus * radius * math.sqrt(two_u)), alpha * modulus * two_u**0.25
+    unit = radius * math.sqrt(two_u)
     incompressible = unit * moes_central_film(M, L)
     ratio = 1.0 / float(density(np.array([hertz_line(load, radius, modulus)[1]]), fluid)[0][0])
     return incompressible * ratio, MIN_OVER_CENTRAL_FILM * incompressible * ratio**0.25
@@ -120,4 +146,4 @@ def expected_film(case: Any, scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0
-    return max(moes_central_film(scales.moes_m, scales.moes_l) * np.pi / (8.0 * scales.moes_m), 1e-6)
+    return max(scales.geometry.expected_film(scales), 1e-6)

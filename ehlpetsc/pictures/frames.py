@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.physics.scales import hertz_pressure
+from ehlpetsc.physics.hertz import hertz_pressure
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.means import both_fill

@@ -13,7 +13,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result

@@ -123,8 +123,8 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     seconds, passes = START_SECONDS + work_time(case, s, rough), case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
     return [
-        f"Mesh: {s.nx} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
-        f"{2 * s.nx + 1} unknowns",
+        f"Mesh: {s.grid.n} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
+        f"{2 * s.grid.n + 1} unknowns",
         f"Expected run time on one rank: about {duration(seconds)}; "
         f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}",
     ]

@@ -34,7 +34,7 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the iterations [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
-    each = ITERATION_SECONDS + NODE_SECONDS * s.nx
+    each = ITERATION_SECONDS + NODE_SECONDS * s.grid.n
     return passes * (iterations(case, s, rough) + solves) * each
 
 
@@ -66,11 +66,11 @@ def file_size(case: Case, s: Scales) -> float:
     """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed."""
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
-    frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.nx * value))
+    frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.grid.n * value))
     stored = set(case.output.fields) & set(of_case(FIELDS, case))
     fields = sum(FIELDS[name].dtype == "f8" for name in stored)
     scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
-    return fields * value * s.nx * rows * math.ceil(frames / rows) + scalars
+    return fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
 
 
 def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
@@ -134,7 +134,7 @@ def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> l
     length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
     return [
         f"ehlpetsc {__version__}: {case.title}",
-        f"{scales.nx} nodes, {2 * scales.nx + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
+        f"{scales.grid.n} nodes, {2 * scales.grid.n + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
         f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
         *(surface_lines(case, scales, rough) if rough else []),
         *lambda_line(case, scales, rough),

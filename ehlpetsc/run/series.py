@@ -113,7 +113,7 @@ class Member:
         """Sort key that puts the longest members first: nodes times steps, then the thinner film."""
         scales = Scales.of(self.case)
         film = smooth_films(self.case.fluid, scales.E, scales.conditions)[1] if self.case.fluid else 0.0
-        return scales.nx * (steps(scales) if self.case.time else 1), -film
+        return scales.grid.n * (steps(scales) if self.case.time else 1), -film
 
     def totals(self) -> Totals:
         """Totals of the run from the result file; empty without a file."""

@@ -72,7 +72,7 @@ def diagnostics(
 def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.ndarray | None) -> dict:
     """Fields in SI units that every case has."""
     s, loads, fluid = scene.scales, solution.loads, solution.inputs.fluid
-    void = np.zeros(s.nx) if fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
+    void = np.zeros(s.grid.n) if fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
     shear_1, shear_2 = shear_stresses(

@@ -19,7 +19,8 @@ from ehlpetsc.gears.command import main
 from ehlpetsc.gears.load_sharing import corner_gap, edge_contact, pair_loads, share, single_stiffness
 from ehlpetsc.gears.path import describe, gear_loss_factor, hertz, loss, mean_friction
 from ehlpetsc.gears.standards import bulk_temperatures, loss_factor, values_of
-from ehlpetsc.physics.scales import hertz_line, reduced_modulus
+from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.pictures.gears import draw_damage
 from ehlpetsc.post.stresses.body_points import body_points, passage
 

@@ -13,7 +13,8 @@ from support.made_results import A, change_case, make_result, with_solids
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.scales import Scales, hertz_line, reduced_modulus
+from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.scales import Scales, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing
 from ehlpetsc.pictures import over_time, style

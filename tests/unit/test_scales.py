@@ -13,7 +13,9 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.physics import scales as hertz
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
-from ehlpetsc.physics.scales import Scales, hertz_line, moes_groups, reduced_modulus
+from ehlpetsc.physics.geometry import line_groups
+from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.scales import Scales, reduced_modulus
 
 
 def scales(name, *overrides):
@@ -45,10 +47,10 @@ def test_moes_case_has_the_groups_of_its_title():
     assert (s.moes_m, s.moes_l) == pytest.approx((100, 11), rel=1e-9)
 
 
-def test_moes_groups_fix_the_barus_exponent_at_the_hertz_pressure():
+def test_line_groups_fix_the_barus_exponent_at_the_hertz_pressure():
     # alpha p0 = L sqrt(M / 2 pi), whatever the modulus: the exponent depends on the two groups alone
     alpha, load, radius, modulus = 2e-8, 1e5, 0.01, 2e11
-    m, oil = moes_groups(0.01, 1.0, alpha, load, radius, modulus)
+    m, oil = line_groups(0.01, 1.0, alpha, load, radius, modulus)
     p0 = modulus * math.sqrt(load / (modulus * radius) / (2 * math.pi))
     assert oil * math.sqrt(m / (2 * math.pi)) == pytest.approx(alpha * p0, rel=1e-12)
 
@@ -138,6 +140,6 @@ def test_expected_films_within_four_percent():
 def test_smooth_films_are_below_the_moes_fit_by_less_than_a_quarter():
     """Table 1 films are thinner than the fit, by shear thinning and density, but by less than a quarter."""
     for film in published_values.SMOOTH_FILMS:
-        m, length = moes_groups(film.viscosity, film.speed, 11.1e-9, LOAD, R, E)
+        m, length = line_groups(film.viscosity, film.speed, 11.1e-9, LOAD, R, E)
         scale = R * np.sqrt(2 * film.viscosity * film.speed / (E * R)) * 1e6
         assert 0.75 < film.h_central / (film_formulas.moes_central_film(m, length) * scale) < 1.0

@@ -46,6 +46,13 @@ class Case(Values):
         return self._path
 
     @property
+    def kind(self) -> str:
+        """Kind of contact, a key of `physics.geometry.GEOMETRIES`."""
+        if self.contact.radius_across is not None:
+            return "point"
+        return "line" if self.mesh.width is None else "strip"
+
+    @property
     def conditions(self) -> Any:
         """Load, radius and speeds over time (`physics.variable_operation`); None: constant."""
         return self._conditions

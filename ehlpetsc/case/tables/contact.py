@@ -32,15 +32,22 @@ class Contact(Values):
 
 
 def _complete(contact: Contact) -> dict[str, Any]:
+    radii = contact.radius if isinstance(contact.radius, tuple) else (contact.radius, None)
+    values = dict(zip(("radius", "radius_across"), radii, strict=True))
     if contact.law == "mixed":
-        return {"boundary_film": contact.boundary_film or BOUNDARY_FILM}
+        values["boundary_film"] = contact.boundary_film or BOUNDARY_FILM
     if contact.law == "compliant":
-        return {"asperity_slope": contact.asperity_slope or ASPERITY_SLOPE}
-    return {}
+        values["asperity_slope"] = contact.asperity_slope or ASPERITY_SLOPE
+    return values
 
 
 KEYS = {
-    "radius": Required("reduced radius, `1/R = 1/R1 + 1/R2`", "m", 1e-9, 100, replaced_by=CONDITIONS),
+    "radius": Required(
+        "reduced radius, `1/R = 1/R1 + 1/R2`; two, along and across the motion: a point contact",
+        *("m", 1e-9, 100),
+        many="axes",
+        replaced_by=CONDITIONS,
+    ),
     "load": Required(
         "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`",
         *("N/m", 1e-3, 1e10),

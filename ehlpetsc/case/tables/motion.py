@@ -133,19 +133,31 @@ class Mesh(Values):
         return round((self.outlet - self.inlet) * self.points_per_half_width) + 1
 
 
-def _check_node_count(mesh: Mesh) -> dict[str, Any]:
-    if mesh.nodes > MAX_NODES + 1:
+def _complete_mesh(mesh: Mesh) -> dict[str, Any]:
+    points = mesh.points_per_half_width
+    along, across = points if isinstance(points, tuple) else (points, None)
+    values = {"points_per_half_width": along, "points_across": across}
+    if mesh.copy(values).nodes > MAX_NODES + 1:
         raise Refused(key="points_per_half_width")
-    return {}
+    return values
 
 
 MESH_KEYS = {
     "inlet": Required("first node", "half-widths", -100, lt=-1),
     "outlet": Required("last node", "half-widths", gt=1, le=100),
-    "points_per_half_width": Required("nodes `a/dx`, at most 200000 nodes in all", "", 4, 100_000, kind=int),
+    "points_per_half_width": Required(
+        "nodes `a/dx`, at most 200000 nodes in all; two: along, and across per half-width b of a point, a of a strip",
+        *("", 4, 100_000),
+        kind=int,
+        many="axes",
+    ),
+    "width": Key(
+        "of a point contact in b [4]; with one radius, in a: a strip, periodic across, with roughness in two dimensions",
+        *("half-widths", 0.01, 1000),
+    ),
     "near_field": Key("nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3),
 }
-MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_check_node_count)
+MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_complete_mesh)
 
 TIME_KEYS = {
     "travel": Required(

@@ -132,7 +132,7 @@ class Heat(Effect):
 
     def start(self, before: HeatRecord | None = None) -> HeatRecord:
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
-        n, steps = self.scene.scales.nx, self._steps
+        n, steps = self.scene.scales.grid.n, self._steps
         zeros, ones = np.zeros(n), np.ones(n)
         walls = [bulk * ones for bulk in steps.bulk]
         film = steps.inlet * ones

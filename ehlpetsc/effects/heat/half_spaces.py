@@ -251,7 +251,7 @@ class Body:
     """
 
     def __init__(self, solid: Solid, speed: float, scales: Scales, dt: float) -> None:
-        self.solid, self.n, self.dx = solid, scales.nx, scales.dx
+        self.solid, self.n, self.dx = solid, scales.grid.n, scales.dx
         chi, speed = solid.diffusivity, abs(speed)
         length = self.n * self.dx
         slow = MAX_DIFFUSION_AREA / chi

@@ -63,12 +63,12 @@ class HeatStep:
         # of films that close the shear would heat without limit, and not at all once they are closed
         self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
         layer = case.contact.asperity_height or 0.0
-        self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.nx, layer=layer)
+        self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.grid.n, layer=layer)
         self.coldest = min(self.inlet, *self.bulk)
 
     def film_heat(self, record: HeatRecord, inputs: StepInputs, step: Step) -> FilmHeat:
         """Data of the film's temperature in a solve, from the record at the beginning of the step."""
-        n = self.scales.nx
+        n = self.scales.grid.n
         stored, bodies = np.zeros(n), None
         if step.dt is None:
             responses = [record.response_1, record.response_2]
@@ -107,11 +107,11 @@ class HeatStep:
         heat = solution.inputs.heat or self.film_heat(record, solution.inputs, step)
         friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
         rubbing = friction * loads.friction_pressure * s.p0
-        pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
+        pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.grid.n)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            carried = blank, blank, blank, np.zeros(s.nx + 1)
-            film = Film(blank, thickness, np.ones(s.nx), record.film, *carried, rubbing)
+            carried = blank, blank, blank, np.zeros(s.grid.n + 1)
+            film = Film(blank, thickness, np.ones(s.grid.n), record.film, *carried, rubbing)
             source = spread = blank
         else:
             q = solution.nodes.reynolds_unknown
@@ -142,7 +142,7 @@ class HeatStep:
         self, solution: Solution, heat: FilmHeat
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures of the film in the solve; results of `film.faces`."""
-        n, nodes, backward = self.scales.nx, solution.nodes, solution.inputs.conditions.entrainment < 0.0
+        n, nodes, backward = self.scales.grid.n, solution.nodes, solution.inputs.conditions.entrainment < 0.0
         given = solution.inputs, nodes.reynolds_unknown, nodes.film, solution.loads.oil_mask, heat.guess
         inputs, q, h, oil, guess = map(mirrored, given) if backward else given
         solved = guess.copy()

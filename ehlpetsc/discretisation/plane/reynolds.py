@@ -1,0 +1,122 @@
+r"""Discrete Reynolds equation with mass-conserving cavitation in the plane.
+
+.. math:: F\equiv\frac{\partial\rho h(1-\theta)}{\partial t}+\frac{\partial}{\partial x}\Big[\rho\bar uh(1-\theta)-
+   M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial p}{\partial y}\Big]=0
+
+Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.reynolds`; the sum of F over the nodes is the mass
+defect over that of a film `film_scale` that enters over a half-width across. Beyond the outlet and, in a point
+contact, beyond the sides the oil has ambient pressure and the film of the last node. A strip is periodic across.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ehlpetsc.base.declarations import Values
+from ehlpetsc.discretisation.finite_volumes import PROPERTIES, M
+from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
+from ehlpetsc.discretisation.reynolds import flow_table_of, inlet, nodal, shear_constants
+from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.physics.laws import density
+from ehlpetsc.physics.rheology import flow_law
+from ehlpetsc.physics.scales import Scales
+
+
+class Reynolds:
+    """Rows of the Reynolds equation of the local nodes.
+
+    `shape`: local rows, nodes along x.
+    `rows`: local nodes among those of the mesh.
+    `has_sides`: whether the domain ends below the first, above the last local row.
+    """
+
+    stencil, own = STENCIL, OWN
+
+    def __init__(
+        self,
+        scales: Scales,
+        spacings: tuple[float, float],
+        film_scale: float,
+        shape: tuple[int, int],
+        rows: slice,
+        has_sides: tuple[bool, bool],
+        layer: float = 0.0,
+    ):
+        self.scales, self.film_scale, self.layer = scales, film_scale, layer
+        (self.dy, self.dx), self.shape, self.rows, self.has_sides = spacings, shape, rows, has_sides
+
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> np.ndarray:
+        r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
+        rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
+        return rho * (1.0 + np.minimum(q, 0.0)) * h
+
+    def _extended(self, values: np.ndarray, beyond: float | None) -> np.ndarray:
+        """Values of the window with a node beyond the outlet in each row, and rows beyond the sides.
+
+        `beyond`: value there; None: that of the neighbour.
+        """
+        n_y, n_x = self.shape
+        out = np.empty((n_y + 2, n_x + 1))
+        has_lower, has_upper = self.has_sides
+        inner = out[int(has_lower) : n_y + 2 - int(has_upper), :n_x]
+        inner[:] = values.reshape(-1, n_x)
+        if has_lower:
+            out[0, :n_x] = out[1, :n_x] if beyond is None else beyond
+        if has_upper:
+            out[-1, :n_x] = out[-2, :n_x] if beyond is None else beyond
+        out[:, n_x] = out[:, n_x - 1] if beyond is None else beyond
+        return out.ravel()
+
+    def properties(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> np.ndarray:
+        """Nodal properties of the rows of the window, extended beyond its edges, shape (10, nodes)."""
+        s = self.scales
+        at = np.empty((PROPERTIES, (self.shape[0] + 2) * (self.shape[1] + 1)))
+        units = s.p0, s.h, 1.0 / (s.u * s.h), 1.0 / inputs.fluid.viscosity
+        nodal(self._extended(q, 0.0), self._extended(h, None), inputs.viscosity, inputs.density, units, at)
+        return at
+
+    def evaluate(
+        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Residual F of the local rows, shape (local nodes,), and its derivatives, (local nodes, 12)."""
+        (n_y, n_x), s, history = self.shape, self.scales, inputs.history
+        at = self.properties(q, h, inputs)
+        constants = s.h, *shear_constants(inputs, s), self.layer
+        laws = tuple((s.p0 / (s.a * spacing), *constants) for spacing in (self.dx, self.dy))
+        nothing = np.zeros(n_y * n_x)
+        storage = nothing, nothing, 0.0, 0.0
+        if history is not None:
+            rate = self.dx * self.dy / history.dt
+            storage = history.m[self.rows], history.extrapolated[self.rows], history.k, rate
+        residual, derivatives = np.zeros(n_y * n_x), np.zeros((n_y * n_x, n_dofs(STENCIL)))
+        weights, rows = (self.dy, self.dx), (residual, derivatives)
+        flow = flow_law(inputs.fluid)
+        balance(at, self.shape, laws, flow, flow_table_of(inputs), storage, weights, rows)
+        self._beyond_edges(derivatives.reshape(n_y, n_x, -1))
+        residual *= 1.0 / self.film_scale
+        derivatives *= 1.0 / self.film_scale
+        first = slice(None, None, n_x)
+        start = len(q) // n_x - n_y - (0 if self.has_sides[1] else 1)  # rows of the window before the local ones
+        local = slice(start * n_x, (start + n_y) * n_x)
+        rows_of_inlet = inlet(q[local][first], h[local][first], inputs.inlet_film)
+        residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = rows_of_inlet
+        return residual, derivatives
+
+    def _beyond_edges(self, derivatives: np.ndarray) -> None:
+        """Add derivatives by the film beyond an edge to those of the film of the last node."""
+        own, has_lower, has_upper = slice(OWN, OWN + 2), *self.has_sides
+        for part, at in (
+            (derivatives[:, -1], 6),
+            (derivatives[0], 8) if has_lower else (derivatives[:0], 8),
+            (derivatives[-1], 10) if has_upper else (derivatives[:0], 10),
+        ):
+            if len(part):
+                part[..., own.start + 1] += part[..., at + 1]
+                part[..., at : at + 2] = 0.0
+
+    def product(self, derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int) -> np.ndarray:
+        """Derivatives of the local rows times a vector of the window, whose local nodes begin at `first`."""
+        out = np.empty(len(derivatives))
+        product(derivatives, v_q, v_h, self.shape[1], first, out)
+        return out

@@ -1,0 +1,93 @@
+"""Nodes of a contact: axes, shape, cells, what the solids look like before they deform, load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Grid:
+    r"""Nodes of a contact, in half-widths a; fields over them are flat, x last and fastest.
+
+    Attributes
+    ----------
+    axes
+        Coordinates of the nodes along each axis, (x,) or (y, x).
+    spacings
+        Of the nodes along each axis [m].
+    half_widths
+        Of the dry smooth contact along each axis in a; infinite along the length of a line contact.
+    curvatures
+        R over the radius of curvature along each axis.
+    load
+        Integral of the pressure over the nodes, in p0 and a.
+    periodic
+        Whether the first axis is periodic.
+    """
+
+    axes: tuple[np.ndarray, ...]
+    spacings: tuple[float, ...]
+    half_widths: tuple[float, ...]
+    curvatures: tuple[float, ...]
+    load: float
+    periodic: bool = False
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Nodes along each axis."""
+        return tuple(map(len, self.axes))
+
+    @property
+    def n(self) -> int:
+        """Number of nodes."""
+        return int(np.prod(self.shape))
+
+    @property
+    def x(self) -> np.ndarray:
+        """Coordinates along the direction of motion, shape (nx,)."""
+        return self.axes[-1]
+
+    @property
+    def dx(self) -> float:
+        """Spacing along the direction of motion in half-widths."""
+        return self.axes[-1][1] - self.axes[-1][0]
+
+    @property
+    def steps(self) -> tuple[float, ...]:
+        """Spacings along each axis in half-widths."""
+        return tuple(axis[1] - axis[0] for axis in self.axes)
+
+    @property
+    def cell(self) -> float:
+        """Size of a cell [m, m^2]: what a node contributes to a sum over the contact."""
+        return float(np.prod(self.spacings))
+
+    @cached_property
+    def coordinates(self) -> tuple[np.ndarray, ...]:
+        """Coordinates of all nodes along each axis, flat."""
+        return tuple(axis.ravel() for axis in np.meshgrid(*self.axes, indexing="ij"))
+
+    @cached_property
+    def undeformed(self) -> np.ndarray:
+        """Gap of the undeformed solids that touch in the middle, in a^2/R, flat."""
+        shapes = [0.5 * x**2 * c for x, c in zip(self.coordinates, self.curvatures, strict=True) if c]
+        return sum(shapes[1:], start=shapes[0])
+
+    @cached_property
+    def distance(self) -> np.ndarray:
+        """Distance of all nodes from the middle over the half-width in their direction, flat."""
+        if len(self.axes) == 1:
+            return np.abs(self.x)
+        squares = [(x / w) ** 2 for x, w in zip(self.coordinates, self.half_widths, strict=True)]
+        return np.sqrt(sum(squares))
+
+    def inside(self, radius: float) -> np.ndarray:
+        """Mask of the nodes within a multiple of the dry smooth contact, flat."""
+        return self.distance <= radius
+
+    def rows(self, values: np.ndarray) -> np.ndarray:
+        """View of a flat field as rows along x, shape (rows, nx)."""
+        return values.reshape(-1, self.shape[-1])
