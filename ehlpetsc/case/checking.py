@@ -165,7 +165,9 @@ def _value(key: Key, value: Any) -> Any:
         value = [value, value]
     if not key.many or key.many == "axes" and not isinstance(value, list | tuple):
         return _item(key, value)
-    shortest, longest = (2, 2) if key.many in ("both", "two", "axes") else (key.min_items, key.max_items or math.inf)
+    shortest, longest = (
+        (2, 2) if key.many in ("both", "two", "axes") else (key.min_items, key.max_items or math.inf)
+    )
     if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
         raise _Wrong
     items = [_item(key, item) for item in value]

@@ -32,6 +32,7 @@ from ehlpetsc.discretisation.curvature_product import Blocks, product
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 HALO = 8  # nodes on either side of a rank's own: the widest stencil of the preconditioner
+MAX_EIGENVALUE = 0.26  # of the deflection over the length of the mesh, for pressures with zero mean
 ASYMPTOTIC_DISTANCE = 40  # nodes: from here on the asymptotic series are exact to 1e-14
 
 
@@ -134,6 +135,11 @@ class Deflection:
         logarithm = self._logarithm()
         end_rows = (self.end_row(end, logarithm)[first:last] for end in (0, n - 1))
         self.load_weights = np.stack([*end_rows, np.full(last - first, dx)])
+
+    @property
+    def largest_eigenvalue(self) -> float:
+        """Bound of the eigenvalues of `integral`, for pressures with zero mean."""
+        return MAX_EIGENVALUE * ((self.n - 1) * self.dx)
 
     @cached_property
     def _blocks(self) -> Blocks:

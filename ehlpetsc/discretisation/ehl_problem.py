@@ -15,15 +15,13 @@ the unknowns of its window, see :mod:`.deflection`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact import contact_model, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
-from ehlpetsc.discretisation.deflection import Deflection, PressureSums
-from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
+from ehlpetsc.discretisation.deflection import PressureSums
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
@@ -65,43 +63,55 @@ class Solution:
     inputs: StepInputs
 
 
+class Share(NamedTuple):
+    """Nodes of a rank.
+
+    `first`, `last`: nodes first .. last-1 of the mesh are its own.
+    `window`: nodes on which its rows depend. `owned`: its own nodes among them.
+    """
+
+    first: int
+    last: int
+    window: slice | np.ndarray
+    owned: slice
+
+    @property
+    def local(self) -> slice:
+        """Own nodes among those of the mesh."""
+        return slice(self.first, self.last)
+
+
 class EHLProblem:
-    """Residual and derivatives of the nodes first .. last-1.
+    """Residual and derivatives of the nodes of a rank.
 
+    `scales`: with the nodes of the mesh.
+    `share`: nodes of this rank; the rank that owns the last node owns the load row.
     `film_scale`: scale of the Reynolds rows, about the expected film, in a^2/R.
-    `first`, `last`: local nodes; the rank that owns the last one owns the load row.
-    `bound_tolerance`: tolerance of the active set in a^2/R: films this close to their bound count as on it.
 
-    `window`, `owned`: nodes on which the local rows depend; indices of the local nodes in the window.
+    `n`, `x`, `dx`: number of nodes; coordinates of all nodes and spacing along x.
     """
 
     def __init__(
         self,
         case: Any,
         scales: Scales,
+        share: Share,
+        model: ContactModel,
+        deflection: Any,
+        reynolds: Any,
         film_scale: float,
-        first: int,
-        last: int,
-        bound_tolerance: float = 0.0,
     ):
-        self.n, self.x, self.scales = scales.grid.n, scales.x, scales
-        self.dx = self.x[1] - self.x[0]
-        self.first, self.last, self.local = first, last, last - first
+        self.scales, self.grid, self.share = scales, scales.grid, share
+        self.n, self.x, self.dx = self.grid.n, self.grid.coordinates[-1], self.grid.dx
+        self.first, self.last, self.local = share.first, share.last, share.last - share.first
+        self.window, self.owned = share.window, share.owned
         self.fluid, self.boundary_friction = case.fluid, case.contact.boundary_friction
-        self.film_scale = film_scale = film_scale_of(case, scales, film_scale)
-        self.model = contact_model(case, scales, film_scale, bound_tolerance)
-        self.deflection = Deflection(self.n, self.dx, first, last)
-        self.window, self.owned = self.deflection.window, self.deflection.owned
-        self._parabola = 0.5 * self.x[self.window] ** 2
+        self.film_scale, self.model = film_scale, model
+        self.deflection, self.reynolds = deflection, reynolds
+        self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = None
-        if self.fluid is None:
-            self.reynolds: NoOil | Reynolds = NoOil(first, last, self.window.start)
-        else:
-            layer = case.contact.asperity_height or 0.0
-            self.reynolds = Reynolds(scales, film_scale, first, last, self.window.start, layer)
-            if self.fluid.inlet_film is not None:
-                self.inlet_film = self.fluid.inlet_film / scales.h
-        self.reynolds_columns = self.reynolds.columns
+        if self.fluid is not None and self.fluid.inlet_film is not None:
+            self.inlet_film = self.fluid.inlet_film / scales.h
 
     @property
     def load_is_local(self) -> bool:
@@ -125,7 +135,7 @@ class EHLProblem:
 
     def film(self, pressure: np.ndarray, h00: float, phi: np.ndarray) -> np.ndarray:
         """Separation by the integral form, in a^2/R."""
-        return h00 + 0.5 * self.x**2 + phi + self.deflection.integral(pressure)
+        return h00 + self.grid.undeformed + phi + self.deflection.integral(pressure)
 
     def mass_per_area(self, q: np.ndarray, w: np.ndarray) -> np.ndarray | None:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
@@ -158,7 +168,7 @@ class EHLProblem:
         residual = np.empty(n_dofs(self.local) + self.load_is_local)
         # the parabola's second difference is dx^2 exactly
         curvature = self.scales.R / inputs.conditions.radius
-        separation = state.separation - curvature * self._parabola - inputs.phi[self.window]
+        separation = state.separation - curvature * self._undeformed - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
         q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
         reynolds, derivatives = self.reynolds.evaluate(
@@ -166,7 +176,7 @@ class EHLProblem:
         )
         w_of(residual, self.local)[:] = reynolds
         if self.load_is_local:
-            residual[-1] = sums.load[2] - 0.5 * np.pi * inputs.load_share * (
+            residual[-1] = sums.load[-1] - self.grid.load * inputs.load_share * (
                 inputs.conditions.load / self.scales.load
             )
         return Evaluation(model, state, residual, derivatives)

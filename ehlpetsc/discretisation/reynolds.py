@@ -26,9 +26,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     HEATED_PROPERTIES,
     LN_ETA_P,
-    OWN,
     PROPERTIES,
-    STENCIL,
     M,
     balance,
     fill_mass,
@@ -51,7 +49,11 @@ class Reynolds:
 
     `columns`: indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown, shape
         (local nodes, 8).
+    `stencil`: number of nodes in a row.
+    `own`: index of q of the row's own node among its coefficients, followed by h.
     """
+
+    stencil, own = 4, 4
 
     def __init__(
         self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0, layer: float = 0.0
@@ -71,7 +73,7 @@ class Reynolds:
         node = rows[:, None] + np.arange(-2, 2)
         columns = dofs_of(node)
         columns[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
-        return columns.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
+        return columns.reshape(len(rows), n_dofs(self.stencil)).astype(np.int32)
 
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
@@ -96,16 +98,12 @@ class Reynolds:
 
     def face_law(self, inputs: StepInputs) -> tuple:
         """Constants of :func:`.finite_volumes.flux_through`."""
-        s, flow, now = self.scales, flow_law(inputs.fluid), inputs.conditions
-        stress = np.inf if flow.kind == NEWTON else flow.stress
-        rise = s.p0 * stress_pressure(inputs.fluid)
-        stresses = stress, stress * rise if rise else 0.0
-        return s.p0 / (s.a * self.dx), s.h, *stresses, abs(now.sliding), now.entrainment / s.u, self.layer
+        s = self.scales
+        return s.p0 / (s.a * self.dx), s.h, *shear_constants(inputs, s), self.layer
 
     def flow_table(self, inputs: StepInputs) -> np.ndarray:
         """Table of the pressure flow, empty where the shear law has a closed form."""
-        kind, _, *constants = flow_law(inputs.fluid)
-        return flow_table(kind, *constants)
+        return flow_table_of(inputs)
 
     def evaluate(
         self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
@@ -124,24 +122,47 @@ class Reynolds:
         if history is not None:
             storage = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
         residual = np.empty(self.local.stop - self.local.start)
-        derivatives = np.zeros((len(residual), n_dofs(STENCIL)))
+        derivatives, own = np.zeros((len(residual), n_dofs(self.stencil))), self.own
         inner = slice(int(self.has_inlet), None)
         balance(at, first, law, self.flow_table(inputs), storage, (residual[inner], derivatives[inner]))
         if self.has_outlet:
-            derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
-            derivatives[-1, OWN + 2 :] = 0.0
+            derivatives[-1, own + 1] += derivatives[-1, own + 3]
+            derivatives[-1, own + 2 :] = 0.0
         residual /= self.film_scale
         derivatives *= 1.0 / self.film_scale
         if self.has_inlet:
-            residual[0], derivatives[0, OWN : OWN + 2] = _inlet(q[0], h[0], inputs.inlet_film)
+            rows = inlet(q[:1], h[:1], inputs.inlet_film)
+            residual[:1], derivatives[:1, own], derivatives[:1, own + 1] = rows
         return residual, derivatives
 
 
-def _inlet(q: float, h: float, oil_film: float) -> tuple:
-    """Row 0: ambient pressure where flooded, the given oil film where starved."""
-    if oil_film is None or oil_film >= h:
-        return q, (1.0, 0.0)
-    return q + 1.0 - oil_film / h, (1.0, oil_film / h**2)
+def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, float, float]:
+    """Constants of :func:`.finite_volumes.flux_through` from its third on: of shear law and speeds."""
+    flow, now = flow_law(inputs.fluid), inputs.conditions
+    stress = np.inf if flow.kind == NEWTON else flow.stress
+    rise = scales.p0 * stress_pressure(inputs.fluid)
+    return stress, stress * rise if rise else 0.0, abs(now.sliding), now.entrainment / scales.u
+
+
+def flow_table_of(inputs: StepInputs) -> np.ndarray:
+    """Table of the pressure flow, empty where the shear law has a closed form."""
+    kind, _, *constants = flow_law(inputs.fluid)
+    return flow_table(kind, *constants)
+
+
+def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndarray, ...]:
+    """Rows of inlet nodes and their derivatives by q and h.
+
+    Ambient pressure where flooded, the given oil film where starved.
+    """
+    if oil_film is None:
+        return q, np.ones_like(q), np.zeros_like(h)
+    starved = oil_film < h
+    return (
+        np.where(starved, q + 1.0 - oil_film / h, q),
+        np.ones_like(q),
+        np.where(starved, oil_film / h**2, 0.0),
+    )
 
 
 @compiled
@@ -174,12 +195,14 @@ class NoOil:
     `start`: first node of the arrays that are passed in.
     """
 
+    stencil, own = Reynolds.stencil, Reynolds.own
+
     def __init__(self, first: int, last: int, start: int = 0):
-        self.owned, local = slice(first - start, last - start), last - first
-        self.columns = np.full((local, n_dofs(STENCIL)), -1, dtype=np.int32)
-        self.columns[:, OWN : OWN + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
-        self._derivatives = np.zeros((local, n_dofs(STENCIL)))
-        self._derivatives[:, OWN] = 1.0
+        self.owned, shape = slice(first - start, last - start), (last - first, n_dofs(self.stencil))
+        self.columns = np.full(shape, -1, dtype=np.int32)
+        self.columns[:, self.own : self.own + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
+        self._derivatives = np.zeros(shape)
+        self._derivatives[:, self.own] = 1.0
 
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
         """Return None: there is no oil."""

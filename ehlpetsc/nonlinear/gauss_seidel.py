@@ -38,7 +38,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.deflection import SymmetricToeplitz
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
@@ -64,7 +64,7 @@ class GaussSeidelSolver:
     """
 
     def __init__(self, case: Any, scales: Scales, film_scale: float, tolerance: float):
-        self.problem = EHLProblem(case, scales, film_scale, 0, scales.grid.n)
+        self.problem = line_problem(case, scales, film_scale, 0, scales.grid.n)
         self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
         self.tolerance = tolerance
         curvature, near = self.deflection.curvature, min(NEAR_FIELD_NODES, scales.grid.n - 1)

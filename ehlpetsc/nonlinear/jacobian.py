@@ -19,7 +19,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE, deflection_rows
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
-from ehlpetsc.discretisation.finite_volumes import STENCIL, reynolds_product
+from ehlpetsc.discretisation.finite_volumes import reynolds_product
 from ehlpetsc.discretisation.unknowns import (
     n_dofs,
     nodes_of_w,
@@ -45,26 +45,31 @@ def pivot_regularisation(*derivatives: np.ndarray) -> np.ndarray:
     return np.where(has_entry, 0.0, PIVOT_REGULARISATION)
 
 
-class JacobianOperator:
-    """Matrix-free Jacobian, context of PETSc's Python matrix.
+class Jacobian:
+    """Matrix-free Jacobian, context of PETSc's Python matrix; kinds of contact differ in the product.
 
-    `factors`: factors of the default preconditioner, kept between solves.
+    `exchange`: of vectors between ranks.
 
     `model`, `state`, `reynolds_derivatives`: point of linearisation, as in `ehl_problem.Evaluation`.
+    `derivatives`: of the nodes, see `contact.node_state.NodeState.derivatives`.
     `size`: local unknowns of the whole system.
     `active`: local indices of the unknowns in the system.
     `inactive_nodes`: local nodes whose second unknown is not in the system.
     """
 
-    def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
-        self.problem, self.halo, self.ranks, self.factors = problem, halo, ranks, factors
+    def __init__(self, problem: EHLProblem, exchange: Any, ranks: MPI.Comm):
+        self.problem, self.exchange, self.ranks = problem, exchange, ranks
         self.active: slice | np.ndarray = slice(None)
         self.inactive_nodes = np.arange(0)
         self.model: Any = None
         self.state: Any = None
+        self.derivatives: np.ndarray = None
         self.reynolds_derivatives: np.ndarray = None
         self.size = n_dofs(problem.local) + problem.load_is_local
-        self._work = np.empty(problem.local), np.empty((3, len(halo.buffers[2])))
+
+    def product(self, v: np.ndarray, out: np.ndarray) -> None:
+        """Fill in the local rows of the product with a local vector, zero in inactive rows; collective."""
+        raise NotImplementedError
 
     def linearise(self, evaluation: Evaluation) -> None:
         """Set the point of linearisation."""
@@ -72,19 +77,14 @@ class JacobianOperator:
         self.state = self.model.linearised(
             evaluation.state, self.problem.owned, partial(global_sum, self.ranks)
         )
-        self._derivatives = self.state.derivatives(), self.reynolds_derivatives
-
-    @property
-    def linearisation(self) -> tuple[tuple, tuple]:
-        """State and work arrays of :func:`jacobian_product`."""
-        return (*self._derivatives, self.inactive_nodes, self.problem.deflection.form), self._work
+        self.derivatives = self.state.derivatives()
 
     def mult(self, mat: PETSc.Mat, v: PETSc.Vec, out: PETSc.Vec) -> None:
         """PETSc's product."""
         full, rows = np.zeros(self.size), np.empty(self.size)
         full[self.active] = v.array_r
         with events.PRODUCT:
-            jacobian_product(*self.linearisation, tuple(self.halo), full, rows)
+            self.product(full, rows)
         out.array[:] = rows[self.active]
 
     def createSubMatrix(
@@ -101,6 +101,28 @@ class JacobianOperator:
             is_inactive = np.ones(self.size, dtype=bool)
             is_inactive[active] = False
             self.active, self.inactive_nodes = active, nodes_of_w(np.flatnonzero(is_inactive))
+
+
+class JacobianOperator(Jacobian):
+    """Jacobian of a line contact.
+
+    `exchange`: halo.
+    `factors`: factors of the default preconditioner, kept between solves.
+    """
+
+    def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
+        super().__init__(problem, halo, ranks)
+        self.halo, self.factors = halo, factors
+        self._work = np.empty(problem.local), np.empty((3, len(halo.buffers[2])))
+
+    @property
+    def linearisation(self) -> tuple[tuple, tuple]:
+        """State and work arrays of :func:`jacobian_product`."""
+        point = self.derivatives, self.reynolds_derivatives
+        return (*point, self.inactive_nodes, self.problem.deflection.form), self._work
+
+    def product(self, v: np.ndarray, out: np.ndarray) -> None:
+        jacobian_product(*self.linearisation, tuple(self.halo), v, out)
 
 
 class NearFieldMatrix:
@@ -147,7 +169,7 @@ class NearFieldMatrix:
         approach = np.full((p.local, 1), -d.end_row_coefficient)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
-        set_rows(self.matrix, w_index(nodes), p.reynolds_columns, self._by_unknowns(state, derivatives))
+        set_rows(self.matrix, w_index(nodes), p.reynolds.columns, self._by_unknowns(state, derivatives))
         if p.load_is_local:
             load = np.zeros(n_dofs(p.n) + 1)  # with the zero on the diagonal, which LU needs
             q_of(load, p.n)[:], w_of(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
@@ -157,7 +179,7 @@ class NearFieldMatrix:
     def _by_unknowns(self, state: NodeState, derivatives: np.ndarray) -> np.ndarray:
         """Derivatives of the Reynolds rows with respect to q and w."""
         p, values = self.problem, derivatives.copy()
-        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
+        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, p.reynolds.stencil - 2)
         nodes = np.clip(nodes, 0, p.n - 1)
         by_unknown, by_film = q_columns(derivatives), w_columns(derivatives)
         w_columns(values)[:] = by_film * state.h_w[nodes]

@@ -20,7 +20,6 @@ from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 from ehlpetsc.nonlinear.options import RunOptions, raise_refusal
-from ehlpetsc.nonlinear.preconditioner import FarFieldBand
 from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 
 LINEAR_ATOL = 1e-2  # absolute tolerance of the linear residual over that of Newton's method
@@ -75,7 +74,7 @@ class NewtonSolver:
         system, model = self.system, self.system.model
         self.snes = self._snes_of_type("newtonls" if model.lower_bound is None else "vinewtonrsls")
         if system.operator is None:
-            system.create_matrices(with_band=is_ours(self.snes.ksp.pc))
+            system.create_matrices(self.snes.ksp)
         self._set_jacobian(self.snes)
         if self.snes.getType() == "vinewtonrsls":
             self.snes.setVariableBounds(system.lower, system.upper)
@@ -103,6 +102,7 @@ class NewtonSolver:
 
     def _set_jacobian(self, snes: PETSc.SNES) -> None:
         snes.setJacobian(weakly(self._jacobian), self.system.operator, self.system.preconditioned)
+        self.system.matrices.attach(snes.ksp)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         # the first residual is that of the guess, already evaluated unless SNESVI projects it onto the bounds
@@ -204,8 +204,7 @@ class NewtonSolver:
         system = self.system
         if "ksp_atol" not in self._options.given:
             snes.ksp.setTolerances(atol=LINEAR_ATOL * self._atol)
-        if system.factors:
-            system.factors.invalidate()
+        system.matrices.begin_solve()
         self.tolerance = min(max(self._atol, system.rounding()), MAX_ROUNDING_FACTOR * self._atol)
         snes.setTolerances(max_it=max_it, atol=self.tolerance)
         if snes.rtol > 0.0 or snes.stol > 0.0:  # set by the user; stol accepts the residual of the guess
@@ -235,11 +234,6 @@ class NewtonSolver:
             self._petsc_objects.pop().destroy()
         self._create()
         return self._unconstrained_snes if unconstrained else self.snes
-
-
-def is_ours(pc: PETSc.PC) -> bool:
-    """Whether a preconditioner is a :class:`.preconditioner.FarFieldBand`."""
-    return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
 
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}

@@ -30,6 +30,14 @@ DEFAULTS = {
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
+# of a contact in the plane; on several ranks slabs of rows with a few of their neighbours'
+PLANE = {
+    "ksp_rtol": "1e-3",
+    "pc_type": "asm",
+    "pc_asm_overlap": "4",
+    "sub_pc_type": "ilu",
+    "sub_pc_factor_levels": "1",
+}
 # options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
 GMRES_OPTIONS = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
 # PETSc's LU and ILU do not pivot, and pivots of the deflection rows may be zero by chance
@@ -55,8 +63,15 @@ class RunOptions:
     `unused`: names in `of_case` and `given` that have not been read.
     """
 
-    def __init__(self, law: str = "direct", of_case: dict | None = None, given: dict | None = None) -> None:
+    def __init__(
+        self,
+        law: str = "direct",
+        of_case: dict | None = None,
+        given: dict | None = None,
+        kind: str = "line",
+    ) -> None:
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
+        self._linear_solver = LINEAR_SOLVERS[kind]
         self._of_case, self._of_call, self._depth = dict(of_case or {}), dict(given or {}), 0
         self._entered: list = []
         self._saved: dict = {}
@@ -111,7 +126,7 @@ class RunOptions:
 
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
-        defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PETSC_FACTORISATION, "snes_atol"}
+        defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PLANE, *PETSC_FACTORISATION, "snes_atol"}
         of_run = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
@@ -119,7 +134,7 @@ class RunOptions:
         in_table = table.getAll()
         self.given = wanted = self._of_case | in_table | self._of_call
         check_options(wanted)
-        wanted = self._defaults | _linear_solver(wanted) | wanted
+        wanted = self._defaults | self._linear_solver(wanted) | wanted
         self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [
             name for name, value in wanted.items() if name not in in_table or in_table[name] != value
@@ -147,6 +162,14 @@ def _linear_solver(wanted: dict) -> dict:
     if any(name.startswith("ksp_") and name not in GMRES_OPTIONS for name in wanted):
         return PRECONDITIONER
     return PRECONDITIONER | KRYLOV
+
+
+def _plane_solver(wanted: dict) -> dict:
+    """Defaults in the plane: PETSc's preconditioner for the pressures, exact rows of the deflection around it."""
+    return PLANE | PETSC_FACTORISATION
+
+
+LINEAR_SOLVERS = {"line": _linear_solver, "strip": _plane_solver, "point": _plane_solver}
 
 
 def unused() -> list[str]:

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.base.compiled import call_allgather, compiled
-from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, pack, unpack
-from ehlpetsc.discretisation.deflection import HALO
+from ehlpetsc.base.errors import UsageError
+from ehlpetsc.discretisation.curvature_product import BLOCK, TOLERANCE, Blocks, pack, unpack
+from ehlpetsc.discretisation.deflection import HALO, PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
 EDGE = n_dofs(HALO)
@@ -56,6 +57,40 @@ class Halo(NamedTuple):
         return cls(
             (collective(ranks), ranks.rank), (problem.deflection.load_weights, messages, window), *blocks[1:]
         )
+
+
+class Exchange(Protocol):
+    """Exchange of unknowns and pressures of a kind of contact between ranks."""
+
+    def unknowns(self, vector: np.ndarray, pressure: np.ndarray, flag: bool) -> tuple[Unknowns, tuple, bool]:
+        """Unknowns at the nodes of the window, sums over all pressures, whether a flag is set on any rank.
+
+        `vector`, `pressure`: local unknowns, interleaved, and pressures.
+        """
+
+
+class LineExchange:
+    """Exchange of a line contact; `linear` is the halo of products with the Jacobian."""
+
+    def __init__(self, problem: EHLProblem, cuts: Sequence[int], ranks: MPI.Comm):
+        self.halo = Halo.of(problem, cuts, ranks)
+        self.linear = Halo.of(problem, cuts, ranks, LINEAR_TOLERANCE)
+
+    def unknowns(
+        self, vector: np.ndarray, pressure: np.ndarray, flag: bool
+    ) -> tuple[Unknowns, PressureSums, bool]:
+        """See :class:`Exchange`."""
+        nodes, h00, curvature, load = exchange_unknowns(*self.halo, (vector, pressure, flag))
+        q, w = np.ascontiguousarray(nodes.T)
+        return Unknowns(q, w, h00), PressureSums(curvature, load[:3]), load[3] > 0.0
+
+
+def first_nodes(n: int, ranks: int) -> list[int]:
+    """First nodes of all ranks, multiples of `BLOCK`, and n."""
+    max_ranks = max(n // BLOCK, 1)
+    if ranks > max_ranks:
+        raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {max_ranks}")
+    return [n * k // ranks // BLOCK * BLOCK for k in range(ranks)] + [n]
 
 
 @compiled

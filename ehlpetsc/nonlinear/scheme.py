@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Any
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import UsageError
+from ehlpetsc.nonlinear.line_matrices import line_system
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
-from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.nonlinear.plane.system import plane_system
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 
+SYSTEMS = {"line": line_system, "strip": plane_system, "point": plane_system}
 ALLOWED = ("newton", "sweep")
 
 
@@ -36,7 +39,7 @@ def solver_of(
     if name != "sweep":
         bounded = options.value("snes_type", "vinewtonrsls") == "vinewtonrsls"
         tolerance = options.real("snes_vi_zero_tolerance", ZERO_TOLERANCE) if bounded else 0.0
-        return NewtonSolver(TwoFields(case, scales, film_scale, comm, tolerance), options)
+        return NewtonSolver(SYSTEMS[case.kind](case, scales, film_scale, comm, tolerance), options)
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:

@@ -10,32 +10,19 @@ it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of 
 from __future__ import annotations
 
 import weakref
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.base.errors import UsageError
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.curvature_product import BLOCK
-from ehlpetsc.discretisation.deflection import PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of, w_of
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.jacobian import JacobianOperator, NearFieldMatrix, python_matrix
-from ehlpetsc.nonlinear.preconditioner import Factors
-from ehlpetsc.nonlinear.ranks import (
-    LINEAR_TOLERANCE,
-    Halo,
-    all_ranks,
-    exchange_unknowns,
-    gathered,
-    global_max,
-    global_sum,
-)
-from ehlpetsc.physics.scales import Scales
+from ehlpetsc.nonlinear.jacobian import python_matrix
+from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_max, global_sum
 
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
@@ -43,12 +30,28 @@ STEP_LIMIT = 0.3  # p0: largest change of pressure in one Newton step
 FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the expected film
 
 
+class Matrices(Protocol):
+    """Jacobian and preconditioner of a kind of contact."""
+
+    def jacobian(self, ksp: PETSc.KSP) -> Any:
+        """Matrix-free Jacobian, context of a Python matrix, for a Krylov solver with its options."""
+
+    def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> Any:
+        """Matrix for preconditioners in place of the Jacobian itself; None: none."""
+
+    def attach(self, ksp: PETSc.KSP) -> None:
+        """Set up the preconditioner of a Krylov solver."""
+
+    def begin_solve(self) -> None:
+        """Called at the start of each nonlinear solve."""
+
+
 class TwoFields:
     """System of the pairs (q, w) at every node, w bounded below in direct contact.
 
-    `case`, `scales`, `film_scale`: as in :class:`ehlpetsc.discretisation.ehl_problem.EHLProblem`.
-    `bound_tolerance`: tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this
-        close to their bound count as on it.
+    `problem`: of the nodes of this rank.
+    `exchange`: of unknowns and pressures between ranks.
+    `matrices`: Jacobian and preconditioner of the kind of contact.
 
     `x`, `f`: unknowns and residual.
     `lower`, `upper`: bounds of the unknowns.
@@ -59,22 +62,14 @@ class TwoFields:
 
     def __init__(
         self,
-        case: Any,
-        scales: Scales,
-        film_scale: float,
+        problem: EHLProblem,
+        exchange: Exchange,
+        matrices: Matrices,
         comm: PETSc.Comm = PETSc.COMM_WORLD,
-        bound_tolerance: float = ZERO_TOLERANCE,
     ):
-        n, rank = scales.grid.n, comm.rank
-        cuts = first_nodes(n, comm.size)
-        first, last = cuts[rank], cuts[rank + 1]
-        self.n, self.local, self.comm = n, last - first, comm
-        self.near_field = case.mesh.near_field
-        self.problem = EHLProblem(case, scales, film_scale, first, last, bound_tolerance)
-        self.model = self.problem.model
+        self.problem, self.exchange, self.matrices, self.comm = problem, exchange, matrices, comm
+        self.n, self.local, self.model = problem.n, problem.local, problem.model
         self.ranks = comm.tompi4py()
-        self.halo = Halo.of(self.problem, cuts, self.ranks)
-        self.linear_halo = Halo.of(self.problem, cuts, self.ranks, LINEAR_TOLERANCE)
         self._create_vectors()
         self.inputs: StepInputs = None
         self.rows: Rows = None
@@ -92,22 +87,15 @@ class TwoFields:
         self.to_all, self.all = PETSc.Scatter.toAll(self.x)
         self._petsc_objects = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
 
-    def create_matrices(self, with_band: bool) -> None:
-        """Create the Jacobian and the matrix for preconditioners.
-
-        `with_band`: whether preconditioners get the Jacobian itself, as
-            :mod:`ehlpetsc.nonlinear.preconditioner` needs it; otherwise an assembled matrix with the
-            deflection of the near field.
-        """
+    def create_matrices(self, ksp: PETSc.KSP) -> None:
+        """Create the Jacobian, and the matrix for the preconditioner of a Krylov solver."""
         sizes = self.x.getSizes()
-        self.factors = Factors(self.problem, self.ranks) if with_band else None
-        self.jacobian = JacobianOperator(self.problem, self.linear_halo, self.ranks, self.factors)
+        self.jacobian = self.matrices.jacobian(ksp)
         self.operator = python_matrix(self.jacobian, sizes, self.comm)
-        self.assembled, self.preconditioned = None, self.operator
         self._petsc_objects.append(self.operator)
-        if not with_band:
-            self.preconditioned = PETSc.Mat().createAIJ((sizes, sizes), comm=self.comm)
-            self.assembled = NearFieldMatrix(self.problem, self.near_field, self.preconditioned)
+        self.assembled, self.preconditioned = self.matrices.assembled(ksp, sizes), self.operator
+        if self.assembled:
+            self.preconditioned = self.assembled.matrix
             self._petsc_objects.append(self.preconditioned)
 
     def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
@@ -150,12 +138,8 @@ class TwoFields:
         with events.RESIDUAL:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
-            nodes, h00, curvature, load = exchange_unknowns(*self.halo, local_data)
-            (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
-            self._evaluation = self.problem.evaluate(
-                Unknowns(q, w, h00), self.inputs, sums, self.temperatures
-            )
-            self.bound_reached = load[3] > 0.0
+            unknowns, sums, self.bound_reached = self.exchange.unknowns(*local_data)
+            self._evaluation = self.problem.evaluate(unknowns, self.inputs, sums, self.temperatures)
         return self._evaluation
 
     def linearise(self, x: PETSc.Vec, is_evaluated: bool = False) -> None:
@@ -198,14 +182,6 @@ class TwoFields:
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
         local = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
         return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, local)))
-
-
-def first_nodes(n: int, ranks: int) -> list[int]:
-    """First nodes of all ranks, multiples of `BLOCK`, and n."""
-    max_ranks = max(n // BLOCK, 1)
-    if ranks > max_ranks:
-        raise UsageError(f"{ranks} ranks for {n} nodes; allowed: at most {max_ranks}")
-    return [n * k // ranks // BLOCK * BLOCK for k in range(ranks)] + [n]
 
 
 def owned(owner: object, *objects: object) -> list:

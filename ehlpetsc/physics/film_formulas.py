@@ -1,4 +1,4 @@
-r"""Film thickness formulas of smooth line contacts.
+r"""Film thickness formulas of smooth line and point contacts.
 
 Dimensionless groups of a line contact: :math:`U=\eta_0u/(E'R)`, :math:`G=\alpha E'`, :math:`W=w'/(E'R)`,
 u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=(h/R)(2U)^{-1/2}`.
@@ -61,7 +61,21 @@ def nijenbanning_central_film(M: float, L: float, ratio: float) -> float:
     return (isoviscous + (rigid_piezo**-8 + elastic_piezo**-8) ** (-s / 8.0)) ** (1.0 / s)
 
 
-def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[float, float]:
+def hamrock_dowson_ratio(U: float, G: float, W: float, ratio: float) -> float:
+    r"""Minimum over central film of an elliptic contact (Hamrock and Dowson 1977).
+
+    :math:`H_{min}=3.63U^{0.68}G^{0.49}W^{-0.073}(1-e^{-0.68k})`,
+    :math:`H_c=2.69U^{0.67}G^{0.53}W^{-0.067}(1-0.61e^{-0.73k})`, :math:`k=1.03(R_y/R_x)^{0.64}`,
+    :math:`W=F/(E'R_x^2)`.
+
+    `ratio`: :math:`R_y/R_x`.
+    """
+    k = 1.03 * ratio**0.64
+    minimum = 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1.0 - math.exp(-0.68 * k))
+    return minimum / (2.69 * U**0.67 * G**0.53 * W**-0.067 * (1.0 - 0.61 * math.exp(-0.73 * k)))
+
+
+def smooth_films(scales: Scales, fluid: Any, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
     .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
@@ -72,24 +86,17 @@ def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[fl
     and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_exact_solutions.py`), where
     :math:`h_{Moes}` alone exceeds the central film by 22 to 27 %.
 
-    Parameters
-    ----------
-    modulus
-        E' [Pa].
+    In a point contact the minimum over the central film is that of Hamrock and Dowson (1977).
     """
     from ehlpetsc.physics.laws import density
-    from ehlpetsc.physics.hertz import hertz_line
 
     load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)
     if speed == 0.0:
         return 0.0, 0.0
-    alpha = fluid.pressure_viscosity
-    two_u = 2.0 * fluid.viscosity * speed / (modulus * radius)
-    M, L = load / (modulus * radius * math.sqrt(two_u)), alpha * modulus * two_u**0.25
-    unit = radius * math.sqrt(two_u)
-    incompressible = unit * moes_central_film(M, L)
-    ratio = 1.0 / float(density(np.array([hertz_line(load, radius, modulus)[1]]), fluid)[0][0])
-    return incompressible * ratio, MIN_OVER_CENTRAL_FILM * incompressible * ratio**0.25
+    groups = fluid.viscosity, speed, fluid.pressure_viscosity, load, radius, scales.E
+    incompressible, lowest, p0 = scales.geometry.smooth_films(*groups, scales.radius_ratio)
+    ratio = 1.0 / float(density(np.array([p0]), fluid)[0][0])
+    return incompressible * ratio, lowest * incompressible * ratio**0.25
 
 
 def inlet_opening(film: float, points: float) -> float:

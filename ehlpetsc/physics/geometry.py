@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.film_formulas import moes_central_film, nijenbanning_central_film
+from ehlpetsc.physics.film_formulas import (
+    MIN_OVER_CENTRAL_FILM,
+    hamrock_dowson_ratio,
+    moes_central_film,
+    nijenbanning_central_film,
+)
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.hertz import hertz_ellipse, hertz_line
 
@@ -37,12 +42,15 @@ class Geometry(NamedTuple):
     `dry`: of [contact] and E' [Pa].
     `grid`: of [contact], [mesh] and the dry contact.
     `moes`: Moes' M and L of viscosity, mean speed, alpha, load, radius along x and E'.
+    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and the ratio of the radii: central film
+        of an incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
     `expected_film`: central film of the smooth flooded contact in a^2/R.
     """
 
     dry: Callable[[Values, float], Dry]
     grid: Callable[[Values, Values, Dry], Grid]
     moes: Callable[..., tuple[float, float]]
+    smooth_films: Callable[..., tuple[float, float, float]]
     expected_film: Callable[[Scales], float]
 
 
@@ -74,7 +82,9 @@ def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     y = (np.arange(n_y) - 0.5 * (n_y - 1)) * step
     spacings = step * dry.a, dry.a / mesh.points_per_half_width
     load = 0.5 * np.pi * mesh.width
-    return Grid((y, along(mesh)), spacings, (math.inf, 1.0), (0.0, 1.0), load, periodic=True)
+    return Grid(
+        (y, along(mesh)), spacings, (math.inf, 1.0), (0.0, 1.0), load, breadth=mesh.width, periodic=True
+    )
 
 
 def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
@@ -85,7 +95,15 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     y = np.arange(-half, half + 1) / points
     spacings = dry.a / points, dry.a / mesh.points_per_half_width
     curvature = contact.radius / contact.radius_across
-    return Grid((y, along(mesh)), spacings, (ratio, 1.0), (curvature, 1.0), 2.0 * np.pi / 3.0 * ratio)
+    return Grid(
+        (y, along(mesh)),
+        spacings,
+        (ratio, 1.0),
+        (curvature, 1.0),
+        2.0 * np.pi / 3.0 * ratio,
+        growth=2.0 / 3.0,
+        breadth=2.0 * ratio,
+    )
 
 
 def line_groups(
@@ -107,6 +125,26 @@ def point_groups(
     return load / (modulus * radius**2 * two_u**0.75), alpha * modulus * two_u**0.25
 
 
+def line_films(
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, ratio: float
+) -> tuple[float, float, float]:
+    """Films by Moes' fit, see :class:`Geometry`."""
+    M, L = line_groups(viscosity, speed, alpha, load, radius, modulus)
+    unit = radius * math.sqrt(2.0 * viscosity * speed / (modulus * radius))
+    return unit * moes_central_film(M, L), MIN_OVER_CENTRAL_FILM, hertz_line(load, radius, modulus)[1]
+
+
+def point_films(
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, ratio: float
+) -> tuple[float, float, float]:
+    """Films by the fit of Nijenbanning, Venner and Moes, see :class:`Geometry`."""
+    M, L = point_groups(viscosity, speed, alpha, load, radius, modulus)
+    two_u = 2.0 * viscosity * speed / (modulus * radius)
+    central = radius * math.sqrt(two_u) * nijenbanning_central_film(M, L, ratio)
+    lowest = hamrock_dowson_ratio(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
+    return central, lowest, hertz_ellipse(load, radius, radius * ratio, modulus).p0
+
+
 def line_film(scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R."""
     return moes_central_film(scales.moes_m, scales.moes_l) * np.pi / (8.0 * scales.moes_m)
@@ -120,8 +158,8 @@ def point_film(scales: Scales) -> float:
 
 
 GEOMETRIES = {
-    "line": Geometry(line, line_grid, line_groups, line_film),
-    "strip": Geometry(line, strip_grid, line_groups, line_film),
-    "point": Geometry(ellipse, point_grid, point_groups, point_film),
+    "line": Geometry(line, line_grid, line_groups, line_films, line_film),
+    "strip": Geometry(line, strip_grid, line_groups, line_films, line_film),
+    "point": Geometry(ellipse, point_grid, point_groups, point_films, point_film),
 }
 """Kinds of contact by name, :attr:`ehlpetsc.case.tables.Case.kind`."""

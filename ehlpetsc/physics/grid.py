@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -24,6 +25,10 @@ class Grid:
         R over the radius of curvature along each axis.
     load
         Integral of the pressure over the nodes, in p0 and a.
+    growth
+        Exponent of load times radius in the square of the size of the dry contact.
+    breadth
+        Of the contact across the direction of motion in half-widths; of a line contact 1, of unit length.
     periodic
         Whether the first axis is periodic.
     """
@@ -33,6 +38,8 @@ class Grid:
     half_widths: tuple[float, ...]
     curvatures: tuple[float, ...]
     load: float
+    growth: float = 1.0
+    breadth: float = 1.0
     periodic: bool = False
 
     @property
@@ -62,8 +69,13 @@ class Grid:
 
     @property
     def cell(self) -> float:
-        """Size of a cell [m, m^2]: what a node contributes to a sum over the contact."""
-        return float(np.prod(self.spacings))
+        """Size of a cell in half-widths: weight of a node in a sum over the contact."""
+        return math.prod(self.steps)
+
+    @property
+    def cell_size(self) -> float:
+        """Size of a cell [m, m^2]."""
+        return math.prod(self.spacings)
 
     @cached_property
     def coordinates(self) -> tuple[np.ndarray, ...]:
@@ -87,6 +99,14 @@ class Grid:
     def inside(self, radius: float) -> np.ndarray:
         """Mask of the nodes within a multiple of the dry smooth contact, flat."""
         return self.distance <= radius
+
+    def edges(self) -> dict[str, np.ndarray]:
+        """Nodes at each end of the domain, flat indices by the key that moves it."""
+        nodes = self.rows(np.arange(self.n))
+        ends = {"inlet": nodes[:, 0], "outlet": nodes[:, -1]}
+        if len(self.axes) > 1 and not self.periodic:
+            ends["width"] = np.concatenate([nodes[0], nodes[-1]])
+        return ends
 
     def rows(self, values: np.ndarray) -> np.ndarray:
         """View of a flat field as rows along x, shape (rows, nx)."""

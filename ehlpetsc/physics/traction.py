@@ -13,7 +13,7 @@ from ehlpetsc.physics.tabulated_flow import flow_table, stress_spread
 def shear_stresses(
     fluid: Any,
     solids: np.ndarray,
-    dx: float,
+    gradient: np.ndarray,
     sliding: float,
     oil: np.ndarray,
     h: np.ndarray,
@@ -33,8 +33,8 @@ def shear_stresses(
         None: dry.
     solids
         Friction between the solids [Pa], 0 out of contact.
-    dx
-        Spacing of the nodes [m].
+    gradient
+        Of the oil's pressure along x [Pa/m].
     sliding
         u1 - u2 [m/s].
     oil
@@ -50,7 +50,7 @@ def shear_stresses(
     shear_1 = -shear_2
     if fluid is None:
         return shear_1, shear_2
-    film, gradient = np.where(sheared > 0.0, h, 1.0), np.gradient(oil, dx)
+    film = np.where(sheared > 0.0, h, 1.0)
     if mean is None:
         lower, upper = wall_shear(film, gradient, viscosity(oil, fluid)[0], fluid, sliding, oil)
     else:

@@ -72,7 +72,7 @@ def _layer(contact: Any, s: Scales) -> list[str]:
 def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
-    central, minimum = smooth_films(case.fluid, s.E, s.conditions)
+    central, minimum = smooth_films(s, case.fluid, s.conditions)
     return [
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",

@@ -27,7 +27,7 @@ STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 
 def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected smooth minimum film over the combined root mean square height."""
-    film, rq = film_formulas.smooth_films(case.fluid, s.E, s.conditions)[1], combined_rq(case, rough)
+    film, rq = film_formulas.smooth_films(s, case.fluid, s.conditions)[1], combined_rq(case, rough)
     return film / rq if rq > 0 else math.inf
 
 

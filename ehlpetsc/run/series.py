@@ -112,7 +112,7 @@ class Member:
     def weight(self) -> tuple[int, float]:
         """Sort key that puts the longest members first: nodes times steps, then the thinner film."""
         scales = Scales.of(self.case)
-        film = smooth_films(self.case.fluid, scales.E, scales.conditions)[1] if self.case.fluid else 0.0
+        film = smooth_films(scales, self.case.fluid, scales.conditions)[1] if self.case.fluid else 0.0
         return scales.grid.n * (steps(scales) if self.case.time else 1), -film
 
     def totals(self) -> Totals:

@@ -134,7 +134,7 @@ class Simulation:
             one_by_one = "solve its members one by one, ehlpetsc.members(case)"
             raise CaseError([f"{case.path}: a [series]: {one_by_one}"])
         self.comm = comm or MPI.COMM_SELF
-        self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}))
+        self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}), case.kind)
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number: int = pass_number or (after.pass_number + 1 if after else 1)
@@ -217,7 +217,7 @@ class Simulation:
         with self.options:
             try:
                 solution = self._start(watch) if self.solution is None else self._step(dt, watch)
-                check_ends(self.scales.x, solution.p, solution.solution.loads.contact_mask)
+                check_ends(self.scales.grid, solution.p, solution.solution.loads.contact_mask)
                 self.solution = solution
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error

@@ -23,10 +23,12 @@ from ehlpetsc.base.errors import NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
+from ehlpetsc.physics.grid import Grid
 
 SUM_ROUNDING = 1.0 + 1e-6  # factor on tolerances: sums in another order differ by rounding
 VOID_TOLERANCE = 1e-9  # excess of a void fraction over 1 that is rounding
 MAX_END_PRESSURE = 0.01  # p0
+END_NAMES = {"inlet": "inlet, x", "outlet": "outlet, x", "width": "side, y"}
 
 
 class Solver(Protocol):
@@ -97,12 +99,14 @@ def find_fault(problem: EHLProblem, unknowns: Unknowns, rows: Rows, tolerance: f
     return None
 
 
-def check_ends(x: np.ndarray, pressure: np.ndarray, touching: np.ndarray) -> None:
+def check_ends(grid: Grid, pressure: np.ndarray, touching: np.ndarray) -> None:
     """Raise `NotConverged` where a pressure in p0, or contact, reaches an end of the domain."""
-    for end, key in ((0, "inlet"), (-1, "outlet")):
-        at = f"at the {key}, x = {x[end]:g} a"
-        cure = f"put mesh.{key} further out"
-        if touching[end]:
+    for key, nodes in grid.edges().items():
+        place, cure = END_NAMES[key], f"put mesh.{key} further out"
+        axis = grid.coordinates[0 if key == "width" else -1]
+        worst = nodes[np.argmax(pressure[nodes])]
+        at = f"at the {place} = {axis[worst]:g} a"
+        if touching[nodes].any():
             raise NotConverged(f"solids touch {at}: the contact is wider than the domain; {cure}")
-        if pressure[end] > MAX_END_PRESSURE:
-            raise NotConverged(f"{pressure[end]:.2g} p0 {at}: the domain cuts the pressure off; {cure}")
+        if pressure[worst] > MAX_END_PRESSURE:
+            raise NotConverged(f"{pressure[worst]:.2g} p0 {at}: the domain cuts the pressure off; {cure}")

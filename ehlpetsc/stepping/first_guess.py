@@ -15,11 +15,11 @@ from ehlpetsc.discretisation.deflection import fast_length
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
+from ehlpetsc.physics.grid import Grid
 
 SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep
 MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum
 AMBIENT = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
-MAX_EIGENVALUE = 0.26  # of A over the length of the mesh, for pressures with zero mean
 MAX_ITERATIONS = 1000  # of the projected gradient method
 STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
 BISECTIONS = 60  # of an interval, down to rounding
@@ -28,7 +28,7 @@ BISECTIONS = 60  # of an interval, down to rounding
 def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
     """Undeformed gap of a step without the parabola of the reference radius, in a^2/R."""
     change = problem.scales.R / inputs.conditions.radius - 1.0
-    return inputs.phi + 0.5 * change * problem.x**2
+    return inputs.phi + change * problem.grid.undeformed
 
 
 def load_of(problem: EHLProblem, inputs: StepInputs) -> float:
@@ -43,12 +43,12 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
     slope at the edge of the Hertz pressure would dominate the flow through a thick film. `film` is the
     expected one in a^2/R, `thick` the factor on it.
     """
-    x, load = problem.x, load_of(problem, inputs)
-    width_2 = load * (inputs.conditions.radius / problem.scales.R)
-    p = np.sqrt(np.maximum(width_2 - x**2, 0.0))
+    grid, load = problem.grid, load_of(problem, inputs)
+    width_2 = (load * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
+    p = np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0))
     if problem.fluid is not None:
-        p = smoothed(p, SMOOTHING * film ** (2.0 / 3.0) / problem.dx)
-    p *= 0.5 * np.pi * load / (problem.dx * p.sum())
+        p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
+    p *= grid.load * load / (grid.cell * p.sum())
     h = problem.film(p, 0.0, undeformed_gap(problem, inputs))
     if problem.fluid is None:
         gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
@@ -56,9 +56,18 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
     h00 = problem.model.start_film(thick * film) - h.min()
     h += h00
     oil, w = problem.model.oil_start(p, h)
-    behind = (x > np.sqrt(width_2)) & (p < AMBIENT)
-    q = np.where(behind, np.minimum(film / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
+    behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT)
+    entrained = film + np.repeat(grid.rows(h).min(axis=1) - h.min(), len(grid.x))  # beside the contact more
+    q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
     return Unknowns(q, w, h00)
+
+
+def smoothed_over(grid: Grid, p: np.ndarray, width: float) -> np.ndarray:
+    """Flat field p smoothed along each axis by a Gaussian of a width in half-widths."""
+    values = p.reshape(grid.shape)
+    for axis, step in enumerate(grid.steps):
+        values = np.apply_along_axis(smoothed, axis, values, width / step)
+    return values.ravel()
 
 
 def smoothed(p: np.ndarray, width: float) -> np.ndarray:
@@ -81,16 +90,16 @@ def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unkno
     oil = inputs.inlet_film
     q, w, h00 = hertz_start(problem, min(film, oil), inputs)
     h = problem.model.state(q, w).film
-    void = (problem.x < -1.0) & (h > oil)
+    void = (problem.x < 0.0) & (problem.grid.distance > 1.0) & (h > oil)
     return Unknowns(np.where(void, oil / h - 1.0, q), w, h00)
 
 
 def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
     """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
-    limit, load = problem.model.yield_pressure, load_of(problem, inputs)
-    total, phi = 0.5 * np.pi * load / problem.dx, undeformed_gap(problem, inputs)
-    rate = 1.0 / (MAX_EIGENVALUE * (problem.x[-1] - problem.x[0]))
-    p = ahead = project(np.sqrt(np.maximum(load - problem.x**2, 0.0)), limit, total)
+    limit, load, grid = problem.model.yield_pressure, load_of(problem, inputs), problem.grid
+    total, phi = grid.load * load / grid.cell, undeformed_gap(problem, inputs)
+    rate = 1.0 / problem.deflection.largest_eigenvalue
+    p = ahead = project(np.sqrt(np.maximum(load**grid.growth - grid.distance**2, 0.0)), limit, total)
     momentum = 1.0
     for _ in range(MAX_ITERATIONS):
         new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
@@ -126,12 +135,13 @@ def bounded_start(problem: EHLProblem, film: float, inputs: StepInputs, smoothin
     if problem.fluid is None:
         carried = p + depth / model.compliance
         return Unknowns(*model.dry_start(carried, gap + h00 + depth), h00)
-    edge = problem.x[p > 0.0].max()
+    rows = problem.grid.rows
+    edge = np.where(rows(p) > 0.0, rows(problem.x), 0.0).max(axis=1)
     if smoothing:
-        p = smoothed(p, smoothing * film ** (2.0 / 3.0) / problem.dx)
+        p = smoothed_over(problem.grid, p, smoothing * film ** (2.0 / 3.0))
     depth[p < limit * (1.0 - 1e-9)] = 0.0
     h = np.maximum(problem.film(p, h00, undeformed_gap(problem, inputs)) + depth, lowest)
-    behind = (problem.x > edge) & (p < AMBIENT)
+    behind = (rows(problem.x) > edge[:, None]).ravel() & (p < AMBIENT)
     oil, w = model.oil_start(p + depth / model.compliance, h)
     q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
     return Unknowns(q, w, h00)

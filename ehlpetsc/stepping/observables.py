@@ -32,9 +32,9 @@ def diagnostics(
             shear = effect.film_shear(state.records[effect.name], solution, shear)
     fields, contact_mask = _fields(scene, conditions, solution, shear), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
-    load, film = s.dx * pressure.sum(), mean_film(s, solution.nodes.film)
-    friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
-    smooth_film = smooth_films(case.fluid, s.E, conditions)[1] if case.fluid else np.nan
+    load, film = s.grid.cell_size * pressure.sum(), mean_film(s, solution.nodes.film)
+    friction_1, friction_2 = (s.grid.cell_size * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
+    smooth_film = smooth_films(s, case.fluid, conditions)[1] if case.fluid else np.nan
     scalars = {
         "dt": state.dt or 0.0,
         "newton": state.newton,
@@ -75,9 +75,9 @@ def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.
     void = np.zeros(s.grid.n) if fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
-    shear_1, shear_2 = shear_stresses(
-        fluid, solution.inputs.boundary_friction * solids, s.dx, conditions.sliding, oil, film, sheared, shear
-    )
+    rubbing, rows = solution.inputs.boundary_friction * solids, s.grid.rows
+    gradient = np.gradient(rows(oil), s.dx, axis=-1).ravel()
+    shear_1, shear_2 = shear_stresses(fluid, rubbing, gradient, conditions.sliding, oil, film, sheared, shear)
     return {
         "pressure": loads.pressure * s.p0,
         "contact_pressure": loads.contact_pressure * s.p0,
@@ -98,7 +98,7 @@ def _of_oil(loads: SurfaceLoads, s: Scales) -> dict:
 
 def mean_film(scales: Scales, h: np.ndarray) -> float:
     """Mean film [m] of the middle half of the Hertz contact; h in a^2/R."""
-    middle = np.abs(scales.x) <= 0.5
+    middle = scales.grid.inside(0.5)
     return float(h[middle].mean() * scales.h)
 
 
@@ -113,6 +113,7 @@ def mass_error(problem: EHLProblem, solution: Solution) -> float:
     """
     if problem.fluid is None:
         return 0.0
-    defect = problem.film_scale * np.abs(solution.residual[1:]).sum()
-    carried = solution.mass[np.abs(problem.x) <= 1.0].mean()
-    return float(defect / max(carried, MIN_BALANCE_FILM / problem.scales.h))
+    grid = problem.grid
+    defect = problem.film_scale * np.abs(grid.rows(solution.residual)[:, 1:]).sum()
+    carried = solution.mass[grid.inside(1.0)].mean()
+    return float(defect / (max(carried, MIN_BALANCE_FILM / problem.scales.h) * grid.breadth))

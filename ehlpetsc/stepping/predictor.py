@@ -21,38 +21,40 @@ LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that counts as m
 
 
 @compiled
-def advected(values: np.ndarray, nodes: float) -> np.ndarray:
-    """Values advected by `nodes` nodes.
+def advected(rows: np.ndarray, nodes: float) -> np.ndarray:
+    """Rows along x advected by `nodes` nodes.
 
     Cubic interpolation, limited to the range of the two neighbouring values: next to the pressure spikes of
     asperities, two or three nodes wide, a cubic undershoots, and the resulting cavity costs Newton's method
     iterations.
     """
-    shift, last, moved = int(np.floor(nodes)), len(values) - 1, np.empty_like(values)
+    shift, last, moved = int(np.floor(nodes)), rows.shape[1] - 1, np.empty_like(rows)
     t = 1.0 - (nodes - shift)
-    for i in range(len(values)):
-        k = i - shift - 1
-        a, b = values[min(max(k - 1, 0), last)], values[min(max(k, 0), last)]
-        c, d = values[min(max(k + 1, 0), last)], values[min(max(k + 2, 0), last)]
-        value = (
-            -t * (t - 1.0) * (t - 2.0) / 6.0 * a
-            + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * b
-            - (t + 1.0) * t * (t - 2.0) / 2.0 * c
-            + (t + 1.0) * t * (t - 1.0) / 6.0 * d
-        )
-        moved[i] = min(max(value, min(b, c)), max(b, c))
+    for row in range(len(rows)):
+        values = rows[row]
+        for i in range(len(values)):
+            k = i - shift - 1
+            a, b = values[min(max(k - 1, 0), last)], values[min(max(k, 0), last)]
+            c, d = values[min(max(k + 1, 0), last)], values[min(max(k + 2, 0), last)]
+            value = (
+                -t * (t - 1.0) * (t - 2.0) / 6.0 * a
+                + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * b
+                - (t + 1.0) * t * (t - 2.0) / 2.0 * c
+                + (t + 1.0) * t * (t - 1.0) / 6.0 * d
+            )
+            moved[row, i] = min(max(value, min(b, c)), max(b, c))
     return moved
 
 
 def neighbours(v: np.ndarray, nodes: float) -> tuple[np.ndarray, np.ndarray]:
     """Values of the two nodes upstream of each point moved by `nodes` nodes."""
-    source = np.arange(len(v)) - int(np.floor(nodes))
-    return v.take(source, mode="clip"), v.take(source - 1, mode="clip")
+    source = np.arange(v.shape[-1]) - int(np.floor(nodes))
+    return v.take(source, axis=-1, mode="clip"), v.take(source - 1, axis=-1, mode="clip")
 
 
 def whole_nodes(v: np.ndarray, nodes: float) -> np.ndarray:
     """Values moved by the nearest whole number of nodes."""
-    return v.take(np.arange(len(v)) - int(np.rint(nodes)), mode="clip")
+    return v.take(np.arange(v.shape[-1]) - int(np.rint(nodes)), axis=-1, mode="clip")
 
 
 def predict(
@@ -64,14 +66,14 @@ def predict(
     each level to the new time, with the entrainment speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
-    level, distance, model = levels[best], nodes[best], problem.model
+    level, distance, model, rows = levels[best], nodes[best], problem.model, problem.grid.rows
     q0, film = smooth.q, model.state(level.q, level.w).film
     h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
-    q = q0 + advected(level.q - q0, distance)
+    q = q0 + advected(rows(level.q - q0), distance).ravel()
     # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
-    smallest = np.minimum(*neighbours(level.q, distance))
+    smallest = np.minimum(*neighbours(rows(level.q), distance)).ravel()
     in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the smooth solution
     full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, smallest), in_cavity)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
-    interpolated = model.w_from_film(h0 * advected(film / h0, distance))
-    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(level.w, distance)))
+    interpolated = model.w_from_film(h0 * advected(rows(film / h0), distance).ravel())
+    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(rows(level.w), distance).ravel()))

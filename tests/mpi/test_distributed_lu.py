@@ -11,7 +11,7 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
@@ -77,7 +77,7 @@ def test_distributed_lu_solves_its_matrix(model):
     inactive_nodes = TOUCHING if model == "direct" else TOUCHING[:0]
     cuts = [n // GROUP * k // ranks.size * GROUP for k in range(ranks.size)] + [n]
     first, last = cuts[ranks.rank], cuts[ranks.rank + 1]
-    whole, part = EHLProblem(case, scales, film, 0, n), EHLProblem(case, scales, film, first, last)
+    whole, part = line_problem(case, scales, film, 0, n), line_problem(case, scales, film, first, last)
     right = np.random.default_rng(2).standard_normal(2 * n + 1)
     right[2 * inactive_nodes + 1] = 0.0
     lu = DistributedLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)

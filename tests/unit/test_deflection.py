@@ -9,7 +9,7 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.curvature_product import Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums, curvature_kernel
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials, grouped_kernel
 from ehlpetsc.physics.film_formulas import expected_film
@@ -67,7 +67,7 @@ def test_film_equation_has_zero_deflection_residual(model):
     mesh = ["mesh.points_per_half_width=32", f"contact.model='{model}'"]
     case = load(CASE, mesh)
     scales = Scales.of(case)
-    problem = EHLProblem(case, scales, expected_film(case, scales), 0, scales.nx)
+    problem = line_problem(case, scales, expected_film(case, scales), 0, scales.nx)
     rng = np.random.default_rng(5)
     q, phi, h00 = rng.uniform(0.1, 1.5, scales.nx), 1e-3 * rng.standard_normal(scales.nx), 9.0
     film = problem.film(q, h00, phi)

@@ -17,9 +17,9 @@ from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
 from ehlpetsc.nonlinear.gmres import MAX_IT, orthonormalise
 from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION, JacobianOperator, NearFieldMatrix, python_matrix
+from ehlpetsc.nonlinear.line_matrices import line_system
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.ranks import LINEAR_TOLERANCE, collective
-from ehlpetsc.nonlinear.two_fields import TwoFields
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -65,7 +65,7 @@ def scene(name):
     case = load(CASES / file, MESH + extra)
     scales = Scales.of(case)
     film = expected_film(case, scales)
-    system = TwoFields(case, scales, film, PETSc.COMM_SELF)
+    system = line_system(case, scales, film, PETSc.COMM_SELF)
     solver = NewtonSolver(system)
     rng, n, problem = np.random.default_rng(2), scales.nx, system.problem
     q = np.sqrt(np.maximum(1.05 - scales.x**2, 0.01)) * rng.uniform(0.5, 1.2, n)
@@ -130,7 +130,7 @@ def test_assembled_jacobian_equals_the_operator(name):
     at = scene(name)
     system, size = linearised(at), len(at.state)
     problem, jacobian = system.problem, system.jacobian
-    exact = JacobianOperator(problem, system.halo, system.ranks, None)
+    exact = JacobianOperator(problem, system.exchange.halo, system.ranks, None)
     exact.linearise(system.evaluation(system.x))
     exact = python_matrix(exact, system.x.getSizes(), PETSc.COMM_SELF)
     matrix = PETSc.Mat().createAIJ((size, size), comm=PETSc.COMM_SELF)

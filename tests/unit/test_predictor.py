@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.predictor import advected, predict
@@ -18,7 +18,7 @@ CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 def problem_of(model="direct"):
     case = load(CASE, ["mesh.points_per_half_width=40", f"contact.model='{model}'"])
     scales = Scales.of(case)
-    return EHLProblem(case, scales, expected_film(case, scales), 0, scales.nx)
+    return line_problem(case, scales, expected_film(case, scales), 0, scales.nx)
 
 
 def smooth_and_rough(problem, seed=0):

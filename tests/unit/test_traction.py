@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.physics import operation_of
@@ -114,7 +114,7 @@ def state_of(problem, q, w):
 def test_cavity_shear_is_proportional_to_its_oil():
     """Eyring shear of the full gap times the fraction of oil, in the fields of an accepted state."""
     case, scales, _, h = scene(0.5)
-    problem = EHLProblem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)
+    problem = line_problem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)
     void = np.linspace(0.1, 0.9, scales.nx)
     film = h / scales.h
     q = np.where(np.arange(scales.nx) < 2, 0.1, -void)  # p0; something carries
@@ -144,7 +144,7 @@ def test_mixed_contact_adds_oil_and_solid_shear():
 def test_film_of_rounding_size_has_solid_shear():
     """Whether rounding leaves 0 or 1e-17 of it must not matter: runs continued and not differed there."""
     case, scales, p, h = scene(0.5)
-    problem = EHLProblem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)  # as SNES has it
+    problem = line_problem(case, scales, 1e-2, 0, scales.nx, bound_tolerance=1e-8)  # as SNES has it
     found = []
     for left in (0.0, 1e-17, 1e-9):
         w = h / scales.h

@@ -165,14 +165,15 @@ class CompliantContact(SeparatedContact):
     def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
         """Integral of the real area fraction [m]."""
         return (
-            scales.dx
+            scales.grid.cell_size
             * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus, self.layer.hardness).sum()
         )
 
     def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         return super().diagnostics(loads, scales, thin_film) | {
-            "contact_length_10mpa": scales.dx * loads.contact_mask.sum(),
-            "contact_length_100mpa": scales.dx * (loads.contact_pressure > self.layer.high_pressure).sum(),
+            "contact_length_10mpa": scales.grid.cell_size * loads.contact_mask.sum(),
+            "contact_length_100mpa": scales.grid.cell_size
+            * (loads.contact_pressure > self.layer.high_pressure).sum(),
         }
 
 

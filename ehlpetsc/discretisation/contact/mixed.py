@@ -40,7 +40,7 @@ class SeparatedContact(ContactModel):
 
     def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
         """Length in contact [m]."""
-        return scales.dx * loads.contact_mask.sum()
+        return scales.grid.cell_size * loads.contact_mask.sum()
 
     def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
         thin = loads.film < thin_film * self.minimum_film
@@ -48,7 +48,7 @@ class SeparatedContact(ContactModel):
         return {
             "contact_share": loads.contact_pressure.sum() / total,
             "contact_length": self.contact_length(loads, scales),
-            "thin_length": scales.dx * thin.sum(),
+            "thin_length": scales.grid.cell_size * thin.sum(),
             "thin_share": loads.pressure[thin].sum() / total,
         }
 

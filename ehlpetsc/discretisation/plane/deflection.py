@@ -14,6 +14,7 @@ Points of a rank are whole rows along x. The transform along x is local; before 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -70,7 +71,8 @@ class Convolution:
         self.length_x = next_fast_len(2 * self.n_x - 1, real=True)
         self.length_y = self.n_y if periodic else next_fast_len(2 * self.n_y - 1)
         self.waves = self.length_x // 2 + 1
-        along = rfft(_even(kernel, self.length_x, axis=1), axis=1).real[:, ranks.wave_numbers(self.waves)]
+        self.waves_here = ranks.wave_numbers(self.waves)
+        along = rfft(_even(kernel, self.length_x, axis=1), axis=1).real[:, self.waves_here]
         across = along if periodic else _even(along, self.length_y, axis=0)
         self.spectrum = np.ascontiguousarray(fft(across, axis=0).real)
 
@@ -128,6 +130,11 @@ class Deflection:
     def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
         """Local rows, from the separation at the local nodes."""
         return self.row_scale * (separation - approach - sums.deflection)
+
+    @cached_property
+    def largest_eigenvalue(self) -> float:
+        """Bound of the eigenvalues of `integral`: the largest sum of a row."""
+        return float(np.abs(self.integral(np.ones(self.convolution.n_y * self.convolution.n_x))).max())
 
     def integral(self, pressure: np.ndarray) -> np.ndarray:
         """Elastic deflection at every node of the mesh, in a^2/R; on one rank."""

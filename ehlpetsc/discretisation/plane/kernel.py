@@ -87,7 +87,9 @@ def periodic_kernel(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
     for k in range(-IMAGES, IMAGES + 1):
         kernel[:, :near] += one_side[np.abs(np.arange(n_y) + k * n_y)]
     kernel[:, :near] += dx * dy * _distant_periods(np.arange(near) * dx, y, period)
-    kernel[:, :near] = 0.5 * (kernel[:, :near] + kernel[-np.arange(n_y), :near])  # symmetric to the last digit
+    kernel[:, :near] = 0.5 * (
+        kernel[:, :near] + kernel[-np.arange(n_y), :near]
+    )  # symmetric to the last digit
     kernel[:, :near] -= kernel[:, :near].mean(axis=0)
     kernel += 2.0 * dx / n_y * (deflection_kernel(n_x) - np.log(dx))
     return kernel

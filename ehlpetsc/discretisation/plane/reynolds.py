@@ -13,7 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.discretisation.finite_volumes import PROPERTIES, M
+from ehlpetsc.discretisation.ehl_problem import Share
+from ehlpetsc.discretisation.finite_volumes import PROPERTIES
 from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
 from ehlpetsc.discretisation.reynolds import flow_table_of, inlet, nodal, shear_constants
 from ehlpetsc.discretisation.step_inputs import StepInputs
@@ -27,7 +28,7 @@ class Reynolds:
     """Rows of the Reynolds equation of the local nodes.
 
     `shape`: local rows, nodes along x.
-    `rows`: local nodes among those of the mesh.
+    `share`: local nodes.
     `has_sides`: whether the domain ends below the first, above the last local row.
     """
 
@@ -39,12 +40,13 @@ class Reynolds:
         spacings: tuple[float, float],
         film_scale: float,
         shape: tuple[int, int],
-        rows: slice,
+        share: Share,
         has_sides: tuple[bool, bool],
         layer: float = 0.0,
     ):
         self.scales, self.film_scale, self.layer = scales, film_scale, layer
-        (self.dy, self.dx), self.shape, self.rows, self.has_sides = spacings, shape, rows, has_sides
+        (self.dy, self.dx), self.shape, self.has_sides = spacings, shape, has_sides
+        self.rows, self.owned = share.local, share.owned
 
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> np.ndarray:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
@@ -97,10 +99,12 @@ class Reynolds:
         residual *= 1.0 / self.film_scale
         derivatives *= 1.0 / self.film_scale
         first = slice(None, None, n_x)
-        start = len(q) // n_x - n_y - (0 if self.has_sides[1] else 1)  # rows of the window before the local ones
+        start = (
+            len(q) // n_x - n_y - (0 if self.has_sides[1] else 1)
+        )  # rows of the window before the local ones
         local = slice(start * n_x, (start + n_y) * n_x)
-        rows_of_inlet = inlet(q[local][first], h[local][first], inputs.inlet_film)
-        residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = rows_of_inlet
+        inlet_rows = inlet(q[local][first], h[local][first], inputs.inlet_film)
+        residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = inlet_rows
         return residual, derivatives
 
     def _beyond_edges(self, derivatives: np.ndarray) -> None:
@@ -120,3 +124,30 @@ class Reynolds:
         out = np.empty(len(derivatives))
         product(derivatives, v_q, v_h, self.shape[1], first, out)
         return out
+
+
+class NoOil:
+    """Rows of a dry contact: the Reynolds unknown vanishes, in direct contact it is the pressure of the solids.
+
+    `owned`: local nodes in the window.
+    """
+
+    stencil, own = STENCIL, OWN
+
+    def __init__(self, shape: tuple[int, int], owned: slice):
+        self.shape, self.owned = shape, owned
+        self._derivatives = np.zeros((shape[0] * shape[1], n_dofs(STENCIL)))
+        self._derivatives[:, OWN] = 1.0
+
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> None:
+        """Return None: there is no oil."""
+
+    def evaluate(
+        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """See :class:`Reynolds`."""
+        return q[self.owned], self._derivatives
+
+    def product(self, derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int) -> np.ndarray:
+        """See :class:`Reynolds`."""
+        return derivatives[:, OWN] * v_q[self.owned] + derivatives[:, OWN + 1] * v_h[self.owned]

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID
+from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID
 
 REACH = 2  # nodes of the deflection on either side
 NEIGHBOUR = -0.25  # weight of the neighbours in W
@@ -39,7 +39,9 @@ def near_deflections(kernel: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def number_unknowns(kind: np.ndarray, first: int, last: int, start: int, p_column: np.ndarray, r_column: np.ndarray) -> int:
+def number_unknowns(
+    kind: np.ndarray, first: int, last: int, start: int, p_column: np.ndarray, r_column: np.ndarray
+) -> int:
     """Number the unknowns of the nodes first .. last - 1 from `start` on; -1: no such unknown. Return the next."""
     for i in range(first, last):
         p_column[i] = r_column[i] = -1
@@ -54,7 +56,13 @@ def number_unknowns(kind: np.ndarray, first: int, last: int, start: int, p_colum
 
 @compiled
 def distributed(
-    kind: np.ndarray, derivatives: np.ndarray, h_s: np.ndarray, own_deflection: float, n_x: int, periodic: bool, out: np.ndarray
+    kind: np.ndarray,
+    derivatives: np.ndarray,
+    h_s: np.ndarray,
+    own_deflection: float,
+    n_x: int,
+    periodic: bool,
+    out: np.ndarray,
 ) -> None:
     """Fill in the mask of the nodes whose pressure is distributed; derivatives of all rows, (n, 12)."""
     n = len(kind)
@@ -163,7 +171,16 @@ def fill(
 
 @compiled
 def add_pressure(
-    patch: np.ndarray, y: int, x: int, factor: float, i: int, kind: np.ndarray, spread: np.ndarray, n_x: int, n: int, periodic: bool
+    patch: np.ndarray,
+    y: int,
+    x: int,
+    factor: float,
+    i: int,
+    kind: np.ndarray,
+    spread: np.ndarray,
+    n_x: int,
+    n: int,
+    periodic: bool,
 ) -> None:
     """Add `factor` times the pressure of node i, in the unknowns u, to a row."""
     if kind[i] == VOID:

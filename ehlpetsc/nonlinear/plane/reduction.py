@@ -71,7 +71,9 @@ def reduction_of(state: NodeState, inactive: np.ndarray) -> Reduction:
     bound = kind == BOUND
     back[:, bound] = np.array([[1.0], [0.0], [0.0], [0.0]])
     for values, of_contact, of_bound in (
-        (r_p, 0.0, r_q), (r_s, 0.0, 0.0), (h_p, s_p * np.where(s_w != 0.0, h_w / np.where(s_w != 0.0, s_w, 1.0), 0.0), 0.0),
+        (r_p, 0.0, r_q),
+        (r_s, 0.0, 0.0),
+        (h_p, s_p * np.where(s_w != 0.0, h_w / np.where(s_w != 0.0, s_w, 1.0), 0.0), 0.0),
         (h_s, 0.0, 0.0),
     ):
         values[touching] = (of_contact + zeros)[touching]

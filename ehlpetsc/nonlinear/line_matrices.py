@@ -1,0 +1,71 @@
+"""Jacobian and preconditioner of a line contact; its system of equations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line_problem import line_problem
+from ehlpetsc.nonlinear.jacobian import JacobianOperator, NearFieldMatrix
+from ehlpetsc.nonlinear.preconditioner import Factors, FarFieldBand
+from ehlpetsc.nonlinear.ranks import LineExchange, first_nodes
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+
+
+class LineMatrices:
+    """Block tridiagonal factors with the far deflection, or an assembled matrix for PETSc's preconditioners.
+
+    `near_field`: nodes of deflection on either side in the assembled matrix.
+    """
+
+    def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
+        self.problem, self.exchange, self.ranks, self.near_field = problem, exchange, ranks, near_field
+        self.factors: Factors | None = None
+
+    def jacobian(self, ksp: PETSc.KSP) -> JacobianOperator:
+        """See :class:`.two_fields.Matrices`."""
+        self.factors = Factors(self.problem, self.ranks) if is_ours(ksp.pc) else None
+        return JacobianOperator(self.problem, self.exchange.linear, self.ranks, self.factors)
+
+    def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> NearFieldMatrix | None:
+        """See :class:`.two_fields.Matrices`."""
+        if self.factors:
+            return None
+        matrix = PETSc.Mat().createAIJ((sizes, sizes), comm=ksp.comm)
+        return NearFieldMatrix(self.problem, self.near_field, matrix)
+
+    def attach(self, ksp: PETSc.KSP) -> None:
+        """See :class:`.two_fields.Matrices`; the options name the preconditioner."""
+
+    def begin_solve(self) -> None:
+        """See :class:`.two_fields.Matrices`."""
+        if self.factors:
+            self.factors.invalidate()
+
+
+def is_ours(pc: PETSc.PC) -> bool:
+    """Whether a preconditioner is a :class:`.preconditioner.FarFieldBand`."""
+    return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
+
+
+def line_system(
+    case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, bound_tolerance: float = ZERO_TOLERANCE
+) -> TwoFields:
+    """System of a line contact.
+
+    `film_scale`: expected film in a^2/R.
+    `bound_tolerance`: tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this
+        close to their bound count as on it.
+    """
+    cuts, ranks = first_nodes(scales.grid.n, comm.size), comm.tompi4py()
+    share = cuts[comm.rank : comm.rank + 2]
+    problem = line_problem(case, scales, film_scale, *share, bound_tolerance)
+    exchange = LineExchange(problem, cuts, ranks)
+    return TwoFields(problem, exchange, LineMatrices(problem, exchange, ranks, case.mesh.near_field), comm)

@@ -1,0 +1,137 @@
+"""Exchange of unknowns, pressures and wave numbers of a contact in the plane between ranks, which own whole rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from mpi4py import MPI
+
+from ehlpetsc.base.errors import UsageError
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
+from ehlpetsc.discretisation.plane.deflection import PressureSums
+from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs
+
+MIN_ROWS = 4  # of a rank
+
+
+def first_rows(n_y: int, ranks: int) -> list[int]:
+    """First rows of all ranks, and the number of rows."""
+    if ranks > max(n_y // MIN_ROWS, 1):
+        raise UsageError(f"{ranks} ranks for {n_y} rows of nodes; allowed: at most {max(n_y // MIN_ROWS, 1)}")
+    return [n_y * k // ranks for k in range(ranks + 1)]
+
+
+def share_of(shape: Sequence[int], rows: Sequence[int], periodic: bool) -> tuple[Share, tuple[bool, bool]]:
+    """Nodes of the rank of some rows, and whether the domain ends below and above them.
+
+    The window has a row more on either side, of a periodic domain that of its other end.
+    """
+    (n_y, n_x), (begin, end) = shape, rows
+    has_sides = (begin == 0 and not periodic), (end == n_y and not periodic)
+    window = np.arange(begin - (not has_sides[0]), end + (not has_sides[1])) % n_y
+    nodes = (window[:, None] * n_x + np.arange(n_x)).ravel()
+    start = n_x * (not has_sides[0])
+    return Share(begin * n_x, end * n_x, nodes, slice(start, start + (end - begin) * n_x)), has_sides
+
+
+class RankTransposition:
+    """Transposition between rows and wave numbers along x by all ranks (`Alltoallv`).
+
+    `cuts`: first rows of all ranks, and the number of rows.
+    """
+
+    def __init__(self, cuts: Sequence[int], ranks: MPI.Comm):
+        self.ranks, self.rows = ranks, np.diff(cuts)
+
+    def _cuts(self, count: int) -> np.ndarray:
+        return np.array([count * k // self.ranks.size for k in range(self.ranks.size + 1)])
+
+    def wave_numbers(self, count: int) -> slice:
+        """See :class:`.deflection.Transposition`."""
+        begin, end = self._cuts(count)[self.ranks.rank : self.ranks.rank + 2]
+        return slice(int(begin), int(end))
+
+    def to_waves(self, rows: np.ndarray, count: int) -> np.ndarray:
+        """See :class:`.deflection.Transposition`."""
+        cuts = self._cuts(count)
+        mine, waves = len(rows), int(np.diff(cuts)[self.ranks.rank])
+        sent = np.concatenate([rows[:, cuts[k] : cuts[k + 1]].ravel() for k in range(self.ranks.size)])
+        received = np.empty((int(self.rows.sum()), waves), dtype=complex)
+        self._all_to_all(sent, mine * np.diff(cuts), received, self.rows * waves)
+        return received
+
+    def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
+        """See :class:`.deflection.Transposition`."""
+        cuts = self._cuts(count)
+        mine, number = int(self.rows[self.ranks.rank]), waves.shape[1]
+        received = np.empty(mine * count, dtype=complex)
+        self._all_to_all(np.ascontiguousarray(waves), self.rows * number, received, mine * np.diff(cuts))
+        parts = np.split(received, (mine * cuts[1:-1]).astype(int))
+        return np.hstack([part.reshape(mine, -1) for part in parts])
+
+    def _all_to_all(
+        self, sent: np.ndarray, counts: np.ndarray, received: np.ndarray, back: np.ndarray
+    ) -> None:
+        kind = MPI.DOUBLE_COMPLEX
+        self.ranks.Alltoallv([sent, counts.astype(np.int32), kind], [received, back.astype(np.int32), kind])
+
+
+class PlaneExchange:
+    """Exchange of the rows next to those of other ranks.
+
+    `periodic`: whether the last rank is the neighbour of the first.
+    """
+
+    def __init__(self, problem: EHLProblem, ranks: MPI.Comm, periodic: bool):
+        self.problem, self.ranks, self.n_x = problem, ranks, problem.grid.shape[-1]
+        self.below, self.above = ranks.rank - 1, ranks.rank + 1
+        if periodic:
+            self.below, self.above = self.below % ranks.size, self.above % ranks.size
+        elif self.above == ranks.size:
+            self.above = MPI.PROC_NULL
+        if self.below < 0:
+            self.below = MPI.PROC_NULL
+
+    def window(self, local: np.ndarray) -> np.ndarray:
+        """Values of the window, (window, ...), from those of the local nodes."""
+        p = self.problem
+        window = np.empty((len(p.window), *local.shape[1:]))
+        window[p.owned] = local
+        before, behind = window[: p.owned.start], window[p.owned.stop :]
+        row = self.n_x
+        if self.ranks.size == 1:
+            if len(before):
+                before[:], behind[:] = local[-row:], local[:row]
+            return window
+        lowest, highest = np.ascontiguousarray(local[:row]), np.ascontiguousarray(local[-row:])
+        received = np.empty_like(lowest)
+        self.ranks.Sendrecv(lowest, self.below, 0, received, self.above, 0)
+        if len(behind):
+            behind[:] = received
+        self.ranks.Sendrecv(highest, self.above, 1, received, self.below, 1)
+        if len(before):
+            before[:] = received
+        return window
+
+    def h00(self, vector: np.ndarray) -> float:
+        """The approach, which the last rank has behind its nodes."""
+        if self.ranks.size == 1:
+            return float(vector[-1])
+        return float(self.ranks.bcast(vector[-1], root=self.ranks.size - 1))
+
+    def sums(self, pressure: np.ndarray) -> PressureSums:
+        """`PressureSums` of the pressures of all ranks."""
+        sums = self.problem.deflection.sums(pressure)
+        if self.ranks.size > 1:
+            self.ranks.Allreduce(MPI.IN_PLACE, sums.load)
+        return sums
+
+    def unknowns(
+        self, vector: np.ndarray, pressure: np.ndarray, flag: bool
+    ) -> tuple[Unknowns, PressureSums, bool]:
+        """See :class:`ehlpetsc.nonlinear.ranks.Exchange`."""
+        pairs = vector[: n_dofs(self.problem.local)].reshape(-1, 2)
+        q, w = np.ascontiguousarray(self.window(pairs).T)
+        is_set = flag if self.ranks.size == 1 else bool(self.ranks.allreduce(int(flag), op=MPI.MAX))
+        return Unknowns(q, w, self.h00(vector)), self.sums(pressure), is_set

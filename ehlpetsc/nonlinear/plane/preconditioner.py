@@ -1,0 +1,153 @@
+r"""Preconditioner of a contact in the plane: film and load eliminated, the pressures by PETSc.
+
+For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equation and load:
+
+1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put into the
+   Reynolds rows (:mod:`.reduction`).
+2. PETSc's preconditioner of the user's options, ``-pc_type``, by default incomplete LU, solves the sparse matrix of
+   :mod:`.assembly`; the load is an additional row and column.
+3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are exact.
+
+The matrix is kept for later iterations and time steps until GMRES takes more than `MAX_KEPT` iterations, or a node
+changes its kind and with it the number of unknowns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
+from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID, reduction_of
+from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
+
+MAX_KEPT = 14  # iterations of GMRES up to which the matrix is kept
+
+
+class EliminatedFilm:
+    """Context of PETSc's Python preconditioner.
+
+    `iterations`: function that returns the iterations of the last linear solve.
+    """
+
+    def __init__(self, problem: EHLProblem, jacobian: PlaneJacobian, ranks: MPI.Comm, comm: PETSc.Comm):
+        self.problem, self.jacobian, self.ranks, self.comm = problem, jacobian, ranks, comm
+        self.spacings = problem.grid.steps
+        self.terms = fitted_terms(problem.deflection, self.spacings)
+        self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
+        self.builds = 0
+        self.last_iterations = 0
+        self.pc: PETSc.PC | None = None
+        self.kind: np.ndarray | None = None
+
+    def setUp(self, pc: PETSc.PC) -> None:
+        """Assemble and factor anew where the kept matrix no longer serves."""
+        self.operator: PlaneJacobian = pc.getOperators()[0].getPythonContext()
+        inactive = np.zeros(len(self.problem.window), dtype=bool)
+        inactive[self.problem.owned.start + self.operator.inactive_nodes] = True
+        self.reduction = reduction_of(self.operator.state, inactive)
+        kind = self.reduction.kind[self.problem.owned]
+        same = self.kind is not None and np.array_equal(kind, self.kind)
+        keeps = same and self.last_iterations <= MAX_KEPT
+        if self.ranks.size > 1:
+            keeps = self.ranks.allreduce(int(keeps), op=MPI.MIN) == 1
+        if not keeps:
+            with events.FACTOR:
+                self.build()
+            self.kind = kind
+            self.last_iterations = 0
+
+    def _gathered(self, local: np.ndarray) -> np.ndarray:
+        """Values of all nodes from those of the local ones, first axis."""
+        if self.ranks.size == 1:
+            return local
+        return np.concatenate(self.ranks.allgather(local))
+
+    def build(self) -> None:
+        """Assemble the sparse form and set up PETSc's preconditioner."""
+        p, self.builds = self.problem, self.builds + 1
+        owned, derivatives = p.owned, self.operator.reynolds_derivatives
+        whole = [self._gathered(np.ascontiguousarray(v[owned])) for v in self.reduction[:6]]
+        block = self.block = TERMS + 1 + int((whole[0] == CONTACT).any())
+        rows = block * p.local
+        entries = p.local * (TERMS * 6 + TERMS + 2 + MAX_ROW + 1)
+        pointers = np.zeros(rows + 1, dtype=np.int32)
+        columns, values = np.empty(entries, dtype=np.int32), np.empty(entries)
+        self.by_separation, border = np.zeros((p.local, 6)), np.zeros(rows)
+        mesh = self.n_x, p.n, p.first, p.last, self.periodic, block
+        scales = p.deflection.row_scale, *self.spacings
+        count = fill(
+            tuple(whole), derivatives, self.terms, scales, mesh, (pointers, columns, values), self.by_separation, border
+        )
+        if self.pc is not None:
+            for thing in (self.pc, self.matrix, self.b, self.u):
+                thing.destroy()
+        sizes = (rows, block * p.n)
+        self.matrix = PETSc.Mat().createAIJ(
+            (sizes, sizes), csr=(pointers, columns[:count], values[:count]), comm=self.comm
+        )
+        self.pc = PETSc.PC().create(self.comm)
+        self.pc.setOperators(self.matrix)
+        self.pc.setFromOptions()
+        self.pc.setUp()
+        self.b, self.u = self.matrix.createVecs()
+        mine, nodes = self.reduction.kind[owned], block * np.arange(p.local)
+        self.row_of_r = nodes + TERMS + (mine == CONTACT)
+        self.row_of_g = np.flatnonzero((mine == CONTACT) | (mine == BOUND))
+        self.has_reynolds, self.has_pressure = mine != BOUND, mine != VOID
+        self.of_h00, self.r_of_h00, self.load_of_h00 = self._solve(-border)
+
+    def _solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Local pressures and Reynolds unknowns, and the load, by the sparse form."""
+        self.b.array[:] = b
+        with events.BACK_SOLVE:
+            self.pc.apply(self.b, self.u)
+        u = self.u.array_r.reshape(-1, self.block)
+        pressure, r = np.where(self.has_pressure, u[:, TERMS], 0.0), u.ravel()[self.row_of_r]
+        load = self.problem.deflection.cell * pressure.sum()
+        if self.ranks.size > 1:
+            load = self.ranks.allreduce(load)
+        return pressure, r, float(load)
+
+    def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        """Solve for one right-hand side."""
+        p, operator, exchange = self.problem, self.operator, self.operator.exchange
+        full, local = np.zeros(operator.size), n_dofs(p.local)
+        full[operator.active] = x.array_r
+        b_g, b_r = full[0:local:2] / p.deflection.row_scale, full[1:local:2]
+        b_load = full[-1] if operator.size > local else 0.0
+        if self.ranks.size > 1:
+            b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
+        reynolds = self._pad(self.by_separation)
+        b_r = b_r - p.reynolds.product(reynolds, exchange.window(b_g), self._nothing(), p.owned.start)
+        b = np.zeros(self.b.getLocalSize())
+        b[self.row_of_r[self.has_reynolds]] = b_r[self.has_reynolds]
+        b[self.block * self.row_of_g + TERMS] = full[0:local:2][self.row_of_g]
+        pressure, r, load = self._solve(b)
+        approach = (b_load - load) / self.load_of_h00
+        pressure, r = pressure + approach * self.of_h00, r + approach * self.r_of_h00
+        sums = exchange.sums(pressure)
+        separation = sums.deflection + approach + b_g
+        kind, back = self.reduction.kind[p.owned], self.reduction.back[:, p.owned]
+        first = np.where(kind == VOID, r, pressure)
+        second = np.where(kind == CONTACT, r, separation)
+        out = np.empty(operator.size)
+        out[0:local:2] = back[0] * first + back[1] * second
+        out[1:local:2] = back[2] * first + back[3] * second
+        out[2 * operator.inactive_nodes + 1] = 0.0
+        if operator.size > local:
+            out[-1] = approach
+        operator.deflected = out, sums.deflection, float(sums.load[0])
+        y.array[:] = out[operator.active]
+
+    def _pad(self, by_separation: np.ndarray) -> np.ndarray:
+        padded = np.zeros((len(by_separation), 12))
+        padded[:, ::2] = by_separation
+        return padded
+
+    def _nothing(self) -> np.ndarray:
+        return np.zeros(len(self.problem.window))

@@ -1,0 +1,57 @@
+"""System of equations of a contact in the plane: Jacobian, preconditioner, exchange."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.plane.problem import plane_problem
+from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
+from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
+from ehlpetsc.nonlinear.plane.preconditioner import EliminatedFilm
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+
+
+class PlaneMatrices:
+    """Matrix-free Jacobian; the preconditioner around that of the user's options."""
+
+    def __init__(self, problem: EHLProblem, exchange: PlaneExchange, ranks: MPI.Comm):
+        self.problem, self.exchange, self.ranks = problem, exchange, ranks
+        self.preconditioner: EliminatedFilm | None = None
+
+    def jacobian(self, ksp: PETSc.KSP) -> PlaneJacobian:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        operator = PlaneJacobian(self.problem, self.exchange, self.ranks)
+        self.preconditioner = EliminatedFilm(self.problem, operator, self.ranks, ksp.comm)
+        return operator
+
+    def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; none."""
+
+    def attach(self, ksp: PETSc.KSP) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        ksp.pc.setType("python")
+        ksp.pc.setPythonContext(self.preconditioner)
+
+    def begin_solve(self) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; factors are kept from step to step."""
+
+
+def plane_system(
+    case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, bound_tolerance: float = ZERO_TOLERANCE
+) -> TwoFields:
+    """System of a point contact or a strip; arguments as of :func:`..line_matrices.line_system`."""
+    grid, ranks = scales.grid, comm.tompi4py()
+    cuts = first_rows(grid.shape[0], ranks.size)
+    share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)
+    transposition = RankTransposition(cuts, ranks) if ranks.size > 1 else None
+    problem = plane_problem(case, scales, film_scale, share, has_sides, bound_tolerance, transposition)
+    exchange = PlaneExchange(problem, ranks, grid.periodic)
+    return TwoFields(problem, exchange, PlaneMatrices(problem, exchange, ranks), comm)
