@@ -103,6 +103,7 @@ class Deflection:
     `periodic`: across.
     `local`: nodes of this rank, whole rows.
 
+    `kernel`: C K, shape (n_y, n_x).
     `row_scale`: coefficient of the separation in a row; that of h00 is its negative.
     `cell`: dx dy.
     """
@@ -120,7 +121,7 @@ class Deflection:
         self.cell, self.periodic = dx * dy, periodic
         self.row_scale = np.sqrt(self.cell) / film_scale
         kernel = stiffness * (periodic_kernel if periodic else free_kernel)(n_x, n_y, dx, dy)
-        self.near = kernel
+        self.kernel = kernel
         self.convolution = Convolution(kernel, periodic, ranks or OneRank())
 
     def sums(self, pressure: np.ndarray) -> PressureSums:

@@ -4,8 +4,9 @@ For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equati
 
 1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put into the
    Reynolds rows (:mod:`.reduction`).
-2. PETSc's preconditioner of the user's options, ``-pc_type``, by default incomplete LU, solves the sparse matrix of
-   :mod:`.assembly`; the load is an additional row and column.
+2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and PETSc's preconditioner of the user's
+   options, ``-pc_type``, by default incomplete LU, of the sparse matrix of :mod:`.screened_poisson`. The load is an
+   additional row and column.
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are exact.
 
 The matrix is kept for later iterations and time steps until GMRES takes more than `MAX_KEPT` iterations, or a node
@@ -17,12 +18,14 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
+from scipy.sparse import csr_matrix
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID, reduction_of
+from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, reduction_of
 from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
 
 MAX_KEPT = 14  # iterations of GMRES up to which the matrix is kept
@@ -37,10 +40,11 @@ class EliminatedFilm:
     def __init__(self, problem: EHLProblem, jacobian: PlaneJacobian, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.jacobian, self.ranks, self.comm = problem, jacobian, ranks, comm
         self.spacings = problem.grid.steps
+        self.coarse_space = CoarseSpace(problem.deflection.kernel, self.periodic)
         self.terms = fitted_terms(problem.deflection, self.spacings)
         self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
         self.builds = 0
-        self.last_iterations = 0
+        self.applications = 0  # since the last set-up: iterations of GMRES
         self.pc: PETSc.PC | None = None
         self.kind: np.ndarray | None = None
 
@@ -52,14 +56,14 @@ class EliminatedFilm:
         self.reduction = reduction_of(self.operator.state, inactive)
         kind = self.reduction.kind[self.problem.owned]
         same = self.kind is not None and np.array_equal(kind, self.kind)
-        keeps = same and self.last_iterations <= MAX_KEPT
+        keeps = same and self.applications <= MAX_KEPT
         if self.ranks.size > 1:
             keeps = self.ranks.allreduce(int(keeps), op=MPI.MIN) == 1
         if not keeps:
             with events.FACTOR:
                 self.build()
             self.kind = kind
-            self.last_iterations = 0
+        self.applications = 0
 
     def _gathered(self, local: np.ndarray) -> np.ndarray:
         """Values of all nodes from those of the local ones, first axis."""
@@ -77,11 +81,23 @@ class EliminatedFilm:
         entries = p.local * (TERMS * 6 + TERMS + 2 + MAX_ROW + 1)
         pointers = np.zeros(rows + 1, dtype=np.int32)
         columns, values = np.empty(entries, dtype=np.int32), np.empty(entries)
-        self.by_separation, border = np.zeros((p.local, 6)), np.zeros(rows)
+        self.by_pressure, self.by_separation, border = (
+            np.zeros((p.local, 6)),
+            np.zeros((p.local, 6)),
+            np.zeros(rows),
+        )
         mesh = self.n_x, p.n, p.first, p.last, self.periodic, block
         scales = p.deflection.row_scale, *self.spacings
         count = fill(
-            tuple(whole), derivatives, self.terms, scales, mesh, (pointers, columns, values), self.by_separation, border
+            tuple(whole),
+            derivatives,
+            self.terms,
+            scales,
+            mesh,
+            (pointers, columns, values),
+            self.by_pressure,
+            self.by_separation,
+            border,
         )
         if self.pc is not None:
             for thing in (self.pc, self.matrix, self.b, self.u):
@@ -99,23 +115,43 @@ class EliminatedFilm:
         self.row_of_r = nodes + TERMS + (mine == CONTACT)
         self.row_of_g = np.flatnonzero((mine == CONTACT) | (mine == BOUND))
         self.has_reynolds, self.has_pressure = mine != BOUND, mine != VOID
+        self.coarse = self._coarse_correction()
         self.of_h00, self.r_of_h00, self.load_of_h00 = self._solve(-border)
 
+    def _coarse_correction(self) -> CoarseCorrection:
+        """Coarse correction for the matrix of all ranks."""
+        n, n_x = self.problem.n, self.n_x
+        full = self._gathered(self.reduction.kind[self.problem.owned]) == PRESSURE
+        full[::n_x] = False  # the inlet has no balance
+        i = np.arange(n)
+        near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % n
+        index = np.repeat(i, near.shape[1]), near.ravel()
+        flow, transport = (
+            csr_matrix((self._gathered(values).ravel(), index), (n, n))
+            for values in (self.by_pressure, self.by_separation)
+        )
+        return CoarseCorrection(self.coarse_space, flow, transport, full)
+
     def _solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Local pressures and Reynolds unknowns, and the load, by the sparse form."""
-        self.b.array[:] = b
+        """Local pressures and Reynolds unknowns, and the load, by coarse correction and sparse form."""
+        p, rows = self.problem, self.row_of_r
         with events.BACK_SOLVE:
+            coarse, left = self.coarse(self._gathered(np.where(self.has_reynolds, b[rows], 0.0)))
+            local = slice(p.first, p.last)
+            self.b.array[:] = b
+            self.b.array[rows[self.has_reynolds]] = left[local][self.has_reynolds]
             self.pc.apply(self.b, self.u)
-        u = self.u.array_r.reshape(-1, self.block)
-        pressure, r = np.where(self.has_pressure, u[:, TERMS], 0.0), u.ravel()[self.row_of_r]
-        load = self.problem.deflection.cell * pressure.sum()
+        u = self.u.array_r
+        pressure = np.where(self.has_pressure, u[TERMS :: self.block], 0.0) + coarse[local]
+        load = p.deflection.cell * pressure.sum()
         if self.ranks.size > 1:
             load = self.ranks.allreduce(load)
-        return pressure, r, float(load)
+        return pressure, u[rows], float(load)
 
     def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve for one right-hand side."""
         p, operator, exchange = self.problem, self.operator, self.operator.exchange
+        self.applications += 1
         full, local = np.zeros(operator.size), n_dofs(p.local)
         full[operator.active] = x.array_r
         b_g, b_r = full[0:local:2] / p.deflection.row_scale, full[1:local:2]

@@ -21,7 +21,7 @@ from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID
 
 TERMS = 3
-LONGEST = 0.35  # smallest s_j, in 1/a
+LONGEST = 1.0  # smallest s_j, in 1/a
 MAX_ROW = 6 * (TERMS + 2)  # entries of a Reynolds row
 
 
@@ -52,6 +52,7 @@ def fill(
     scales: tuple,
     mesh: tuple,
     csr: tuple,
+    by_pressure: np.ndarray,
     by_separation: np.ndarray,
     border: np.ndarray,
 ) -> int:
@@ -63,7 +64,8 @@ def fill(
     `scales`: of the deflection rows; dy; dx.
     `mesh`: n_x, nodes, first, last, whether periodic, unknowns of a node.
     `csr`: row pointers, columns, values.
-    `by_separation`: of the local Reynolds rows by the separation at the nodes of their stencil, (last - first, 6).
+    `by_pressure`, `by_separation`: of the local Reynolds rows by v and by the separation at the nodes of their
+        stencil, (last - first, 6).
     `border`: of the local rows by h00.
     """
     (kind, r_p, r_s, h_p, h_s, s_p), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales
@@ -112,7 +114,7 @@ def fill(
         for k in range(6):
             near = (i + (k - 2 if k < 4 else (2 * k - 9) * n_x)) % n
             by_r, by_h = by[2 * k], by[2 * k + 1]
-            by_separation[i - first, k] = 0.0
+            by_pressure[i - first, k] = by_separation[i - first, k] = 0.0
             if by_r == 0.0 and by_h == 0.0 and near != i:
                 continue
             at = block * near
@@ -131,7 +133,7 @@ def fill(
                 for j in range(TERMS):
                     columns[count], values[count] = at + j, gamma * c[j]
                     count += 1
-            by_separation[i - first, k] = gamma
+            by_pressure[i - first, k], by_separation[i - first, k] = by_v, gamma
             edge += gamma
         border[row] = edge
         row += 1

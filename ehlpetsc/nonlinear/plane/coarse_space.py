@@ -1,0 +1,87 @@
+r"""Coarse correction of the pressures of a contact in the plane, for the long waves.
+
+An incomplete factorisation reduces waves of a few nodes; those of pressure ahead of the contact, where the flow obeys
+nearly Poisson's equation, and in it, where film and deflection are in balance, take it ever longer on finer meshes. On
+bilinear functions P over some nodes the Reynolds rows, with flow :math:`A` and transport :math:`\Gamma` by the
+separation, have the matrix
+
+.. math:: P^TAP+(P^T\Gamma P)\,K_c,
+
+K_c the deflection by a function at the coarse nodes: dense, but of some hundred unknowns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse import csr_matrix, diags, kron
+
+INTERVALS = 32  # between coarse nodes along the longer side of the mesh
+
+
+def linear_functions(n: int, spacing: int, periodic: bool) -> csr_matrix:
+    """Values at n nodes of hat functions over some nodes, shape (n, coarse nodes)."""
+    i, count = np.arange(n), -(-n // spacing)
+    left, t = i // spacing, (i % spacing) / spacing
+    right = (left + 1) % count if periodic else left + 1
+    inside = right < count
+    rows, columns = np.concatenate([i, i[inside]]), np.concatenate([left, right[inside]])
+    return csr_matrix((np.concatenate([1.0 - t * inside, t[inside]]), (rows, columns)), (n, count))
+
+
+class CoarseSpace:
+    """Coarse functions and the deflections by them.
+
+    `kernel`: of the deflection at distances 0 .. n - 1 nodes, (n_y, n_x).
+    """
+
+    def __init__(self, kernel: np.ndarray, periodic: bool):
+        self.shape, self.periodic = kernel.shape, periodic
+        self.spacing = max(-(-max(self.shape) // INTERVALS), 2)
+        n_y, n_x = self.shape
+        across, along = (
+            linear_functions(n_y, self.spacing, periodic),
+            linear_functions(n_x, self.spacing, False),
+        )
+        self.functions, self.counts = kron(across, along).tocsr(), (across.shape[1], along.shape[1])
+        self.deflections = self._deflections(kernel)
+
+    def _deflections(self, kernel: np.ndarray) -> np.ndarray:
+        """Deflection by a function at distances of coarse nodes, shape of the coarse nodes."""
+        (n_y, n_x), d = self.shape, self.spacing
+        offset = np.arange(1 - d, d)
+        hat = 1.0 - np.abs(offset) / d
+        y, x = (np.abs(d * np.arange(count)[:, None] - offset) for count in self.counts)
+        y, x = y % n_y if self.periodic else np.minimum(y, n_y - 1), np.minimum(x, n_x - 1)
+        by_y = np.einsum("kyx,y->kx", kernel[y.ravel()].reshape(*y.shape, n_x), hat)
+        return np.einsum("kmx,x->km", by_y[:, x.ravel()].reshape(len(by_y), *x.shape), hat)
+
+    def chosen(self, mask: np.ndarray) -> tuple[csr_matrix, np.ndarray]:
+        """Functions cut off outside of a mask of nodes, without those that vanish, and their deflections K_c."""
+        cut = (diags(mask.astype(float)) @ self.functions).tocsc()
+        kept = np.flatnonzero(np.asarray(abs(cut).sum(axis=0)).ravel() > 0.0)
+        k_y, k_x = np.divmod(kept, self.counts[1])
+        distance = np.abs(k_y[:, None] - k_y), np.abs(k_x[:, None] - k_x)
+        return cut[:, kept].tocsr(), self.deflections[distance]
+
+
+class CoarseCorrection:
+    """Correction of Reynolds rows at the nodes of a mask.
+
+    `flow`, `transport`: derivatives of the rows by pressures and by separations, (nodes, nodes).
+    """
+
+    def __init__(self, space: CoarseSpace, flow: csr_matrix, transport: csr_matrix, mask: np.ndarray):
+        self.flow, self.transport = flow, transport
+        self.functions, self.deflections = space.chosen(mask)
+        by_pressure = (self.functions.T @ flow @ self.functions).toarray()
+        by_separation = self.functions.T @ transport @ self.functions
+        self.lu = lu_factor(
+            by_pressure + by_separation @ self.deflections, overwrite_a=True, check_finite=False
+        )
+
+    def __call__(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures that reduce Reynolds rows, and what is left of these."""
+        coarse = lu_solve(self.lu, self.functions.T @ rows, check_finite=False)
+        pressure, separation = self.functions @ coarse, self.functions @ (self.deflections @ coarse)
+        return pressure, rows - self.flow @ pressure - self.transport @ separation
