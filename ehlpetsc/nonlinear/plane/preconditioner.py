@@ -39,10 +39,10 @@ class EliminatedFilm:
 
     def __init__(self, problem: EHLProblem, jacobian: PlaneJacobian, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.jacobian, self.ranks, self.comm = problem, jacobian, ranks, comm
+        self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
         self.spacings = problem.grid.steps
         self.coarse_space = CoarseSpace(problem.deflection.kernel, self.periodic)
         self.terms = fitted_terms(problem.deflection, self.spacings)
-        self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
         self.builds = 0
         self.applications = 0  # since the last set-up: iterations of GMRES
         self.pc: PETSc.PC | None = None
