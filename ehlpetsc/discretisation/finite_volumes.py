@@ -23,9 +23,7 @@ from ehlpetsc.physics.laws import relative_density
 from ehlpetsc.physics.rheology import mobilities
 from ehlpetsc.physics.tabulated_flow import tabulated_mobilities
 
-STENCIL = 4  # nodes i-2 .. i+1 in row i
 ONE = unsigned(1)
-OWN = 4  # index of q_i among the coefficients of row i, followed by h_i
 # Nodal properties, rows of one array (a tuple of arrays costs ten times the loop):
 P, DP = 0, 1  # pressure in p0, dp/dq
 H = 2  # film [m]
@@ -110,15 +108,34 @@ def scaled(mobility: tuple, factor: float, by_film: float) -> tuple:
     return factor * value, factor * by_h + by_film * value, factor * by_gradient, factor * by_ln_eta
 
 
-@compiled
-def flux_through(at: np.ndarray, left: int, table: np.ndarray, law: tuple) -> tuple:
-    """Mass flux through the face right of node `left`, and its derivatives.
+@inlined
+def face(at: np.ndarray, behind: int, left: int, right: int, table: np.ndarray, law: tuple) -> tuple:
+    """State of the face between two nodes; parameters as of :func:`flux_through`.
 
-    Derivatives are with respect to (q, h) of the nodes `left` - 1, `left` and `left` + 1.
+    Returns the mass per area that the mean speed moves through it, with derivatives by that of `left` and of
+    `behind`; film [m]; pressure gradient [Pa/m]; stress of the shear law [Pa]; mobilities of both nodes.
+    """
+    per_length, _, stress, stress_rise, sliding, _, layer = law
+    drawn = positive_extrapolation(at[M, left], at[M, behind], 0.5 if behind != left else 0.0)
+    gradient = per_length * (at[P, right] - at[P, left])
+    film = 0.5 * (at[H, left] + at[H, right])
+    if stress_rise != 0.0:
+        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
+    gap = film, gradient, stress, sliding, layer
+    return drawn, film, gradient, stress, face_mobilities(at, left, right, table, gap)
+
+
+@compiled
+def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.ndarray, law: tuple) -> tuple:
+    """Mass flux through the face between the nodes `left` and `right`, and its derivatives.
+
+    Derivatives are with respect to (q, h) of the nodes `behind`, `left` and `right`.
 
     Parameters
     ----------
     at : shape (10 or 13, nodes)
+    behind
+        Node upstream of `left`; `left` itself where there is none.
     table
         Of :func:`ehlpetsc.physics.tabulated_flow.flow_table`.
     law
@@ -126,15 +143,9 @@ def flux_through(at: np.ndarray, left: int, table: np.ndarray, law: tuple) -> tu
         its rise over p0 [Pa]; |u1 - u2| [m/s]; entrainment speed over that of the scales; rms height of the
         compliant layer [m], 0 without one.
     """
-    per_length, per_film, stress, stress_rise, sliding, entrainment, layer = law
-    right, behind = left + ONE, left - ONE if left > 0 else left
-    couette, by_left, by_behind = positive_extrapolation(at[M, left], at[M, behind], 0.5 if left > 0 else 0.0)
-    gradient = per_length * (at[P, right] - at[P, left])
-    film = 0.5 * (at[H, left] + at[H, right])
-    if stress_rise != 0.0:
-        stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
-    gap = film, gradient, stress, sliding, layer
-    mobility_l, mobility_r = face_mobilities(at, left, right, table, gap)
+    per_length, per_film, _, stress_rise, _, entrainment, _ = law
+    drawn, _, gradient, stress, (mobility_l, mobility_r) = face(at, behind, left, right, table, law)
+    couette, by_left, by_behind = drawn
     rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
     mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
     by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
@@ -189,10 +200,12 @@ def balance(at: np.ndarray, first: int, law: tuple, table: np.ndarray, storage: 
     """
     (m_old, extrapolated, k, rate), (residual, derivatives) = storage, rows
     first = unsigned(first)  # numba takes longer over indices that may be negative
-    inflow = flux_through(at, first - ONE, table, law)
+    left = first - ONE
+    behind = left - ONE if left > 0 else left
+    inflow = flux_through(at, behind, left, first, table, law)
     for i in range(unsigned(len(residual))):
         node, row = first + i, derivatives[i]
-        outflow = flux_through(at, node, table, law)
+        outflow = flux_through(at, node - ONE, node, node + ONE, table, law)
         stored, by_m, _ = positive_extrapolation(at[M, node], m_old[i], k)
         residual[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
         row[0], row[1] = -inflow[1], -inflow[2]

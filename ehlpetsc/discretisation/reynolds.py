@@ -26,9 +26,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     HEATED_PROPERTIES,
     LN_ETA_P,
-    OWN,
     PROPERTIES,
-    STENCIL,
     M,
     balance,
     fill_mass,
@@ -51,7 +49,11 @@ class Reynolds:
 
     `columns`: indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown, shape
         (local nodes, 8).
+    `stencil`: number of nodes in a row.
+    `own`: index of q of the row's own node among its coefficients, followed by h.
     """
+
+    stencil, own = 4, 4
 
     def __init__(
         self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0, layer: float = 0.0
@@ -71,7 +73,7 @@ class Reynolds:
         node = rows[:, None] + np.arange(-2, 2)
         columns = dofs_of(node)
         columns[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
-        return columns.reshape(len(rows), n_dofs(STENCIL)).astype(np.int32)
+        return columns.reshape(len(rows), n_dofs(self.stencil)).astype(np.int32)
 
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
@@ -124,16 +126,16 @@ class Reynolds:
         if history is not None:
             storage = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
         residual = np.empty(self.local.stop - self.local.start)
-        derivatives = np.zeros((len(residual), n_dofs(STENCIL)))
+        derivatives, own = np.zeros((len(residual), n_dofs(self.stencil))), self.own
         inner = slice(int(self.has_inlet), None)
         balance(at, first, law, self.flow_table(inputs), storage, (residual[inner], derivatives[inner]))
         if self.has_outlet:
-            derivatives[-1, OWN + 1] += derivatives[-1, OWN + 3]
-            derivatives[-1, OWN + 2 :] = 0.0
+            derivatives[-1, own + 1] += derivatives[-1, own + 3]
+            derivatives[-1, own + 2 :] = 0.0
         residual /= self.film_scale
         derivatives *= 1.0 / self.film_scale
         if self.has_inlet:
-            residual[0], derivatives[0, OWN : OWN + 2] = _inlet(q[0], h[0], inputs.inlet_film)
+            residual[0], derivatives[0, own : own + 2] = _inlet(q[0], h[0], inputs.inlet_film)
         return residual, derivatives
 
 
@@ -174,12 +176,14 @@ class NoOil:
     `start`: first node of the arrays that are passed in.
     """
 
+    stencil, own = Reynolds.stencil, Reynolds.own
+
     def __init__(self, first: int, last: int, start: int = 0):
-        self.owned, local = slice(first - start, last - start), last - first
-        self.columns = np.full((local, n_dofs(STENCIL)), -1, dtype=np.int32)
-        self.columns[:, OWN : OWN + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
-        self._derivatives = np.zeros((local, n_dofs(STENCIL)))
-        self._derivatives[:, OWN] = 1.0
+        self.owned, shape = slice(first - start, last - start), (last - first, n_dofs(self.stencil))
+        self.columns = np.full(shape, -1, dtype=np.int32)
+        self.columns[:, self.own : self.own + 2] = dofs_of(np.arange(first, last, dtype=np.int32))
+        self._derivatives = np.zeros(shape)
+        self._derivatives[:, self.own] = 1.0
 
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
         """Return None: there is no oil."""

@@ -19,7 +19,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE, deflection_rows
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
-from ehlpetsc.discretisation.finite_volumes import STENCIL, reynolds_product
+from ehlpetsc.discretisation.finite_volumes import reynolds_product
 from ehlpetsc.discretisation.unknowns import (
     n_dofs,
     nodes_of_w,
@@ -157,7 +157,7 @@ class NearFieldMatrix:
     def _by_unknowns(self, state: NodeState, derivatives: np.ndarray) -> np.ndarray:
         """Derivatives of the Reynolds rows with respect to q and w."""
         p, values = self.problem, derivatives.copy()
-        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, STENCIL - 2)
+        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, p.reynolds.stencil - 2)
         nodes = np.clip(nodes, 0, p.n - 1)
         by_unknown, by_film = q_columns(derivatives), w_columns(derivatives)
         w_columns(values)[:] = by_film * state.h_w[nodes]

@@ -19,12 +19,10 @@ from ehlpetsc.discretisation.finite_volumes import (
     LN_THERMAL_P,
     THERMAL,
     H,
-    M,
     P,
-    face_mobilities,
+    face,
     fill_mass,
     fluidities,
-    positive_extrapolation,
 )
 from ehlpetsc.effects.heat.film_law import MIN_SLOPE, REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_shear import wall_exchange
@@ -200,19 +198,13 @@ def faces(
     `gradient`: filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
-    per_length, _, no_pressure, stress_rise, sliding, entrainment, layer = law
+    _, _, no_pressure, stress_rise, sliding, entrainment, _ = law
     pressure_heat[:] = 0.0
     slope = 0.0
     for i in range(nodes):
-        behind = max(i - 1, 0)
-        drawn = positive_extrapolation(at[M, i], at[M, behind], 0.5 if i > 0 else 0.0)[0]
-        before, slope = slope, per_length * (at[P, i + 1] - at[P, i])
-        film = 0.5 * (at[H, i] + at[H, i + 1])
-        stress = no_pressure
-        if stress_rise != 0.0:
-            stress += 0.5 * stress_rise * (at[P, i] + at[P, i + 1])
-        left, right = face_mobilities(at, i, i + 1, table, (film, slope, stress, sliding, layer))
-        couette[i + 1] = entrainment * drawn
+        before = slope
+        drawn, film, slope, stress, (left, right) = face(at, max(i - 1, 0), i, i + 1, table, law)
+        couette[i + 1] = entrainment * drawn[0]
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
         between_oil_nodes = oil[i] and oil[min(i + 1, nodes - 1)]

@@ -17,7 +17,6 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.nonlinear.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
@@ -189,7 +188,8 @@ class BandedJacobian:
         Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, LINE).
         """
         self._fill_deflection(entries)
-        put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
+        film = self.problem.reynolds.own + 1
+        put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, film, self.values)
         return self.columns
 
     def _fill_deflection(self, entries: BandEntries) -> None:

@@ -21,7 +21,6 @@ from mpi4py import MPI
 
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
-from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.block_lu import (
     AT_LEFT,
@@ -40,7 +39,6 @@ from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSyst
 from ehlpetsc.nonlinear.ranks import all_ranks, collective, exchange
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
-ENTRIES = 2 * STENCIL  # of a Reynolds row
 
 
 class DistributedLU:
@@ -135,7 +133,7 @@ def are_close(entries: np.ndarray, before: np.ndarray, tolerance: float) -> bool
         return False
     for i in range(unsigned(len(rows))):
         largest = change = 0.0
-        for k in range(unsigned(ENTRIES)):
+        for k in range(unsigned(rows.shape[1])):
             largest = max(largest, abs(old_rows[i, k]))
             change = max(change, abs(rows[i, k] - old_rows[i, k]))
         if not change <= tolerance * largest:
