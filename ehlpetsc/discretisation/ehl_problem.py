@@ -23,6 +23,7 @@ from ehlpetsc.discretisation.contact import contact_model, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
@@ -93,11 +94,11 @@ class EHLProblem:
         self.deflection = Deflection(self.n, self.dx, first, last)
         self.window, self.owned = self.deflection.window, self.deflection.owned
         self._parabola = 0.5 * self.x[self.window] ** 2
-        self.inlet_film = None
+        self.inlet_film = self.oil = None
         if self.fluid is None:
             self.reynolds: NoOil | Reynolds = NoOil(first, last, self.window.start)
         else:
-            layer = case.contact.asperity_height or 0.0
+            self.oil, layer = IsothermalOil(self.fluid, scales), case.contact.asperity_height or 0.0
             self.reynolds = Reynolds(scales, film_scale, first, last, self.window.start, layer)
             if self.fluid.inlet_film is not None:
                 self.inlet_film = self.fluid.inlet_film / scales.h
@@ -120,7 +121,7 @@ class EHLProblem:
         conditions = conditions or self.scales.conditions
         friction = self.boundary_friction
         return StepInputs(
-            phi, history, self.fluid, self.inlet_film, conditions, dt=dt, boundary_friction=friction
+            phi, history, self.oil, self.inlet_film, conditions, dt=dt, boundary_friction=friction
         )
 
     def film(self, pressure: np.ndarray, h00: float, phi: np.ndarray) -> np.ndarray:
@@ -146,12 +147,10 @@ class EHLProblem:
         unknowns: Unknowns,
         inputs: StepInputs,
         sums: PressureSums | None = None,
-        temperatures: np.ndarray | None = None,
     ) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.
 
         `sums` of the pressures at these unknowns are required unless the window is the whole mesh.
-        `temperatures` are those of the film to start from, and then the solved ones; None: no warm start.
         """
         (q, w, h00), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
@@ -161,9 +160,7 @@ class EHLProblem:
         separation = state.separation - curvature * self._parabola - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
         q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
-        reynolds, derivatives = self.reynolds.evaluate(
-            state.reynolds_unknown, state.film, inputs, temperatures
-        )
+        reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
         w_of(residual, self.local)[:] = reynolds
         if self.load_is_local:
             residual[-1] = sums.load[2] - 0.5 * np.pi * inputs.load_share * (

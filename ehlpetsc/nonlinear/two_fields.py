@@ -78,7 +78,7 @@ class TwoFields:
         self._create_vectors()
         self.inputs: StepInputs = None
         self.rows: Rows = None
-        self.x_evaluated = self.operator = self.temperatures = None
+        self.x_evaluated = self.operator = None
         self.bound_reached = False
 
     def _create_vectors(self) -> None:
@@ -112,8 +112,7 @@ class TwoFields:
 
     def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
         """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve."""
-        self.inputs, self.x_evaluated, self.rows = inputs, None, None
-        self.temperatures = None if inputs.heat is None else inputs.heat.guess.copy()
+        self.inputs, self.x_evaluated, self.rows = inputs.begin(), None, None
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
         if self.problem.load_is_local:
@@ -152,9 +151,7 @@ class TwoFields:
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
             nodes, h00, curvature, load = exchange_unknowns(*self.halo, local_data)
             (q, w), sums = np.ascontiguousarray(nodes.T), PressureSums(curvature, load[:3])
-            self._evaluation = self.problem.evaluate(
-                Unknowns(q, w, h00), self.inputs, sums, self.temperatures
-            )
+            self._evaluation = self.problem.evaluate(Unknowns(q, w, h00), self.inputs, sums)
             self.bound_reached = load[3] > 0.0
         return self._evaluation
 

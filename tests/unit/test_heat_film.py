@@ -8,6 +8,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
@@ -206,9 +207,10 @@ def test_derivatives_of_reynolds_rows(ends):
     arrays[4] = arrays[5]  # derivatives are at a constant difference of the walls
     arrays += [np.full(n, 375.0)] * 2
     law = film_law(case.fluid, case.heat, scales.conditions.sliding)
-    heat = FilmHeat(law, np.array(arrays), state(n), None, np.zeros(n))
-    inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
-    thermal = replace(inputs, heat=heat)
+    oil = IsothermalOil(case.fluid, scales)
+    heat = FilmHeat(oil, law, np.array(arrays), state(n), None, np.zeros(n))
+    inputs = StepInputs(np.zeros(n), None, oil, None, scales.conditions)
+    thermal = replace(inputs, oil=heat)
     values = reynolds.evaluate(q, h, thermal)[1]
     assert np.abs(values - reynolds.evaluate(q, h, inputs)[1]).max() > 1.0
     for side, vector in enumerate((q, h)):
@@ -248,16 +250,37 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
         b / 1e6,
         b / 1e6,
     )
-    heat = FilmHeat(film_law(case.fluid, case.heat, 0.0), np.array(of_nodes), state(n), None, zero)
-    inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
-    found = heat.guess.copy()
-    cold, hot = (reynolds.properties(q, h, one, found) for one in (inputs, replace(inputs, heat=heat)))
+    oil, law = IsothermalOil(case.fluid, scales), film_law(case.fluid, case.heat, 0.0)
+    heat = FilmHeat(oil, law, np.array(of_nodes), state(n), None, zero)
+    solved = heat.begin()
+    cold, hot = (reynolds.properties(q, h, one) for one in (oil, solved))
+    found = solved.guess
     assert found[MEAN, 20] == pytest.approx(563.0) and heat.guess[MEAN, 20] == 370.0
     factor = np.exp(0.04 * 0.5 * (found[MEAN, 19] + found[MEAN, 20] - 2.0 * 363.0))
     found = np.array(volumes.fluidities(hot, 19, 20))
     np.testing.assert_allclose(found, factor * cold[volumes.FLUIDITY, 19:21], rtol=1e-9)
-    own = hot[volumes.THERMAL, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
+    own = hot[volumes.THINNING, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
     assert own[1] > own[0] and found[1] < found[0]
+
+
+def test_nodes_in_rows_have_the_properties_of_each_row_alone():
+    """Flat fields, x fastest; the nodes beyond the outlet, one of each row, come last."""
+    case = load(CASE, ["mesh.points_per_half_width=16", "heat.bulk_temperature=363.0"])
+    scales, (rows, n), rng = Scales.of(case), (3, 7), np.random.default_rng(2)
+    q, h = rng.uniform(-0.2, 0.8, rows * n), 5e-4 * rng.uniform(0.5, 2.0, rows * n)
+    constants = [1e6, 363e6, 0.0, 0.0, 363.0, 363.0, 1e-8, 1e-8, 1.0, 363.0, 363.0]
+    of_nodes = np.outer(constants, np.ones(rows * n))
+    of_nodes[1] *= rng.uniform(1.0, 1.1, rows * n)
+    oil = IsothermalOil(case.fluid, scales)
+    law = film_law(case.fluid, case.heat, scales.conditions.sliding)
+    for one in (oil, FilmHeat(oil, law, of_nodes, state(rows * n), None, np.zeros(rows * n))):
+        whole = np.empty((one.rows, rows * (n + 1)))
+        one.fill(q, h, slice(0, rows * n), whole)
+        for row in range(rows):
+            nodes, alone = slice(row * n, (row + 1) * n), np.empty((one.rows, n + 1))
+            one.fill(q[nodes], h[nodes], nodes, alone)
+            np.testing.assert_array_equal(whole[:, nodes], alone[:, :-1])
+            np.testing.assert_array_equal(whole[:, rows * n + row], alone[:, -1])
 
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4

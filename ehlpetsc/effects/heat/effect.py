@@ -140,10 +140,10 @@ class Heat(Effect):
         return HeatRecord._make([*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0])
 
     def inputs(self, record: HeatRecord, inputs: StepInputs, step: Step) -> StepInputs:
-        """Add the data of the film's temperature; the first steady solution is isothermal."""
-        if not record.levels and self.scene.case.fluid is not None:
+        """Oil at the film's temperature; the first steady solution is isothermal."""
+        if not record.levels or inputs.oil is None:
             return inputs
-        return replace(inputs, heat=self._steps.film_heat(record, inputs, step))
+        return replace(inputs, oil=self._steps.film_heat(record, inputs, step))
 
     def accept(self, record: HeatRecord, solution: Solution, step: Step) -> HeatRecord:
         """Temperatures and fluxes of a solution."""

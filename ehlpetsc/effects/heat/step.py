@@ -9,6 +9,7 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Scene, Step
@@ -94,7 +95,8 @@ class HeatStep:
             last_profile(record.profile, record.pressure, walls_apart, tuple(law), between, middle)
         of_nodes = np.array((*rows, *rubbed, *responses, between, middle, record.base))
         guess = np.array((record.base, record.profile, record.film))
-        return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
+        oil = None if inputs.oil is None else IsothermalOil(inputs.fluid, self.scales)
+        return FilmHeat(oil, law, of_nodes, guess, np.array(walls), stored, bodies)
 
     def solve(
         self, record: HeatRecord, solution: Solution, step: Step
@@ -104,7 +106,9 @@ class HeatStep:
         Returns both, and `source`, `spread`, `solved` of :class:`.record.HeatRecord`, shape (nx,).
         """
         s, loads = self.scales, solution.loads
-        heat = solution.inputs.heat or self.film_heat(record, solution.inputs, step)
+        heat = solution.inputs.oil  # of the first steady solution, and without oil, isothermal
+        if not isinstance(heat, FilmHeat):
+            heat = self.film_heat(record, solution.inputs, step)
         friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
         rubbing = friction * loads.friction_pressure * s.p0
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.nx)
@@ -145,9 +149,10 @@ class HeatStep:
         n, nodes, backward = self.scales.nx, solution.nodes, solution.inputs.conditions.entrainment < 0.0
         given = solution.inputs, nodes.reynolds_unknown, nodes.film, solution.loads.oil_mask, heat.guess
         inputs, q, h, oil, guess = map(mirrored, given) if backward else given
-        solved = guess.copy()
+        filled = inputs.oil.begin()
         couette, *of_nodes = np.zeros(n + 1), np.empty(n), np.empty(n), np.empty(n)
-        at = self.reynolds.properties(q, h, inputs, solved)
+        at = self.reynolds.properties(q, h, filled)
+        solved = filled.guess if isinstance(filled, FilmHeat) else guess
         limits = self._max_flow(h, oil, inputs)
         law = self.reynolds.face_law(inputs), self.reynolds.flow_table(inputs)
         faces(at, *law, oil, limits, couette, *of_nodes)
