@@ -12,7 +12,8 @@ from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
-from ehlpetsc.effects.heat.film_law import MEAN, FilmLaw, film_law, film_temperature
+from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
+from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law
 from ehlpetsc.effects.heat.film_shear import film_stress, wall_exchange
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
 from ehlpetsc.physics.laws import ln_viscosity, padded
@@ -39,7 +40,11 @@ MIDDLE, REFERENCE = 395.0, 375.0
 
 
 def solved(p=0.8e9, h=3e-7, left=0.9, walls=WALLS, law=LAW, guess=370.0):
-    return film_temperature(guess, 0.0, p, h, left, A, B, G, SPREAD, MIDDLE, REFERENCE, walls, law)
+    return film_at((p, h, left), (A, B, G), (SPREAD, MIDDLE, REFERENCE), walls, law, guess)
+
+
+def film_at(node, balance, last, walls, law, guess=370.0):
+    return film_temperature((guess, 0.0), node, balance, last, walls, law)[0]
 
 
 LAWS = {
@@ -72,8 +77,8 @@ def test_unequal_walls_get_the_heat_of_the_closed_form(t1, t2):
     film = film_stress(3e-7, eta, 0.04, t1, t2, 0.14, 12.5, FlowLaw(*LAW.flow))
     exchange = wall_exchange(float(film.y), 0.02 * (t1 - t2))
     walls = t1, t2, 0.0, 0.0, 1.0 / exchange
-    start = 370.0, 0.0, 0.8e9, 3e-7, 1.0, 1e-6, 1e-6 * 363.0, 0.0, 0.0, 375.0, 375.0
-    _, _, _, q1, q2, shear, *_ = film_temperature(*start, walls, LAW)
+    balance, last = (1e-6, 1e-6 * 363.0, 0.0), (0.0, 375.0, 375.0)
+    _, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0), balance, last, walls, LAW)
     assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)
     assert (q1, q2) == pytest.approx((float(film.q1), float(film.q2)), rel=1e-8)
     assert exchange < 0.9
@@ -83,9 +88,8 @@ def test_unequal_walls_get_the_heat_of_the_closed_form(t1, t2):
 def test_shear_stress_of_a_film_without_transport(law):
     """That of the closed form between the walls, whose temperatures follow from the fluxes."""
     a, walls = 1e-6, (372.0, 372.0, 1.4e-8, 1.4e-8, 1.0)
-    t, _, _, q1, q2, shear, *_ = film_temperature(
-        370.0, 0.0, 0.8e9, 3e-7, 1.0, a, a * 363.0, 0.0, SPREAD, MIDDLE, REFERENCE, walls, law
-    )
+    balance, last = (a, a * 363.0, 0.0), (SPREAD, MIDDLE, REFERENCE)
+    t, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0), balance, last, walls, law)
     wall = 372.0 + 1.4e-8 * q1
     ln_eta, middle = (ln_viscosity(law.viscosity, 0.8e9, t)[0] for t in (REFERENCE, MIDDLE))
     slope = (middle - ln_eta) / (MIDDLE - REFERENCE)
@@ -130,9 +134,8 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
     law = LAW._replace(sliding=0.0)
 
     def found(h):
-        return film_temperature(
-            370.0, 0.0, 1e6, h, 1.0, a, a * (363.0 + over), 0.0, 0.0, 363.0, 363.0, walls, law
-        )
+        balance = a, a * (363.0 + over), 0.0
+        return film_at((1e6, h, 1.0), balance, (0.0, 363.0, 363.0), walls, law)
 
     t, _, by_h, q1, q2, *_ = found(h)
     t1, t2 = walls[0] + walls[2] * q1, walls[1] + walls[3] * q2
@@ -154,8 +157,7 @@ def test_exchange_is_continuous():
     a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
     law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
     fluxes = [
-        film_temperature(370.0, 0.0, 1e6, 1e-6, 1.0, a, a * t, 0.0, 0.0, 363.0, 363.0, walls, law)[3:5]
-        for t in inlet
+        film_at((1e6, 1e-6, 1.0), (a, a * float(t), 0.0), (0.0, 363.0, 363.0), walls, law)[3:5] for t in inlet
     ]
     steps = np.diff(np.array(fluxes), axis=0)
     assert (steps > -1e-3).all()
@@ -305,12 +307,13 @@ def carried(profile, nodes, way=1.0, moving=False):
     change, t, worst = begin - profile(along + dx * courant) if moving else zero, INLET + begin, 0.0
     kept = 0.5 * stored * change
     for _ in range(steps):
-        film = zero, 1e-6 * full, full, t, stored, change, kept, flow
+        film = np.array((zero, 1e-6 * full, full, t, stored, change, kept))
         a, b = explicit_transport(stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
         of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
-        new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
-        assert transport(b / a, zero.copy(), b / a, *film, INLET, INLET, tuple(STILL), of_nodes, *out) == 1
+        _, _, new = state = np.array((b / a, zero, b / a))
+        q1, q2, _, beyond = out = np.empty((4, nodes))
+        assert transport(state, film, flow, (INLET, INLET), tuple(STILL), of_nodes, out) == 1
         taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
         worst = max(worst, abs(taken + q1.sum() + q2.sum()))
         change, t, kept = new - t, new, beyond

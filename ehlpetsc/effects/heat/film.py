@@ -26,7 +26,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
 )
 from ehlpetsc.discretisation.oil import IsothermalOil, last_before
-from ehlpetsc.effects.heat.film_law import MIN_SLOPE, REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
@@ -41,7 +42,7 @@ class FilmHeat(NamedTuple):
 
     `isothermal`: oil without heat; None: dry.
     `law`: constants of the oil.
-    `of_nodes`: rows `A` to `REFERENCE`, as of :func:`.film_law.film_temperature`, shape (10, nx): one array,
+    `of_nodes`: rows `A` to `REFERENCE`, of :mod:`.film_law`, shape (11, nx): one array,
         as numba looks up the types of many in a tuple anew in some calls, slowly.
     `guess`: state of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).
     `walls`: temperatures without the flux of the step [K], shape (2, nx).
@@ -93,12 +94,10 @@ class SolvedFilm(FilmHeat):
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
         """As :meth:`.oil.Oil.fill`; changes `guess`."""
-        states = self.guess[:, nodes]
-        rows = [np.ascontiguousarray(row) for row in states]
-        of_nodes = np.ascontiguousarray(self.of_nodes[:, nodes])
+        state, of_nodes = (np.ascontiguousarray(rows[:, nodes]) for rows in (self.guess, self.of_nodes))
         oil = self.isothermal
-        heated_nodal(q, h, oil.density, *oil.units, tuple(self.law), of_nodes, *rows, at)
-        states[:] = rows
+        heated_nodal(q, h, oil.density, oil.units, tuple(self.law), of_nodes, state, at)
+        self.guess[:, nodes] = state
 
 
 @compiled
@@ -106,43 +105,37 @@ def heated_nodal(
     q: np.ndarray,
     h: np.ndarray,
     density: tuple,
-    p0: float,
-    film: float,
-    unit: float,
+    units: tuple[float, float, float],
     law: tuple,
     of_nodes: np.ndarray,
-    base: np.ndarray,
-    profile: np.ndarray,
-    mean: np.ndarray,
+    state: np.ndarray,
     at: np.ndarray,
 ) -> None:
     """Fill in the properties of nodes for their faces, viscosity at the film's temperature with derivatives.
 
-    q, h, density, p0, film, unit and `at` as of :func:`.oil.nodal`; a node beyond the outlet has the
-    temperature of the last one. `base`, `profile` and `mean` are the state of the film to start from,
-    and become that of the nodes. `law` is a tuple: numba looks up the type of a named one anew in some calls.
+    q, h, density, units and `at` as of :func:`.oil.nodal`; a node beyond the outlet has the temperature of
+    the last one. `state` of the film to start from becomes that of the nodes. `law` is a tuple: numba looks
+    up the type of a named one anew in some calls.
     """
-    nodes, law = len(q), FilmLaw(*law)
+    nodes, law, (p0, film, unit) = len(q), FilmLaw(*law), units
+    zero = law.viscosity[2]
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
-        of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
-        left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, line, base[i], profile[i] = film_temperature(
-            base[i], profile[i], p, at[H, i], left, *of_node
-        )
-        zero = law.viscosity[2]
+        start, node = (state[BASE, i], state[PROFILE, i]), (p, at[H, i], 1.0 + min(q[i], 0.0))
+        balance, (last, walls) = (of_nodes[A, i], of_nodes[B, i], of_nodes[G, i]), fixed_at(i, of_nodes)
+        found, oil = film_temperature(start, node, balance, last, walls, law)
+        t = found.mean
         if law.is_linear:  # in T: no second power of the pressure
-            (ln_eta, beta, by_p), start = line, of_nodes[REFERENCE, i]
-            viscosity = ln_eta - beta * (t - start), by_p, -beta
-            at_zero = ln_eta - beta * (zero - start), by_p, -beta
+            viscosity = oil.ln_eta - oil.beta * (t - oil.reference), oil.eta_p, -oil.beta
+            at_zero = oil.ln_eta - oil.beta * (zero - oil.reference), oil.eta_p, -oil.beta
         else:
             viscosity, at_zero = ln_viscosities(law.viscosity, p, t, zero)
-        _fill_fluidity(i, viscosity, at_zero, t_p, t_h, law, p0, film, at)
-        mean[i] = t
+        _fill_fluidity(i, viscosity, at_zero, found.by_p, found.by_h, law, p0, film, at)
+        state[BASE, i], state[PROFILE, i], state[MEAN, i] = found.base, found.profile, t
     for i in range(nodes, at.shape[1]):
-        last = last_before(i, nodes, at)
-        p = fill_mass(i, 0.0, h[last], density, p0, film, unit, at)
-        viscosities = ln_viscosities(law.viscosity, p, mean[last], law.viscosity[2])
+        end = last_before(i, nodes, at)
+        p = fill_mass(i, 0.0, h[end], density, p0, film, unit, at)
+        viscosities = ln_viscosities(law.viscosity, p, state[MEAN, end], zero)
         _fill_fluidity(i, *viscosities, 0.0, 0.0, law, p0, film, at)
 
 

@@ -14,7 +14,8 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces, last_profile
-from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G, film_law
+from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
+from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
@@ -192,13 +193,12 @@ class HeatStep:
         """State of the film, both fluxes, the heat of shear and e."""
         rubbed, fractions = _rubbed(walls, responses, film.rubbing)
         heat = heat.with_rows((W1, W2, R1, R2), (*rubbed, *responses))
-        base, profile, t = (row.copy() for row in state)
-        new, *fluxes, shear, extrapolated = out = [np.empty(len(t)) for _ in range(5)]
-        transport(
-            base, profile, t, *film[:-1], self.inlet, self.coldest, tuple(heat.law), heat.of_nodes, *out
-        )
+        state, rows, couette = state.copy(), np.array(film[:-2]), film.couette
+        *fluxes, shear, extrapolated = out = np.empty((4, state.shape[1]))
+        ambient = self.inlet, self.coldest
+        transport(state, rows, couette, ambient, tuple(heat.law), heat.of_nodes, out)
         fluxes = [q + part * film.rubbing for q, part in zip(fluxes, fractions, strict=True)]
-        return np.array((base, profile, new)), fluxes, shear, extrapolated
+        return state, fluxes, shear, extrapolated
 
     def _moving(self, heat: FilmHeat, film: Film) -> Temperatures:
         responses = heat.of_nodes[[R1, R2]]
