@@ -22,6 +22,7 @@ import numpy as np
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.deflection import PressureSums
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
@@ -109,9 +110,11 @@ class EHLProblem:
         self.film_scale, self.model = film_scale, model
         self.deflection, self.reynolds = deflection, reynolds
         self._undeformed = self.grid.undeformed[self.window]
-        self.inlet_film = None
-        if self.fluid is not None and self.fluid.inlet_film is not None:
-            self.inlet_film = self.fluid.inlet_film / scales.h
+        self.inlet_film = self.oil = None
+        if self.fluid is not None:
+            self.oil = IsothermalOil(self.fluid, scales)
+            if self.fluid.inlet_film is not None:
+                self.inlet_film = self.fluid.inlet_film / scales.h
 
     @property
     def load_is_local(self) -> bool:
@@ -130,7 +133,7 @@ class EHLProblem:
         conditions = conditions or self.scales.conditions
         friction = self.boundary_friction
         return StepInputs(
-            phi, history, self.fluid, self.inlet_film, conditions, dt=dt, boundary_friction=friction
+            phi, history, self.oil, self.inlet_film, conditions, dt=dt, boundary_friction=friction
         )
 
     def film(self, pressure: np.ndarray, h00: float, phi: np.ndarray) -> np.ndarray:
@@ -156,12 +159,10 @@ class EHLProblem:
         unknowns: Unknowns,
         inputs: StepInputs,
         sums: PressureSums | None = None,
-        temperatures: np.ndarray | None = None,
     ) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.
 
         `sums` of the pressures at these unknowns are required unless the window is the whole mesh.
-        `temperatures` are those of the film to start from, and then the solved ones; None: no warm start.
         """
         (q, w, h00), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
@@ -171,9 +172,7 @@ class EHLProblem:
         separation = state.separation - curvature * self._undeformed - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
         q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
-        reynolds, derivatives = self.reynolds.evaluate(
-            state.reynolds_unknown, state.film, inputs, temperatures
-        )
+        reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
         w_of(residual, self.local)[:] = reynolds
         if self.load_is_local:
             residual[-1] = sums.load[-1] - self.grid.load * inputs.load_share * (

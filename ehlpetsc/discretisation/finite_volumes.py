@@ -10,8 +10,9 @@ thick neighbour. The viscosities stay the nodes': with the one at the mean press
 would fall again when its pressure exceeds its neighbour's by more than about 2/alpha: a fold, at which
 Newton's method cycles, and which asperities two nodes wide reach.
 
-In films with heat the fluidities of both nodes are those at the mean of their temperatures. At its own
-temperature a hot node can be the more fluid one although its pressure is higher, which is the same fold.
+An oil may be thinned by other than its pressure: both nodes then have the fluidities at the mean of both
+nodes' thinning. With its own, a node can be the more fluid one although its pressure is higher, which is the
+same fold.
 """
 
 import numpy as np
@@ -31,11 +32,10 @@ M, M_Q, M_H = 3, 4, 5  # mass per area rho h (1 - theta) in a^2/R, and its deriv
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 PROPERTIES = 10
-# In films with heat FLUIDITY and LN_ETA_P hold at the reference temperature. THERMAL is the square root of
-# fluidity at the film's temperature / fluidity at the reference temperature, LN_THERMAL_* the derivatives of
-# its logarithm.
-THERMAL, LN_THERMAL_P, LN_THERMAL_H = 10, 11, 12
-HEATED_PROPERTIES = 13
+# Of an oil that is thinned by other than its pressure, FLUIDITY and LN_ETA_P hold without that. THINNING is
+# the square root of the fluidity over that one, LN_THINNING_* the derivatives of its logarithm by p and h.
+THINNING, LN_THINNING_P, LN_THINNING_H = 10, 11, 12
+THINNED_PROPERTIES = 13
 
 
 @compiled
@@ -65,7 +65,7 @@ def extrapolated(m: np.ndarray, behind: np.ndarray, k: float) -> np.ndarray:
 def fill_mass(
     i: int, q: float, h: float, density: tuple, p0: float, film: float, unit: float, at: np.ndarray
 ) -> float:
-    """Fill in the properties of node i except its viscosity, as :func:`.reynolds.nodal`; return p [Pa]."""
+    """Fill in the properties of node i except its viscosity, as :func:`.oil.nodal`; return p [Pa]."""
     p, oil_fraction, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
     rho, rho_p = relative_density(density, p0 * p)
     at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * h
@@ -77,11 +77,11 @@ def fill_mass(
 
 @compiled
 def fluidities(at: np.ndarray, left: int, right: int) -> tuple:
-    """1/eta [1/(Pa s)] of two neighbours at the mean of their temperatures."""
+    """1/eta [1/(Pa s)] of two neighbours at the mean of their thinning."""
     if at.shape[0] == PROPERTIES:
         return at[FLUIDITY, left], at[FLUIDITY, right]
-    thermal = at[THERMAL, left] * at[THERMAL, right]
-    return thermal * at[FLUIDITY, left], thermal * at[FLUIDITY, right]
+    thinning = at[THINNING, left] * at[THINNING, right]
+    return thinning * at[FLUIDITY, left], thinning * at[FLUIDITY, right]
 
 
 @compiled
@@ -160,13 +160,13 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
         by_p_l, by_p_r = by_p_l + by_stress, by_p_r + by_stress
     by_film_l = by_film_r = by_film
     if at.shape[0] > PROPERTIES:
-        by_thermal = -half * (rho_l * mobility_l[3] + rho_r * mobility_r[3])
+        by_thinning = -half * (rho_l * mobility_l[3] + rho_r * mobility_r[3])
         by_p_l, by_p_r = (
-            by_p_l + by_thermal * at[LN_THERMAL_P, left],
-            by_p_r + by_thermal * at[LN_THERMAL_P, right],
+            by_p_l + by_thinning * at[LN_THINNING_P, left],
+            by_p_r + by_thinning * at[LN_THINNING_P, right],
         )
-        by_film_l += by_thermal * at[LN_THERMAL_H, left]
-        by_film_r += by_thermal * at[LN_THERMAL_H, right]
+        by_film_l += by_thinning * at[LN_THINNING_H, left]
+        by_film_r += by_thinning * at[LN_THINNING_H, right]
     couette, by_left, by_behind = entrainment * couette, entrainment * by_left, entrainment * by_behind
     return (
         couette - mean * gradient,

@@ -21,19 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.finite_volumes import (
-    FLUIDITY,
-    HEATED_PROPERTIES,
-    LN_ETA_P,
-    PROPERTIES,
-    M,
-    balance,
-    fill_mass,
-)
+from ehlpetsc.discretisation.finite_volumes import M, balance
+from ehlpetsc.discretisation.oil import Oil
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
-from ehlpetsc.physics.laws import density, ln_viscosity
+from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.rheology import NEWTON, flow_law, stress_pressure
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import flow_table
@@ -80,20 +72,11 @@ class Reynolds:
         rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
-    def properties(
-        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
-    ) -> np.ndarray:
-        """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
-
-        `temperatures` of the whole mesh [K], with heat: those to start from, and then the solved ones.
-        """
-        q, h, s = q[self.input_nodes], h[self.input_nodes], self.scales
-        rows = PROPERTIES if inputs.heat is None else HEATED_PROPERTIES
-        at, units = np.empty((rows, len(q) + self.has_outlet)), (s.p0, s.h, 1.0 / (s.u * s.h))
-        if inputs.heat is not None:
-            inputs.heat.fill_properties(q, h, inputs.density, units, self.nodes, temperatures, at)
-            return at
-        nodal(q, h, inputs.viscosity, inputs.density, (*units, 1.0 / inputs.fluid.viscosity), at)
+    def properties(self, q: np.ndarray, h: np.ndarray, oil: Oil) -> np.ndarray:
+        """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`."""
+        q, h = q[self.input_nodes], h[self.input_nodes]
+        at = np.empty((oil.rows, len(q) + self.has_outlet))
+        oil.fill(q, h, self.nodes, at)
         return at
 
     def face_law(self, inputs: StepInputs) -> tuple:
@@ -105,19 +88,16 @@ class Reynolds:
         """Table of the pressure flow, empty where the shear law has a closed form."""
         return flow_table_of(inputs)
 
-    def evaluate(
-        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows and its derivatives.
 
         `q`, `h`: unknowns from the node `start` on.
-        `temperatures`: see :meth:`properties`.
 
         Returns the residual, shape (local nodes,), and its derivatives with respect to q and h of the nodes
         of `columns`, shape (local nodes, 8).
         """
         rows, history, law = self.rows, inputs.history, self.face_law(inputs)
-        at, first = self.properties(q, h, inputs, temperatures), self.row_in_input
+        at, first = self.properties(q, h, inputs.oil), self.row_in_input
         storage = at[M, first:], at[M, first:], 0.0, 0.0
         if history is not None:
             storage = history.m[rows], history.extrapolated[rows], history.k, self.dx / history.dt
@@ -165,30 +145,6 @@ def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndar
     )
 
 
-@compiled
-def nodal(
-    q: np.ndarray, h: np.ndarray, viscosity: tuple, density: tuple, units: tuple, at: np.ndarray
-) -> None:
-    """Fill in the nodal properties, see :mod:`.finite_volumes`.
-
-    Parameters
-    ----------
-    q, h : shape (nodes,)
-    viscosity, density
-        :class:`ehlpetsc.physics.laws.OilLaw` of both, as tuples, which numba looks up faster.
-    units
-        Scales of pressure p0 [Pa] and film [m]; 1/(u film) [s/m^2]; 1/eta0 [1/(Pa s)].
-    at : shape (10, nodes)
-        An additional node is beyond the outlet, with the film of the last node and no pressure.
-    """
-    nodes, (p0, film, unit, fluidity) = len(q), units
-    for i in range(at.shape[1]):
-        here, gap = (q[i], h[i]) if i < nodes else (0.0, h[nodes - 1])
-        p = fill_mass(i, here, gap, density, p0, film, unit, at)
-        ln_eta, ln_eta_p, _ = ln_viscosity(viscosity, p, viscosity[2])
-        at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
-
-
 class NoOil:
     """Rows of the nodes first .. last-1; interface of :class:`.reynolds.Reynolds`.
 
@@ -208,7 +164,5 @@ class NoOil:
         """Return None: there is no oil."""
         return None
 
-    def evaluate(
-        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         return q[self.owned], self._derivatives

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import extrapolated
-from ehlpetsc.physics.laws import density_law, viscosity_law
+from ehlpetsc.discretisation.oil import Oil
 from ehlpetsc.physics.operation import Conditions
 
 Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
@@ -41,36 +40,33 @@ class StepInputs:
 
     `phi`: contribution of the roughness to the gap, in a^2/R, shape (nx,).
     `history`: previous time levels; None: steady.
-    `fluid`: None: dry.
+    `oil`: None: dry.
     `inlet_film`: oil film at the inlet in a^2/R; None: flooded.
     `conditions`: at the end of the step.
     `load_share`: applied fraction of the load of `conditions`.
     `dt`: length of the step [s]; None: steady.
     `contact`: contact model of the solve; None: that of the problem.
-    `heat`: data of the film's temperature, :class:`ehlpetsc.effects.heat.film.FilmHeat`; None: isothermal.
     `boundary_friction`: coefficient of friction between the solids.
     """
 
     phi: np.ndarray
     history: FilmHistory | None
-    fluid: Any
+    oil: Oil | None
     inlet_film: float | None
     conditions: Conditions
     load_share: float = 1.0
     dt: float | None = None
     contact: ContactModel | None = None
-    heat: Any = None
     boundary_friction: float | np.ndarray = 0.0
 
-    @cached_property
-    def viscosity(self) -> tuple:
-        """Isothermal law of the viscosity, as compiled loops take it."""
-        return tuple(viscosity_law(self.fluid))
+    @property
+    def fluid(self) -> Any:
+        """Table `[fluid]` of the case; None: dry."""
+        return self.oil and self.oil.fluid
 
-    @cached_property
-    def density(self) -> tuple:
-        """Law of the density, as compiled loops take it."""
-        return tuple(density_law(self.fluid))
+    def begin(self) -> StepInputs:
+        """Inputs of one solve, see :meth:`.oil.Oil.begin`."""
+        return replace(self, oil=self.oil and self.oil.begin())
 
 
 def mirrored(value: Any) -> Any:

@@ -73,7 +73,7 @@ class TwoFields:
         self._create_vectors()
         self.inputs: StepInputs = None
         self.rows: Rows = None
-        self.x_evaluated = self.operator = self.temperatures = None
+        self.x_evaluated = self.operator = None
         self.bound_reached = False
 
     def _create_vectors(self) -> None:
@@ -100,8 +100,7 @@ class TwoFields:
 
     def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
         """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve."""
-        self.inputs, self.x_evaluated, self.rows = inputs, None, None
-        self.temperatures = None if inputs.heat is None else inputs.heat.guess.copy()
+        self.inputs, self.x_evaluated, self.rows = inputs.begin(), None, None
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
         if self.problem.load_is_local:
@@ -139,7 +138,7 @@ class TwoFields:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
             unknowns, sums, self.bound_reached = self.exchange.unknowns(*local_data)
-            self._evaluation = self.problem.evaluate(unknowns, self.inputs, sums, self.temperatures)
+            self._evaluation = self.problem.evaluate(unknowns, self.inputs, sums)
         return self._evaluation
 
     def linearise(self, x: PETSc.Vec, is_evaluated: bool = False) -> None:

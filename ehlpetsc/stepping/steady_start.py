@@ -25,6 +25,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.physics.rheology import SHEAR_LAWS
@@ -163,10 +164,10 @@ class Continuation:
 
 def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
     """Inputs with fractions of the pressure-viscosity coefficient and of the roughness."""
-    fluid = inputs.fluid
+    fluid, oil = inputs.fluid, inputs.oil
     if fluid and fraction < 1.0:
         change = {"exponent_factor": fraction}
         stresses = {key: getattr(fluid, key) for key in SHEAR_LAWS}
         change |= {key: stress / fraction**4 for key, stress in stresses.items() if stress is not None}
-        fluid = fluid.copy(update=change)
-    return replace(inputs, fluid=fluid, phi=roughness * inputs.phi)
+        oil = IsothermalOil(fluid.copy(update=change), oil.scales)
+    return replace(inputs, oil=oil, phi=roughness * inputs.phi)

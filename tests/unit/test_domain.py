@@ -12,6 +12,7 @@ from ehlpetsc.physics.film_formulas import (
     inlet_opening,
     points_for_opening,
 )
+from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.validity import domain_faults, domain_warnings
 from ehlpetsc.stepping.convergence_check import check_ends
@@ -88,10 +89,11 @@ def test_contact_at_the_domain_ends_is_an_error():
 
 
 def test_pressure_at_the_outlet_is_an_error():
-    x, dry = np.linspace(-2.0, 1.2, 5), np.zeros(5, bool)
-    check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
-    check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0099]), dry)
+    grid = Grid((np.linspace(-2.0, 1.2, 5),), (1e-4,), (1.0,), (1.0,), 0.5 * np.pi)
+    dry = np.zeros(5, bool)
+    check_ends(grid, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
+    check_ends(grid, np.array([0.0, 0.5, 1.0, 0.3, 0.0099]), dry)
     with pytest.raises(ehlpetsc.NotConverged, match=r"^0\.01 p0 .* x = 1\.2 a: .* mesh\.outlet "):
-        check_ends(x, np.array([0.0, 0.5, 1.0, 0.3, 0.0102]), dry)
+        check_ends(grid, np.array([0.0, 0.5, 1.0, 0.3, 0.0102]), dry)
     with pytest.raises(ehlpetsc.NotConverged, match=r"^0\.3 p0 .* x = 1\.2 a: .* mesh\.outlet "):
-        check_ends(x, np.array([0.0, 0.5, 1.0, 1.0, 0.3]), dry)
+        check_ends(grid, np.array([0.0, 0.5, 1.0, 1.0, 0.3]), dry)

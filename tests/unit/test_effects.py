@@ -67,8 +67,10 @@ class Additive(Effect):
     name = "additive"
 
     def inputs(self, record, inputs, step):
-        fluid = inputs.fluid and inputs.fluid.copy(update={"viscosity": 2.0 * inputs.fluid.viscosity})
-        return replace(inputs, fluid=fluid, boundary_friction=2.0 * inputs.boundary_friction)
+        oil = inputs.oil
+        if oil:
+            oil = replace(oil, fluid=oil.fluid.copy(update={"viscosity": 2.0 * oil.fluid.viscosity}))
+        return replace(inputs, oil=oil, boundary_friction=2.0 * inputs.boundary_friction)
 
     @classmethod
     def is_in(cls, case):

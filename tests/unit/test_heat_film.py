@@ -8,10 +8,12 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
-from ehlpetsc.effects.heat.film_law import MEAN, FilmLaw, film_law, film_temperature
+from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
+from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law
 from ehlpetsc.effects.heat.film_shear import film_stress, wall_exchange
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
 from ehlpetsc.physics.laws import ln_viscosity, padded
@@ -38,7 +40,11 @@ MIDDLE, REFERENCE = 395.0, 375.0
 
 
 def solved(p=0.8e9, h=3e-7, left=0.9, walls=WALLS, law=LAW, guess=370.0):
-    return film_temperature(guess, 0.0, p, h, left, A, B, G, SPREAD, MIDDLE, REFERENCE, walls, law)
+    return film_at((p, h, left), (A, B, G), (SPREAD, MIDDLE, REFERENCE), walls, law, guess)
+
+
+def film_at(node, balance, last, walls, law, guess=370.0):
+    return film_temperature((guess, 0.0), node, balance, last, walls, law)[0]
 
 
 LAWS = {
@@ -71,8 +77,8 @@ def test_unequal_walls_get_the_heat_of_the_closed_form(t1, t2):
     film = film_stress(3e-7, eta, 0.04, t1, t2, 0.14, 12.5, FlowLaw(*LAW.flow))
     exchange = wall_exchange(float(film.y), 0.02 * (t1 - t2))
     walls = t1, t2, 0.0, 0.0, 1.0 / exchange
-    start = 370.0, 0.0, 0.8e9, 3e-7, 1.0, 1e-6, 1e-6 * 363.0, 0.0, 0.0, 375.0, 375.0
-    _, _, _, q1, q2, shear, *_ = film_temperature(*start, walls, LAW)
+    balance, last = (1e-6, 1e-6 * 363.0, 0.0), (0.0, 375.0, 375.0)
+    _, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0), balance, last, walls, LAW)
     assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)
     assert (q1, q2) == pytest.approx((float(film.q1), float(film.q2)), rel=1e-8)
     assert exchange < 0.9
@@ -82,9 +88,8 @@ def test_unequal_walls_get_the_heat_of_the_closed_form(t1, t2):
 def test_shear_stress_of_a_film_without_transport(law):
     """That of the closed form between the walls, whose temperatures follow from the fluxes."""
     a, walls = 1e-6, (372.0, 372.0, 1.4e-8, 1.4e-8, 1.0)
-    t, _, _, q1, q2, shear, *_ = film_temperature(
-        370.0, 0.0, 0.8e9, 3e-7, 1.0, a, a * 363.0, 0.0, SPREAD, MIDDLE, REFERENCE, walls, law
-    )
+    balance, last = (a, a * 363.0, 0.0), (SPREAD, MIDDLE, REFERENCE)
+    t, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0), balance, last, walls, law)
     wall = 372.0 + 1.4e-8 * q1
     ln_eta, middle = (ln_viscosity(law.viscosity, 0.8e9, t)[0] for t in (REFERENCE, MIDDLE))
     slope = (middle - ln_eta) / (MIDDLE - REFERENCE)
@@ -129,9 +134,8 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
     law = LAW._replace(sliding=0.0)
 
     def found(h):
-        return film_temperature(
-            370.0, 0.0, 1e6, h, 1.0, a, a * (363.0 + over), 0.0, 0.0, 363.0, 363.0, walls, law
-        )
+        balance = a, a * (363.0 + over), 0.0
+        return film_at((1e6, h, 1.0), balance, (0.0, 363.0, 363.0), walls, law)
 
     t, _, by_h, q1, q2, *_ = found(h)
     t1, t2 = walls[0] + walls[2] * q1, walls[1] + walls[3] * q2
@@ -153,8 +157,7 @@ def test_exchange_is_continuous():
     a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
     law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
     fluxes = [
-        film_temperature(370.0, 0.0, 1e6, 1e-6, 1.0, a, a * t, 0.0, 0.0, 363.0, 363.0, walls, law)[3:5]
-        for t in inlet
+        film_at((1e6, 1e-6, 1.0), (a, a * float(t), 0.0), (0.0, 363.0, 363.0), walls, law)[3:5] for t in inlet
     ]
     steps = np.diff(np.array(fluxes), axis=0)
     assert (steps > -1e-3).all()
@@ -206,9 +209,10 @@ def test_derivatives_of_reynolds_rows(ends):
     arrays[4] = arrays[5]  # derivatives are at a constant difference of the walls
     arrays += [np.full(n, 375.0)] * 2
     law = film_law(case.fluid, case.heat, scales.conditions.sliding)
-    heat = FilmHeat(law, np.array(arrays), state(n), None, np.zeros(n))
-    inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
-    thermal = replace(inputs, heat=heat)
+    oil = IsothermalOil(case.fluid, scales)
+    heat = FilmHeat(oil, law, np.array(arrays), state(n), None, np.zeros(n))
+    inputs = StepInputs(np.zeros(n), None, oil, None, scales.conditions)
+    thermal = replace(inputs, oil=heat)
     values = reynolds.evaluate(q, h, thermal)[1]
     assert np.abs(values - reynolds.evaluate(q, h, inputs)[1]).max() > 1.0
     for side, vector in enumerate((q, h)):
@@ -248,16 +252,37 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
         b / 1e6,
         b / 1e6,
     )
-    heat = FilmHeat(film_law(case.fluid, case.heat, 0.0), np.array(of_nodes), state(n), None, zero)
-    inputs = StepInputs(np.zeros(n), None, case.fluid, None, scales.conditions)
-    found = heat.guess.copy()
-    cold, hot = (reynolds.properties(q, h, one, found) for one in (inputs, replace(inputs, heat=heat)))
+    oil, law = IsothermalOil(case.fluid, scales), film_law(case.fluid, case.heat, 0.0)
+    heat = FilmHeat(oil, law, np.array(of_nodes), state(n), None, zero)
+    solved = heat.begin()
+    cold, hot = (reynolds.properties(q, h, one) for one in (oil, solved))
+    found = solved.guess
     assert found[MEAN, 20] == pytest.approx(563.0) and heat.guess[MEAN, 20] == 370.0
     factor = np.exp(0.04 * 0.5 * (found[MEAN, 19] + found[MEAN, 20] - 2.0 * 363.0))
     found = np.array(volumes.fluidities(hot, 19, 20))
     np.testing.assert_allclose(found, factor * cold[volumes.FLUIDITY, 19:21], rtol=1e-9)
-    own = hot[volumes.THERMAL, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
+    own = hot[volumes.THINNING, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
     assert own[1] > own[0] and found[1] < found[0]
+
+
+def test_nodes_in_rows_have_the_properties_of_each_row_alone():
+    """Flat fields, x fastest; the nodes beyond the outlet, one of each row, come last."""
+    case = load(CASE, ["mesh.points_per_half_width=16", "heat.bulk_temperature=363.0"])
+    scales, (rows, n), rng = Scales.of(case), (3, 7), np.random.default_rng(2)
+    q, h = rng.uniform(-0.2, 0.8, rows * n), 5e-4 * rng.uniform(0.5, 2.0, rows * n)
+    constants = [1e6, 363e6, 0.0, 0.0, 363.0, 363.0, 1e-8, 1e-8, 1.0, 363.0, 363.0]
+    of_nodes = np.outer(constants, np.ones(rows * n))
+    of_nodes[1] *= rng.uniform(1.0, 1.1, rows * n)
+    oil = IsothermalOil(case.fluid, scales)
+    law = film_law(case.fluid, case.heat, scales.conditions.sliding)
+    for one in (oil, FilmHeat(oil, law, of_nodes, state(rows * n), None, np.zeros(rows * n))):
+        whole = np.empty((one.rows, rows * (n + 1)))
+        one.fill(q, h, slice(0, rows * n), whole)
+        for row in range(rows):
+            nodes, alone = slice(row * n, (row + 1) * n), np.empty((one.rows, n + 1))
+            one.fill(q[nodes], h[nodes], nodes, alone)
+            np.testing.assert_array_equal(whole[:, nodes], alone[:, :-1])
+            np.testing.assert_array_equal(whole[:, rows * n + row], alone[:, -1])
 
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
@@ -282,12 +307,13 @@ def carried(profile, nodes, way=1.0, moving=False):
     change, t, worst = begin - profile(along + dx * courant) if moving else zero, INLET + begin, 0.0
     kept = 0.5 * stored * change
     for _ in range(steps):
-        film = zero, 1e-6 * full, full, t, stored, change, kept, flow
+        film = np.array((zero, 1e-6 * full, full, t, stored, change, kept))
         a, b = explicit_transport(stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
         of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
-        new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
-        assert transport(b / a, zero.copy(), b / a, *film, INLET, INLET, tuple(STILL), of_nodes, *out) == 1
+        _, _, new = state = np.array((b / a, zero, b / a))
+        q1, q2, _, beyond = out = np.empty((4, nodes))
+        assert transport(state, film, flow, (INLET, INLET), tuple(STILL), of_nodes, out) == 1
         taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
         worst = max(worst, abs(taken + q1.sum() + q2.sum()))
         change, t, kept = new - t, new, beyond

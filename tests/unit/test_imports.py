@@ -150,6 +150,12 @@ def test_reading_packages_reach_neither_solver_nor_petsc_nor_mpi(name):
     assert not libraries & {"petsc4py", "mpi4py"}
 
 
+@pytest.mark.parametrize("name", ["discretisation", "nonlinear", "stepping"])
+def test_heat_is_an_effect_that_the_solver_does_not_know(name):
+    texts = [FILES[module].read_text(encoding="utf-8") for module in FILES if room(module) == name]
+    assert re.findall(r"\w*(?:heat|temperature)\w*", "".join(texts).lower()) == []
+
+
 def test_imported_names_exist():
     unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
     assert unknown == set()

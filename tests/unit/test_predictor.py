@@ -105,8 +105,8 @@ def test_advected_values_lie_between_their_neighbours():
     v = np.zeros(30)
     v[12] = 1.0
     for nodes in (0.25, 0.5, 3.75):
-        moved = advected(v, nodes)
+        moved = advected(v[None], nodes)[0]
         assert moved.min() >= 0.0 and moved.max() <= 1.0
         assert set(np.flatnonzero(moved)) <= {12 + int(nodes), 13 + int(nodes)}
     line = np.arange(60.0)
-    np.testing.assert_allclose(advected(line, 0.25)[20:-20], line[20:-20] - 0.25, rtol=1e-9)
+    np.testing.assert_allclose(advected(line[None], 0.25)[0, 20:-20], line[20:-20] - 0.25, rtol=1e-9)

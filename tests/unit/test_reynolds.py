@@ -8,6 +8,8 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
+from ehlpetsc.discretisation.finite_volumes import flux_through
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.physics.scales import Scales
@@ -20,8 +22,8 @@ FILM = 5e-4  # a^2/R
 def rows_of(extra, first=0, last=None):
     case = load(CASE, MESH + extra)
     scales = Scales.of(case)
-    oil = case.fluid.inlet_film
-    inputs = StepInputs(np.zeros(scales.nx), None, case.fluid, oil and oil / scales.h, scales.conditions)
+    oil, film = IsothermalOil(case.fluid, scales), case.fluid.inlet_film
+    inputs = StepInputs(np.zeros(scales.nx), None, oil, film and film / scales.h, scales.conditions)
     return Reynolds(scales, FILM, first, last or scales.nx), inputs, scales.nx
 
 
@@ -38,6 +40,16 @@ def with_history(inputs, reynolds, q, h):
     m = reynolds.mass_per_area(q, h, inputs.fluid)
     history = FilmHistory(m * rng.uniform(0.6, 1.6, len(m)), m * rng.uniform(0.6, 1.6, len(m)), 0.01, 0.012)
     return replace(inputs, history=history)
+
+
+def test_a_face_has_the_flux_of_its_nodes_wherever_they_are():
+    reynolds, inputs, n = rows_of([])
+    at = reynolds.properties(*state(n), inputs.oil)
+    order = np.random.default_rng(1).permutation(n + 1)
+    mixed, place = np.ascontiguousarray(at[:, order]), np.argsort(order)
+    table, law = reynolds.flow_table(inputs), reynolds.face_law(inputs)
+    for nodes in ((0, 0, 1), (0, 1, 2), (19, 20, 21), (n - 2, n - 1, n)):
+        assert flux_through(mixed, *place[list(nodes)], table, law) == flux_through(at, *nodes, table, law)
 
 
 PRESSED = ["fluid.eyring_stress_pressure=1e-9"]

@@ -129,7 +129,7 @@ def test_expected_films_within_four_percent():
         keys = f"fluid.viscosity={film.viscosity}", f"motion.entrainment_speed={film.speed}"
         given = case.load(CASES / "table1_smooth.toml", keys)
         s = Scales.of(given)
-        central, minimum = film_formulas.smooth_films(given.fluid, s.E, s.conditions)
+        central, minimum = film_formulas.smooth_films(s, given.fluid, s.conditions)
         assert central * 1e6 == pytest.approx(film.h_central, rel=0.025)
         assert minimum * 1e6 == pytest.approx(film.h_min, rel=0.04)
     for point in published_values.MOES_POINTS:

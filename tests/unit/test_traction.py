@@ -41,7 +41,8 @@ def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
 
 def stresses(case, scales, p, solids, h, sheared):
     friction = case.contact.boundary_friction * solids
-    return shear_stresses(case.fluid, friction, scales.dx, scales.u1 - scales.u2, p, h, sheared)
+    gradient = np.gradient(p, scales.dx)
+    return shear_stresses(case.fluid, friction, gradient, scales.u1 - scales.u2, p, h, sheared)
 
 
 def shear(case, scales, p, h, void=0.0, touching=()):

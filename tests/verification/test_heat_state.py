@@ -10,6 +10,7 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.effects.heat.step import HeatStep, Temperatures
 from ehlpetsc.effects.heat.transport import Film
@@ -19,21 +20,24 @@ from ehlpetsc.run.simulation import Simulation
 MESH = {"mesh.inlet": -1.4, "mesh.outlet": 1.3, "mesh.points_per_half_width": 50}
 
 
-class StoredTemperature:
+class StoredTemperature(IsothermalOil):
     """Viscosity of the nodes at a stored temperature."""
 
-    def __init__(self, case, temperature, p0):
-        self.case, self.temperature, self.p0 = case, temperature, p0
+    rows = volumes.THINNED_PROPERTIES
 
-    def fill_properties(self, q, h, density, units, nodes, temperatures, at):
+    def __init__(self, case, temperature, scales):
+        super().__init__(case.fluid, scales)
+        vars(self).update(case=case, temperature=temperature)
+
+    def fill(self, q, h, nodes, at):
         fluid, heat, n = self.case.fluid, self.case.heat, len(q)
         for i in range(at.shape[1]):
-            volumes.fill_mass(i, q[i] if i < n else 0.0, h[min(i, n - 1)], density, *units, at)
-        p = self.p0 * at[volumes.P]
+            volumes.fill_mass(i, q[i] if i < n else 0.0, h[min(i, n - 1)], self.density, *self.units, at)
+        p = self.scales.p0 * at[volumes.P]
         temperature = np.append(self.temperature, self.temperature[-1])[: len(p)]
         cold, hot = viscosity(p, fluid, heat)[0], viscosity(p, fluid, heat, temperature)[0]
         at[volumes.FLUIDITY], at[volumes.LN_ETA_P] = np.exp(-cold) / fluid.viscosity, 0.0
-        at[volumes.THERMAL], at[volumes.LN_THERMAL_P :] = np.exp(0.5 * (cold - hot)), 0.0
+        at[volumes.THINNING], at[volumes.LN_THINNING_P :] = np.exp(0.5 * (cold - hot)), 0.0
 
 
 @pytest.mark.parametrize(
@@ -51,8 +55,8 @@ def test_oil_balance_of_the_stored_state(name, keys):
     simulation = Simulation(case)
     for accepted in islice(simulation, 200):
         state = simulation.solution
-        temperature = StoredTemperature(case, accepted.film_temperature, simulation.scales.p0)
-        inputs = replace(state.solution.inputs, heat=temperature)
+        temperature = StoredTemperature(case, accepted.film_temperature, simulation.scales)
+        inputs = replace(state.solution.inputs, oil=temperature)
         layer = case.contact.asperity_height or 0.0
         reynolds = Reynolds(simulation.scales, 1.0, 0, simulation.scales.nx, layer=layer)
         nodes = state.solution.nodes

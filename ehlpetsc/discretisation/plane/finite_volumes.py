@@ -23,8 +23,8 @@ from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.finite_volumes import (
     DP,
     LN_ETA_P,
-    LN_THERMAL_H,
-    LN_THERMAL_P,
+    LN_THINNING_H,
+    LN_THINNING_P,
     M_H,
     M_Q,
     PROPERTIES,
@@ -113,10 +113,10 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
     by_film_l = by_film_r = by_film
     if at.shape[0] > PROPERTIES:
         by_thermal = -half * factor * (rho_l * eta_l + rho_r * eta_r)
-        by_p_l += by_thermal * at[LN_THERMAL_P, left]
-        by_p_r += by_thermal * at[LN_THERMAL_P, right]
-        by_film_l += by_thermal * at[LN_THERMAL_H, left]
-        by_film_r += by_thermal * at[LN_THERMAL_H, right]
+        by_p_l += by_thermal * at[LN_THINNING_P, left]
+        by_p_r += by_thermal * at[LN_THINNING_P, right]
+        by_film_l += by_thermal * at[LN_THINNING_H, left]
+        by_film_r += by_thermal * at[LN_THINNING_H, right]
     return (
         -factor * mean * gradient,
         -by_p_l * at[DP, left],

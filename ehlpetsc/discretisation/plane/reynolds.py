@@ -14,14 +14,17 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.discretisation.ehl_problem import Share
-from ehlpetsc.discretisation.finite_volumes import PROPERTIES
+from ehlpetsc.discretisation.finite_volumes import DP, FLUIDITY, LN_ETA_P, RHO, RHO_P, P
+from ehlpetsc.discretisation.oil import Oil
 from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
-from ehlpetsc.discretisation.reynolds import flow_table_of, inlet, nodal, shear_constants
+from ehlpetsc.discretisation.reynolds import flow_table_of, inlet, shear_constants
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.rheology import flow_law
 from ehlpetsc.physics.scales import Scales
+
+AMBIENT = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
 
 
 class Reynolds:
@@ -46,44 +49,36 @@ class Reynolds:
     ):
         self.scales, self.film_scale, self.layer = scales, film_scale, layer
         (self.dy, self.dx), self.shape, self.has_sides = spacings, shape, has_sides
-        self.rows, self.owned = share.local, share.owned
+        self.rows, self.owned, self.window = share.local, share.owned, share.window
 
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> np.ndarray:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
         rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
-    def _extended(self, values: np.ndarray, beyond: float | None) -> np.ndarray:
-        """Values of the window with a node beyond the outlet in each row, and rows beyond the sides.
+    def properties(self, q: np.ndarray, h: np.ndarray, oil: Oil) -> np.ndarray:
+        """Nodal properties of the rows of the window, with a node beyond the outlet and rows beyond the sides.
 
-        `beyond`: value there; None: that of the neighbour.
+        Shape (properties, (n_y + 2) (n_x + 1)). Beyond the sides the oil is that beyond the outlet, under the film of
+        the last row.
         """
-        n_y, n_x = self.shape
-        out = np.empty((n_y + 2, n_x + 1))
-        has_lower, has_upper = self.has_sides
-        inner = out[int(has_lower) : n_y + 2 - int(has_upper), :n_x]
-        inner[:] = values.reshape(-1, n_x)
-        if has_lower:
-            out[0, :n_x] = out[1, :n_x] if beyond is None else beyond
-        if has_upper:
-            out[-1, :n_x] = out[-2, :n_x] if beyond is None else beyond
-        out[:, n_x] = out[:, n_x - 1] if beyond is None else beyond
-        return out.ravel()
+        (n_y, n_x), (has_lower, has_upper), rows = self.shape, self.has_sides, len(q) // self.shape[1]
+        flat = np.empty((oil.rows, len(q) + rows))
+        oil.fill(q, h, self.window, flat)
+        at = np.empty((oil.rows, n_y + 2, n_x + 1))
+        inner = at[:, int(has_lower) : n_y + 2 - int(has_upper)]
+        inner[:, :, :n_x] = flat[:, : len(q)].reshape(oil.rows, rows, n_x)
+        inner[:, :, n_x] = flat[:, len(q) :]
+        for has_side, beyond, last in ((has_lower, 0, 1), (has_upper, -1, -2)):
+            if has_side:
+                at[:, beyond] = at[:, last]
+                at[AMBIENT, beyond] = at[AMBIENT, last, n_x:]
+        return at.reshape(oil.rows, -1)
 
-    def properties(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> np.ndarray:
-        """Nodal properties of the rows of the window, extended beyond its edges, shape (10, nodes)."""
-        s = self.scales
-        at = np.empty((PROPERTIES, (self.shape[0] + 2) * (self.shape[1] + 1)))
-        units = s.p0, s.h, 1.0 / (s.u * s.h), 1.0 / inputs.fluid.viscosity
-        nodal(self._extended(q, 0.0), self._extended(h, None), inputs.viscosity, inputs.density, units, at)
-        return at
-
-    def evaluate(
-        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows, shape (local nodes,), and its derivatives, (local nodes, 12)."""
         (n_y, n_x), s, history = self.shape, self.scales, inputs.history
-        at = self.properties(q, h, inputs)
+        at = self.properties(q, h, inputs.oil)
         constants = s.h, *shear_constants(inputs, s), self.layer
         laws = tuple((s.p0 / (s.a * spacing), *constants) for spacing in (self.dx, self.dy))
         nothing = np.zeros(n_y * n_x)
@@ -142,9 +137,7 @@ class NoOil:
     def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> None:
         """Return None: there is no oil."""
 
-    def evaluate(
-        self, q: np.ndarray, h: np.ndarray, inputs: StepInputs, temperatures: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`Reynolds`."""
         return q[self.owned], self._derivatives
 

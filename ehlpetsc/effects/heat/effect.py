@@ -1,7 +1,7 @@
 r"""Heat: temperatures of the film and of both surfaces, and the viscosity at them.
 
 Equations and the temperature of a node: :mod:`ehlpetsc.effects.heat.film_law`; conduction into the bodies:
-:mod:`ehlpetsc.effects.heat.half_space_conduction`. In the solve of a step the temperature of a node follows
+:mod:`ehlpetsc.effects.heat.half_spaces`. In the solve of a step the temperature of a node follows
 from its pressure and film, with the response of both surfaces to the flux of the step; heat of the pressure
 flow and of rubbing solids, and the heat that the film carries along, are those of the last level there. Of
 the accepted solution all temperatures and fluxes are then computed with its own flow, so that the energy
@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -132,18 +132,18 @@ class Heat(Effect):
 
     def start(self, before: HeatRecord | None = None) -> HeatRecord:
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
-        n, steps = self.scene.scales.grid.n, self._steps
-        zeros, ones = np.zeros(n), np.ones(n)
-        walls = [bulk * ones for bulk in steps.bulk]
-        film = steps.inlet * ones
-        state = film, *walls, zeros, zeros, film, zeros, film, *[zeros] * 4, np.zeros(n + 1), *[zeros] * 5
-        return HeatRecord._make([*state, *(body.cold() for body in steps.bodies), 0.0, 0.0, 0])
+        n, steps = self.scene.scales.nx, self._steps
+        cold: dict[str, Any] = dict.fromkeys(HeatRecord._fields, np.zeros(n))
+        cold |= dict.fromkeys(("film", "base", "solved"), np.full(n, steps.inlet))
+        for side, bulk, body in zip("12", steps.bulk, steps.bodies, strict=True):
+            cold |= {f"wall_{side}": np.full(n, bulk), f"body_{side}": body.cold()}
+        return HeatRecord(**cold | {"flow": np.zeros(n + 1), "heat": 0.0, "error": 0.0, "levels": 0})
 
     def inputs(self, record: HeatRecord, inputs: StepInputs, step: Step) -> StepInputs:
-        """Add the data of the film's temperature; the first steady solution is isothermal."""
-        if not record.levels and self.scene.case.fluid is not None:
+        """Oil at the film's temperature; the first steady solution is isothermal."""
+        if not record.levels or inputs.oil is None:
             return inputs
-        return replace(inputs, heat=self._steps.film_heat(record, inputs, step))
+        return replace(inputs, oil=self._steps.film_heat(record, inputs, step))
 
     def accept(self, record: HeatRecord, solution: Solution, step: Step) -> HeatRecord:
         """Temperatures and fluxes of a solution."""

@@ -7,7 +7,7 @@ those of the viscosity. Transport along the film: :mod:`.transport`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,29 +15,34 @@ from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     LN_ETA_P,
-    LN_THERMAL_H,
-    LN_THERMAL_P,
-    THERMAL,
+    LN_THINNING_H,
+    LN_THINNING_P,
+    THINNED_PROPERTIES,
+    THINNING,
     H,
     P,
     face,
     fill_mass,
     fluidities,
 )
-from ehlpetsc.effects.heat.film_law import MIN_SLOPE, REFERENCE, A, B, FilmLaw, film_temperature, fixed_at
+from ehlpetsc.discretisation.oil import IsothermalOil, last_before
+from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 
 TINY = 1e-6  # y whose sinh(y)/y is 1
 
 
 class FilmHeat(NamedTuple):
-    """Coefficients of the film's temperature that are fixed in a solve.
+    """Oil whose viscosity depends on the film's temperature; interface of :class:`.oil.Oil`.
 
+    `isothermal`: oil without heat; None: dry.
     `law`: constants of the oil.
-    `of_nodes`: rows `A` to `REFERENCE`, as of :func:`.film_law.film_temperature`, shape (10, nx): one array,
+    `of_nodes`: rows `A` to `REFERENCE`, of :mod:`.film_law`, shape (11, nx): one array,
         as numba looks up the types of many in a tuple anew in some calls, slowly.
     `guess`: state of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).
     `walls`: temperatures without the flux of the step [K], shape (2, nx).
@@ -45,12 +50,36 @@ class FilmHeat(NamedTuple):
     `bodies`: both bodies at the end of the step; None: steady.
     """
 
+    isothermal: IsothermalOil | None
     law: FilmLaw
     of_nodes: np.ndarray
     guess: np.ndarray
     walls: np.ndarray
     stored: np.ndarray
     bodies: tuple[BodyStep, ...] | None = None
+
+    @property
+    def rows(self) -> int:
+        """Number of nodal properties."""
+        return THINNED_PROPERTIES
+
+    @property
+    def fluid(self) -> Any:
+        """Table `[fluid]` of the case."""
+        return self.isothermal.fluid
+
+    @property
+    def scales(self) -> Scales:
+        """Scales of the contact."""
+        return self.isothermal.scales
+
+    def begin(self) -> FilmHeat:
+        """Oil of one solve, which starts an evaluation from the state of the film in the last one."""
+        return SolvedFilm(*self._replace(guess=self.guess.copy()))
+
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
+        """As :meth:`.oil.Oil.fill`, from `guess`."""
+        self.begin().fill(q, h, nodes, at)
 
     def with_rows(self, rows: Iterable[int], values: Iterable[np.ndarray]) -> FilmHeat:
         """Coefficients with other values in some rows of `of_nodes`."""
@@ -59,26 +88,16 @@ class FilmHeat(NamedTuple):
             of_nodes[row] = row_values
         return self._replace(of_nodes=of_nodes)
 
-    def fill_properties(
-        self,
-        q: np.ndarray,
-        h: np.ndarray,
-        density: tuple,
-        units: tuple[float, float, float],
-        nodes: slice,
-        temperatures: np.ndarray | None,
-        at: np.ndarray,
-    ) -> None:
-        """Fill in the properties of `nodes`, see :func:`heated_nodal`.
 
-        `temperatures` of the whole mesh to start from become those of the nodes; None: start from `guess`.
-        """
-        states = (self.guess if temperatures is None else temperatures)[:, nodes]
-        rows = [np.ascontiguousarray(row) for row in states]
-        of_nodes = np.ascontiguousarray(self.of_nodes[:, nodes])
-        heated_nodal(q, h, density, *units, tuple(self.law), of_nodes, *rows, at)
-        if temperatures is not None:
-            states[:] = rows
+class SolvedFilm(FilmHeat):
+    """Oil of one solve: its `guess` becomes the state of the film at the nodes last filled in."""
+
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
+        """As :meth:`.oil.Oil.fill`; changes `guess`."""
+        state, of_nodes = (np.ascontiguousarray(rows[:, nodes]) for rows in (self.guess, self.of_nodes))
+        oil = self.isothermal
+        heated_nodal(q, h, oil.density, oil.units, tuple(self.law), of_nodes, state, at)
+        self.guess[:, nodes] = state
 
 
 @compiled
@@ -86,43 +105,38 @@ def heated_nodal(
     q: np.ndarray,
     h: np.ndarray,
     density: tuple,
-    p0: float,
-    film: float,
-    unit: float,
+    units: tuple[float, float, float],
     law: tuple,
     of_nodes: np.ndarray,
-    base: np.ndarray,
-    profile: np.ndarray,
-    mean: np.ndarray,
+    state: np.ndarray,
     at: np.ndarray,
 ) -> None:
     """Fill in the properties of nodes for their faces, viscosity at the film's temperature with derivatives.
 
-    q, h, density, p0, film, unit and `at` as of :func:`.reynolds.nodal`; the node beyond the outlet has the
-    temperature of the last one. `base`, `profile` and `mean` are the state of the film to start from,
-    and become that of the nodes. `law` is a tuple: numba looks up the type of a named one anew in some calls.
+    q, h, density, units and `at` as of :func:`.oil.nodal`; a node beyond the outlet has the temperature of
+    the last one. `state` of the film to start from becomes that of the nodes. `law` is a tuple: numba looks
+    up the type of a named one anew in some calls.
     """
-    nodes, law = len(q), FilmLaw(*law)
+    nodes, law, (p0, film, unit) = len(q), FilmLaw(*law), units
+    zero = law.viscosity[2]
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
-        of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
-        left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, line, base[i], profile[i] = film_temperature(
-            base[i], profile[i], p, at[H, i], left, *of_node
-        )
-        zero = law.viscosity[2]
+        start, node = (state[BASE, i], state[PROFILE, i]), (p, at[H, i], 1.0 + min(q[i], 0.0))
+        balance, (last, walls) = (of_nodes[A, i], of_nodes[B, i], of_nodes[G, i]), fixed_at(i, of_nodes)
+        found, oil = film_temperature(start, node, balance, last, walls, law)
+        t = found.mean
         if law.is_linear:  # in T: no second power of the pressure
-            (ln_eta, beta, by_p), start = line, of_nodes[REFERENCE, i]
-            viscosity = ln_eta - beta * (t - start), by_p, -beta
-            at_zero = ln_eta - beta * (zero - start), by_p, -beta
+            viscosity = oil.ln_eta - oil.beta * (t - oil.reference), oil.eta_p, -oil.beta
+            at_zero = oil.ln_eta - oil.beta * (zero - oil.reference), oil.eta_p, -oil.beta
         else:
             viscosity, at_zero = ln_viscosities(law.viscosity, p, t, zero)
-        _fill_fluidity(i, viscosity, at_zero, t_p, t_h, law, p0, film, at)
-        mean[i] = t
-    if at.shape[1] > nodes:
-        p = fill_mass(nodes, 0.0, h[nodes - 1], density, p0, film, unit, at)
-        viscosities = ln_viscosities(law.viscosity, p, mean[nodes - 1], law.viscosity[2])
-        _fill_fluidity(nodes, *viscosities, 0.0, 0.0, law, p0, film, at)
+        _fill_fluidity(i, viscosity, at_zero, found.by_p, found.by_h, law, p0, film, at)
+        state[BASE, i], state[PROFILE, i], state[MEAN, i] = found.base, found.profile, t
+    for i in range(nodes, at.shape[1]):
+        end = last_before(i, nodes, at)
+        p = fill_mass(i, 0.0, h[end], density, p0, film, unit, at)
+        viscosities = ln_viscosities(law.viscosity, p, state[MEAN, end], zero)
+        _fill_fluidity(i, *viscosities, 0.0, 0.0, law, p0, film, at)
 
 
 @inlined
@@ -140,9 +154,9 @@ def _fill_fluidity(
     """Fill in the fluidity of node i at the reference temperature, and the factor on it by the film's."""
     (ln_eta, by_p, by_t), (ln_eta_0, by_p_0, _) = viscosity, at_reference
     at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta_0) / law.eta0, p0 * by_p_0
-    at[THERMAL, i] = np.exp(0.5 * (ln_eta_0 - ln_eta))
-    at[LN_THERMAL_P, i] = 0.5 * p0 * (by_p_0 - by_p - by_t * t_p)
-    at[LN_THERMAL_H, i] = -0.5 * film * by_t * t_h
+    at[THINNING, i] = np.exp(0.5 * (ln_eta_0 - ln_eta))
+    at[LN_THINNING_P, i] = 0.5 * p0 * (by_p_0 - by_p - by_t * t_p)
+    at[LN_THINNING_H, i] = -0.5 * film * by_t * t_h
 
 
 @compiled

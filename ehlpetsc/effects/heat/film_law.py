@@ -18,354 +18,264 @@ are two equations, for :math:`T_s` and y, with one solution. (Heat in the middle
 the weight of :func:`.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is
 10 % of :math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
 
-Oil that enters cold between surfaces far apart in temperature has no parabola: the law would cool the colder
-surface by oil that is warmer than it. Where it does, the sum of both fluxes stays and the colder surface has
-none; where the oil is colder than both surfaces, each gives heat by its own difference,
-:math:`q_i=6(T_e-T_i)/r`, with the same sum. All three agree where they meet. The sum is
-:math:`(T_e-\alpha)/\kappa`, for the parabola with
-
-.. math:: \kappa=\frac r{12}+\frac14\Big[R_1+R_2-\frac{(R_1-R_2)^2}{r/X+R_1+R_2}\Big],\qquad
-   \alpha=\frac{W_1+W_2}2-\frac{(R_1-R_2)(W_1-W_2)}{2(r/X+R_1+R_2)},
-
-regular at r = 0.
+The walls may get heat otherwise where oil enters cold: :mod:`.exchange`.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
+from ehlpetsc.effects.heat.exchange import KINDS, Exchange, exchange_of, fluxes, holds, split
+from ehlpetsc.effects.heat.film_oil import FilmLaw, NodeOil, oil_at
 from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
-from ehlpetsc.physics.laws import (
-    SLOTS,
-    conductivity,
-    is_linear_in_temperature,
-    ln_viscosities,
-    ln_viscosity,
-    viscosity_law,
-)
-from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
+from ehlpetsc.physics.rheology import flow_stress
 from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO
 
-MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 30  # of Newton's method, before bisection
 BISECTIONS = 200
 MAX_CHANGE = 60.0  # K in an iteration
 QUADRATIC = 1e-3  # K: change in an iteration of Newton's method, after which it is accurate to 1e-7 K
 QUADRATIC_Y = 1e-4  # the same of y
 MAX_SPLIT_CHANGE = 1e-6  # of d
-MIN_SLOPE = 1e-12  # 1/K
-MIN_RISE = 0.1  # K of the secant
 MIN_HEATING = 1e-12  # of b: less does not heat the film
-MIN_STRESS = 0.1  # of the shear law's and the limiting stress, over those at the reference temperature
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
 A, B, G, SPREAD, W1, W2, R1, R2, BETWEEN, MIDDLE, REFERENCE = range(11)  # rows of FilmHeat.of_nodes
 BASE, PROFILE, MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
-PARABOLA, INSULATED, APART = 0, 1, 2  # the three cases, in the order in which the oil gets colder
-NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
 
 
-class FilmLaw(NamedTuple):
-    """Constants of the oil in a step.
+class FilmTemperature(NamedTuple):
+    r"""Temperature of the film at a node.
 
-    Attributes
-    ----------
-    viscosity
-        :class:`ehlpetsc.physics.laws.OilLaw` as a tuple.
-    is_linear
-        Whether the logarithm of the viscosity is linear in temperature.
-    eta0
-        Viscosity at ambient pressure and reference temperature [Pa s].
-    flow
-        :class:`ehlpetsc.physics.rheology.FlowLaw` as a tuple.
-    limit
-        Limiting shear stress over pressure; infinite: none.
-    conductivity, conductivity_pressure, conductivity_saturation
-        k_f at ambient pressure [W/(m K)], its relative increase with pressure, and the
-        decrease of that [1/Pa].
-    sliding
-        |u1 - u2| [m/s].
-    thinnest
-        Film [m] below which the shear stress is that of this film; 0: films of no thickness are not sheared.
-    stress_pressure, stress_temperature
-        Relative rise of the stress of the shear law with pressure [1/Pa] and, from the temperature at which
-        the viscosity is eta0, with temperature [1/K].
-    limit_temperature
-        Relative rise of the limiting shear stress with temperature [1/K], likewise.
+    `mean`, `by_p`, `by_h`: mean across the film [K] and its derivatives [K/Pa], [K/m].
+    `q1`, `q2`, `shear_heat`: heat fluxes into both surfaces and Phi [W/m^2].
+    `base`, `profile`: :math:`T_s` [K] and y.
+    `energy`: :math:`T_e` [K].
     """
 
-    viscosity: tuple
-    is_linear: bool
-    eta0: float
-    flow: tuple
-    limit: float
-    conductivity: float
-    conductivity_pressure: float
-    conductivity_saturation: float
-    sliding: float
-    thinnest: float = 0.0
-    stress_pressure: float = 0.0
-    stress_temperature: float = 0.0
-    limit_temperature: float = 0.0
+    mean: float
+    by_p: float
+    by_h: float
+    q1: float
+    q2: float
+    shear_heat: float
+    base: float
+    profile: float
+    energy: float
 
 
-def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
-    """Constants of the oil in a step with u1 - u2 [m/s]; `fluid` None: dry."""
-    conduction = (
-        float(heat.oil_conductivity),
-        float(heat.oil_conductivity_pressure),
-        float(heat.oil_conductivity_saturation),
-    )
-    if fluid is None:
-        return FilmLaw(
-            (0, (0.0,) * SLOTS, 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, *conduction, 0.0
-        )
-    law = viscosity_law(fluid, heat)
-    return FilmLaw(
-        tuple(law),
-        is_linear_in_temperature(law, fluid.law),
-        float(fluid.viscosity),
-        tuple(flow_law(fluid)),
-        np.inf if fluid.limiting_shear is None else float(fluid.limiting_shear),
-        *conduction,
-        abs(float(sliding)),
-        thinnest,
-        stress_pressure(fluid),
-        getattr(fluid, "eyring_stress_temperature", None) or 0.0,
-        getattr(fluid, "limiting_shear_temperature", None) or 0.0,
-    )
+class Shear(NamedTuple):
+    r"""Equation of the shear stress at :math:`T_s` and y.
+
+    `y`: as it is taken: \|d\| where the film is not heated, and more than that where it is.
+    `stress`, `by_x`, `by_limit`: shear stress [Pa], its derivatives as of :func:`.rheology.flow_stress`.
+    `f`, `f_t`, `f_y`: residual of the heating, and its derivatives by :math:`T_s` and y.
+    `rate_y`: derivative of :math:`\ln(\sinh y/y)`.
+    `mean`, `mean_y`: of :func:`.film_shear.mean_rise`.
+    """
+
+    y: float
+    is_heated: bool
+    stress: float
+    by_x: float
+    by_limit: float
+    f: float
+    f_t: float
+    f_y: float
+    rate_y: float
+    mean: float
+    mean_y: float
 
 
-@inlined
-def exchange_law(kind: int, r: float, walls: tuple) -> tuple[float, float]:
-    """Flux into both surfaces per temperature [W/(m^2 K)], and the temperature without flux [K]."""
-    w1, w2, r1, r2, between = walls
-    if kind == PARABOLA:
-        skew = (r1 - r2) / (r * between + r1 + r2)
-        resistance = r * (1.0 / 12.0) + 0.25 * (r1 + r2 - (r1 - r2) * skew)
-        return 1.0 / resistance, 0.5 * (w1 + w2) - 0.5 * skew * (w1 - w2)
-    if kind == INSULATED:
-        return 1.0 / (r * (1.0 / 12.0) + 0.5 * (r2 if w1 < w2 else r1)), 0.5 * (w1 + w2)
-    g1, g2 = 1.0 / (r / 6.0 + r1), 1.0 / (r / 6.0 + r2)
-    return g1 + g2, (g1 * w1 + g2 * w2) / (g1 + g2)
+class Heat(NamedTuple):
+    """Equation of the heat at the same state.
+
+    `energy`: :math:`T_e` [K].
+    `phi`, `phi_t`, `phi_y`: heat of shear [W/m^2], and its derivatives.
+    `mean_phi`: derivative of the mean temperature by it.
+    `f`, `f_t`, `f_y`: residual [W/m^2], and its derivatives.
+    """
+
+    energy: float
+    phi: float
+    phi_t: float
+    phi_y: float
+    mean_phi: float
+    f: float
+    f_t: float
+    f_y: float
 
 
 @inlined
-def fluxes(
-    kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: float
-) -> tuple[float, float, float]:
-    """Heat fluxes into both surfaces, and the derivative of their sum with respect to r."""
-    w1, w2, r1, r2, between = walls
-    flow = (t - alpha) * exchange
-    if kind == PARABOLA:
-        over_total = 1.0 / (r * between + r1 + r2)
-        skew = (r1 - r2) * over_total
-        more = -2.0 * (w1 - w2) * over_total - skew * flow
-        by_r = 0.5 * between * skew * (w1 - w2) * over_total
-        by_r = -(by_r + flow * (1.0 / 12.0 + 0.25 * between * skew * skew)) * exchange
-        return 0.5 * (flow + more), 0.5 * (flow - more), by_r
-    if kind == INSULATED:
-        first = 0.0 if w1 < w2 else flow
-        return first, flow - first, -flow * exchange / 12.0
-    g1, g2 = 1.0 / (r / 6.0 + r1), 1.0 / (r / 6.0 + r2)
-    q1, q2 = g1 * (t - w1), g2 * (t - w2)
-    return q1, q2, -(g1 * q1 + g2 * q2) / 6.0
-
-
-@inlined
-def _resistivity(p: float, left: float, law: FilmLaw) -> tuple[float, float]:
-    """1/k_f [m K/W] of a film with a fraction of oil, and d ln(k_f)/dp [1/Pa]."""
-    k, by_p = conductivity(p, law.conductivity, law.conductivity_pressure, law.conductivity_saturation)
-    return 1.0 / (k * max(left, MIN_CONDUCTING_FRACTION)), by_p / k
-
-
-@inlined
-def fixed_at(i: int, of_nodes: np.ndarray, law: FilmLaw) -> tuple:
-    """Arguments of :func:`film_temperature` at node i from `g` on, by :class:`.film.FilmHeat`."""
+def fixed_at(i: int, of_nodes: np.ndarray) -> tuple:
+    """Arguments `last` and `walls` of :func:`film_temperature` at node i, by :class:`.film.FilmHeat`."""
     walls = of_nodes[W1, i], of_nodes[W2, i], of_nodes[R1, i], of_nodes[R2, i], of_nodes[BETWEEN, i]
-    return of_nodes[G, i], of_nodes[SPREAD, i], of_nodes[MIDDLE, i], of_nodes[REFERENCE, i], walls, law
-
-
-@inlined
-def _split(kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: float, beta: float) -> float:
-    """Half the difference of the walls' temperatures, times beta."""
-    q1, q2, _ = fluxes(kind, t, r, walls, exchange, alpha)
-    return 0.5 * beta * (walls[0] + walls[2] * q1 - walls[1] - walls[3] * q2)
-
-
-@inlined
-def _line(p: float, middle: float, reference: float, law: FilmLaw) -> tuple[float, float, float, float]:
-    """ln(eta/eta0) at `reference`, its secant to the temperature `middle`, -d/dT [1/K]; both by p."""
-    if law.is_linear:
-        value, by_p, slope = ln_viscosity(law.viscosity, p, reference)
-        return value, max(-slope, MIN_SLOPE), by_p, 0.0
-    rise = max(middle - reference, MIN_RISE)
-    (value, by_p, _), (further, further_by_p, _) = ln_viscosities(
-        law.viscosity, p, reference, reference + rise
-    )
-    return value, max((value - further) / rise, MIN_SLOPE), by_p, (by_p - further_by_p) / rise
+    return (of_nodes[SPREAD, i], of_nodes[MIDDLE, i], of_nodes[REFERENCE, i]), walls
 
 
 @inlined
 def film_temperature(
-    base: float,
-    profile: float,
-    p: float,
-    h: float,
-    left: float,
-    a: float,
-    b: float,
-    g: float,
-    spread: float,
-    middle: float,
-    reference: float,
+    start: tuple[float, float],
+    node: tuple[float, float, float],
+    balance: tuple[float, float, float],
+    last: tuple[float, float, float],
     walls: tuple[float, float, float, float, float],
     law: FilmLaw,
-) -> tuple:
-    r"""Temperature of the film at one node.
+) -> tuple[FilmTemperature, NodeOil]:
+    r"""Temperature of the film at one node, and its oil.
 
     Parameters
     ----------
-    base, profile
-        Start of the iteration: :math:`T_s` [K] and y.
-    p, h, left
+    start
+        Of the iteration: :math:`T_s` [K] and y.
+    node
         Pressure [Pa], film [m], fraction of the gap full of oil.
-    a, b
-        Storage and transport per temperature [W/(m^2 K)], and their known part [W/m^2].
-    g
-        Heat that does not depend on the temperature [W/m^2].
-    spread
-        :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress.
-    middle, reference
-        Temperatures of the last level [K], in the middle of the film and :math:`T_s`: :math:`\beta` is the
-        secant of ln(eta) between them. Around the second the law is exponential, which leaves one solution.
+    balance
+        a, storage and transport per temperature [W/(m^2 K)]; b, their known part [W/m^2]; G, heat that does
+        not depend on the temperature [W/m^2].
+    last
+        `spread`, `middle`, `reference` of the last level, as of :func:`.film_oil.oil_at`.
     walls
         W1, W2 [K], R1, R2 [m^2 K/W], and the resistance of the film between the walls over r, 1/X.
-
-    Returns
-    -------
-    temperature, by_p, by_h
-        Mean across the film [K] and its derivatives [K/Pa], [K/m].
-    q1, q2, shear_heat
-        Heat fluxes into both surfaces and Phi [W/m^2].
-    line
-        ln(eta/eta0) at `reference`, :math:`\beta` [1/K], derivative of the first by p [1/Pa].
-    base, profile
-        :math:`T_s` [K] and y.
     """
-    w1, w2 = walls[0], walls[1]
-    over_k, k_slope = _resistivity(p, left, law)
-    r = h * over_k
-    kind, stress, n, width = law.flow
-    stress_p, warmer = 0.0, reference - law.viscosity[2]
-    if law.stress_pressure != 0.0 or law.stress_temperature != 0.0:
-        grown = 1.0 + law.stress_pressure * p
-        stress *= grown * max(1.0 + law.stress_temperature * warmer, MIN_STRESS)
-        stress_p = law.stress_pressure / grown
-    limit_p = law.limit
-    if law.limit_temperature != 0.0:
-        limit_p *= max(1.0 + law.limit_temperature * warmer, MIN_STRESS)
-    flow = FlowLaw(kind, stress, n, width)
-    sheared = max(h, law.thinnest)
-    heat = left * law.sliding if sheared > 0.0 else 0.0
-    ln_rate, limit = 0.0, np.inf
-    ln_eta, beta, eta_p, beta_p = _line(p, middle, reference, law)
-    if heat > 0.0:
-        ln_rate = np.log(law.sliding * law.eta0 / (flow.stress * sheared)) - spread
-        limit = np.inf if law.limit == np.inf else limit_p * p
-    heating = 0.125 * beta * law.sliding * r * max(left, MIN_CONDUCTING_FRACTION)
-    t, y = base, profile
-    temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
-    t_p, t_h, change, low, high = 0.0, 0.0, 0.0, 0.0, 0.0
-    tau, by_x, by_limit, is_heated = 0.0, 0.0, 0.0, False
-    for case in (PARABOLA, INSULATED, APART):
-        exchange, alpha = exchange_law(case, r, walls)
-        if heat == 0.0:
-            energy_t = (b + g + alpha * exchange) / (a + exchange)
-            t, y, phi, temperature = energy_t, 0.0, 0.0, energy_t
-            q1, q2, by_r = fluxes(case, energy_t, r, walls, exchange, alpha)
-            t_r = -by_r / (a + exchange)
-            t_p, t_h = -t_r * r * k_slope, t_r * over_k
+    (p, h, left), (spread, middle, reference) = node, last
+    oil = oil_at(p, h, left, spread, middle, reference, law)
+    t, y = start
+    found = FilmTemperature(t, 0.0, 0.0, 0.0, 0.0, 0.0, t, y, t)
+    for kind in KINDS:
+        exchange = exchange_of(kind, oil.r, walls)
+        if oil.speed == 0.0:
+            found = _unsheared(balance, oil, exchange)
         else:
-            energy_t, low, high, is_heated = t, ROELANDS_ZERO + 1.0, 1e5, False
-            for k in range(ITERATIONS + BISECTIONS):
-                d = _split(case, energy_t, r, walls, exchange, alpha, beta)
-                x = ln_rate + ln_eta - beta * (t - reference)
-                if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
-                    y = resolved_stress(y, x, heating, d, flow, limit)[0]
-                if not is_heated or y <= abs(d):  # otherwise the stress follows with the heating
-                    tau, by_x, by_limit = flow_stress(x, flow, limit)
-                    is_heated = heating * tau > MIN_HEATING
-                f_y, lr_y, f1, f1_t, mean, mean_y = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
-                if not is_heated:
-                    y = abs(d)
-                    if y > 1e-6:
-                        tau, by_x, by_limit = flow_stress(x - across(y, 0.0)[0], flow, limit)
-                else:
-                    if y <= abs(d):
-                        half = np.sinh(0.5 * d)
-                        y = 2.0 * np.arcsinh(np.sqrt(heating * tau + half * half))
-                    lr, lr_y, f, f_y, _ = across(y, d)
-                    tau, by_x, by_limit = flow_stress(x - lr, flow, limit)
-                    f1, f1_t = f - heating * tau, heating * by_x * beta
-                    f_y += heating * by_x * lr_y
-                    mean, mean_y = mean_rise(y, d)
-                phi, phi_t, phi_y = heat * tau, -heat * by_x * beta, -heat * by_x * lr_y
-                uniform = r * UNIFORM
-                energy_t = t + phi * uniform
-                m_phi = 0.0 if is_heated else uniform  # without a profile the mean is that of a parabola
-                temperature = t + m_phi * phi + mean / beta
-                f2 = a * temperature - b - phi - g + (energy_t - alpha) * exchange
-                loss = a * m_phi - 1.0 + uniform * exchange
-                f2_t = a + exchange + loss * phi_t
-                f2_y = a * mean_y / beta + loss * phi_y
-                over_det = 1.0 / (f_y * f2_t - f1_t * f2_y)
-                change, change_y = (f1 * f2_y - f_y * f2) * over_det, (f1_t * f2 - f2_t * f1) * over_det
-                change = min(max(change, -MAX_CHANGE, 0.5 * (ROELANDS_ZERO - t)), MAX_CHANGE)
-                if k >= ITERATIONS:
-                    low, high = (low, min(high, t)) if f2 > 0.0 else (max(low, t), high)
-                    if not low <= t + change <= high:
-                        change = 0.5 * (low + high) - t
-                new_y = min(max(y + change_y, abs(d) + 0.2 * (y - abs(d))), 3.0 * y + 1.0)
-                t, change_y = t + change, new_y - y
-                y = new_y
-                if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
-                    if abs(d - _split(case, energy_t, r, walls, exchange, alpha, beta)) < MAX_SPLIT_CHANGE:
-                        break
-            phi += phi_t * change + phi_y * change_y
-            energy_t = t + phi * uniform
-            temperature = t + m_phi * phi + (mean + mean_y * change_y) / beta
-            q1, q2, by_r = fluxes(case, energy_t, r, walls, exchange, alpha)
-            phi = a * temperature - b - g + q1 + q2  # so that the balance of heat closes
-            # derivatives of both equations by the pressure and by the film, at constant t and y
-            tau_p, r_p = by_x * (eta_p - beta_p * (t - reference)), -r * k_slope
-            if limit < np.inf:
-                tau_p += by_limit * limit_p
-            tau_p += stress_p * (tau - by_x - by_limit * limit if limit < np.inf else tau - by_x)
-            heating_p = heating * (beta_p / beta - k_slope)
-            tau_h = -by_x / h if h == sheared else 0.0
-            heating_h = 0.125 * beta * law.sliding * over_k * max(left, MIN_CONDUCTING_FRACTION)
-            for side in range(2):
-                tau_s, r_s, heating_s = (tau_p, r_p, heating_p) if side == 0 else (tau_h, over_k, heating_h)
-                phi_s = heat * tau_s
-                e_s = UNIFORM * (phi * r_s + r * phi_s)
-                m_s = -mean * beta_p / (beta * beta) if side == 0 else 0.0
-                if not is_heated:
-                    m_s += e_s
-                f1_s = -heating_s * tau - heating * tau_s if is_heated else 0.0
-                f2_s = a * m_s - phi_s + by_r * r_s + e_s * exchange
-                base_s = (f1_s * f2_y - f_y * f2_s) * over_det
-                y_s = (f1_t * f2_s - f2_t * f1_s) * over_det
-                total = m_s + (1.0 + m_phi * phi_t) * base_s + (m_phi * phi_y + mean_y / beta) * y_s
-                if side == 0:
-                    t_p = total
-                else:
-                    t_h = total
-        if case == PARABOLA and (q1 if w1 < w2 else q2) >= -NO_FLUX * exchange:
+            found = _sheared(found.base, found.profile, balance, oil, exchange)
+        if holds(found.q1, found.q2, found.energy, exchange):
             break
-        if case == INSULATED and energy_t >= min(w1, w2):
-            break
-    return temperature, t_p, t_h, q1, q2, phi, (ln_eta, beta, eta_p), t, y
+    return found, oil
+
+
+@inlined
+def _unsheared(balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperature:
+    """Film without heat of shear: one linear equation."""
+    a, b, g = balance
+    t = (b + g + exchange.balanced * exchange.conductance) / (a + exchange.conductance)
+    q1, q2, by_r = fluxes(t, exchange)
+    t_r = -by_r / (a + exchange.conductance)
+    return FilmTemperature(t, -t_r * oil.r * oil.k_p, t_r * oil.r_h, q1, q2, 0.0, t, 0.0, t)
+
+
+@inlined
+def _sheared(t: float, y: float, balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperature:
+    """Film with heat of shear, by Newton's method for both equations."""
+    energy, low, high, is_heated, change, change_y = t, ROELANDS_ZERO + 1.0, 1e5, False, 0.0, 0.0
+    for k in range(ITERATIONS + BISECTIONS):
+        d, x = split(energy, oil.beta, exchange), oil.ln_rate + oil.ln_eta - oil.beta * (t - oil.reference)
+        if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
+            y = resolved_stress(y, x, oil.heating, d, oil.flow, oil.limit)[0]
+        shear = _shear_equation(x, y, d, is_heated, oil)
+        heat = _heat_equation(t, shear, balance, oil, exchange)
+        y, is_heated, energy = shear.y, shear.is_heated, heat.energy
+        over_det = _over_determinant(shear, heat)
+        change = (shear.f * heat.f_y - shear.f_y * heat.f) * over_det
+        change_y = (shear.f_t * heat.f - heat.f_t * shear.f) * over_det
+        change = min(max(change, -MAX_CHANGE, 0.5 * (ROELANDS_ZERO - t)), MAX_CHANGE)
+        if k >= ITERATIONS:
+            low, high = (low, min(high, t)) if heat.f > 0.0 else (max(low, t), high)
+            if not low <= t + change <= high:
+                change = 0.5 * (low + high) - t
+        new_y = min(max(y + change_y, abs(d) + 0.2 * (y - abs(d))), 3.0 * y + 1.0)
+        t, change_y = t + change, new_y - y
+        y = new_y
+        if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
+            if abs(d - split(energy, oil.beta, exchange)) < MAX_SPLIT_CHANGE:
+                break
+    phi = heat.phi + (heat.phi_t * change + heat.phi_y * change_y)
+    energy = t + phi * (oil.r * UNIFORM)
+    mean = t + heat.mean_phi * phi + (shear.mean + shear.mean_y * change_y) / oil.beta
+    q1, q2, by_r = fluxes(energy, exchange)
+    a, b, g = balance
+    phi = a * mean - b - g + q1 + q2  # so that the balance of heat closes
+    t_p, t_h = _derivatives(t, phi, a, by_r, shear, heat, oil, exchange.conductance)
+    return FilmTemperature(mean, t_p, t_h, q1, q2, phi, t, y, energy)
+
+
+@inlined
+def _shear_equation(x: float, y: float, d: float, is_heated: bool, oil: NodeOil) -> Shear:
+    r"""Heating of the film: :math:`y(\cosh y-\cosh d)/(2\sinh y)-B\tau=0`."""
+    stress, by_x, by_limit = 0.0, 0.0, 0.0
+    if not is_heated or y <= abs(d):  # otherwise the stress follows with the heating
+        stress, by_x, by_limit = flow_stress(x, oil.flow, oil.limit)
+        is_heated = oil.heating * stress > MIN_HEATING
+    if not is_heated:
+        y = abs(d)
+        if y > 1e-6:
+            stress, by_x, by_limit = flow_stress(x - across(y, 0.0)[0], oil.flow, oil.limit)
+        return Shear(y, False, stress, by_x, by_limit, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    if y <= abs(d):
+        half = np.sinh(0.5 * d)
+        y = 2.0 * np.arcsinh(np.sqrt(oil.heating * stress + half * half))
+    ln_rate, rate_y, f, f_y, _ = across(y, d)
+    stress, by_x, by_limit = flow_stress(x - ln_rate, oil.flow, oil.limit)
+    f_y += oil.heating * by_x * rate_y
+    mean, mean_y = mean_rise(y, d)
+    f, f_t = f - oil.heating * stress, oil.heating * by_x * oil.beta
+    return Shear(y, True, stress, by_x, by_limit, f, f_t, f_y, rate_y, mean, mean_y)
+
+
+@inlined
+def _heat_equation(t: float, shear: Shear, balance: tuple, oil: NodeOil, exchange: Exchange) -> Heat:
+    r"""Balance of heat: :math:`aT-b-\Phi-G+q_1+q_2=0`."""
+    a, b, g = balance
+    phi, phi_t = oil.speed * shear.stress, -oil.speed * shear.by_x * oil.beta
+    phi_y, uniform = -oil.speed * shear.by_x * shear.rate_y, oil.r * UNIFORM
+    energy = t + phi * uniform
+    mean_phi = 0.0 if shear.is_heated else uniform  # without a profile the mean is that of a parabola
+    mean = t + mean_phi * phi + shear.mean / oil.beta
+    f = a * mean - b - phi - g + (energy - exchange.balanced) * exchange.conductance
+    loss = a * mean_phi - 1.0 + uniform * exchange.conductance
+    f_t, f_y = a + exchange.conductance + loss * phi_t, a * shear.mean_y / oil.beta + loss * phi_y
+    return Heat(energy, phi, phi_t, phi_y, mean_phi, f, f_t, f_y)
+
+
+@inlined
+def _over_determinant(shear: Shear, heat: Heat) -> float:
+    return 1.0 / (shear.f_y * heat.f_t - shear.f_t * heat.f_y)
+
+
+@inlined
+def _derivatives(
+    t: float, phi: float, a: float, by_r: float, shear: Shear, heat: Heat, oil: NodeOil, conductance: float
+) -> tuple[float, float]:
+    """Derivatives of the mean temperature by the pressure and by the film, by those of both equations."""
+    stress, by_x, beta, over_det = shear.stress, shear.by_x, oil.beta, _over_determinant(shear, heat)
+    stress_p = by_x * (oil.eta_p - oil.beta_p * (t - oil.reference))
+    if oil.limit < np.inf:
+        stress_p += shear.by_limit * oil.limit_p
+        stress_p += oil.stress_p * (stress - by_x - shear.by_limit * oil.limit)
+    else:
+        stress_p += oil.stress_p * (stress - by_x)
+    stress_h = -by_x / oil.h if oil.h == oil.sheared else 0.0
+    heating_p = oil.heating * (oil.beta_p / beta - oil.k_p)
+    t_p = t_h = 0.0
+    for side in range(2):  # at constant T_s and y
+        stress_s, r_s, heating_s = (
+            (stress_p, -oil.r * oil.k_p, heating_p) if side == 0 else (stress_h, oil.r_h, oil.heating_h)
+        )
+        phi_s = oil.speed * stress_s
+        energy_s = UNIFORM * (phi * r_s + oil.r * phi_s)
+        mean_s = -shear.mean * oil.beta_p / (beta * beta) if side == 0 else 0.0
+        if not shear.is_heated:
+            mean_s += energy_s
+        f1_s = -heating_s * stress - oil.heating * stress_s if shear.is_heated else 0.0
+        f2_s = a * mean_s - phi_s + by_r * r_s + energy_s * conductance
+        t_s = (f1_s * heat.f_y - shear.f_y * f2_s) * over_det
+        y_s = (shear.f_t * f2_s - heat.f_t * f1_s) * over_det
+        total = mean_s + (1.0 + heat.mean_phi * heat.phi_t) * t_s
+        total += (heat.mean_phi * heat.phi_y + shear.mean_y / beta) * y_s
+        if side == 0:
+            t_p = total
+        else:
+            t_h = total
+    return t_p, t_h

@@ -32,7 +32,7 @@ class HeatRecord(NamedTuple):
     `shear`: mean shear stress of the film [Pa].
     `source`: heat of the pressure flow and of compression [W/m^2].
     `rubbing`: heat of the solids [W/m^2], in the walls of the next solve.
-    `spread`: of :func:`.film_law.film_temperature`.
+    `spread`: as of :func:`.film_oil.oil_at`.
     `flow`: heat capacity that the surfaces' mean speed moves through the faces, per cell [W/(m^2 K)].
     `response_1`, `response_2`: of the surfaces to their flux, in a steady solve [m^2 K/W].
     `pressure`: of the oil [Pa].

@@ -9,11 +9,13 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
+from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces, last_profile
-from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G, film_law
+from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
+from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
@@ -94,7 +96,8 @@ class HeatStep:
             last_profile(record.profile, record.pressure, walls_apart, tuple(law), between, middle)
         of_nodes = np.array((*rows, *rubbed, *responses, between, middle, record.base))
         guess = np.array((record.base, record.profile, record.film))
-        return FilmHeat(law, of_nodes, guess, np.array(walls), stored, bodies)
+        oil = None if inputs.oil is None else IsothermalOil(inputs.fluid, self.scales)
+        return FilmHeat(oil, law, of_nodes, guess, np.array(walls), stored, bodies)
 
     def solve(
         self, record: HeatRecord, solution: Solution, step: Step
@@ -104,7 +107,9 @@ class HeatStep:
         Returns both, and `source`, `spread`, `solved` of :class:`.record.HeatRecord`, shape (nx,).
         """
         s, loads = self.scales, solution.loads
-        heat = solution.inputs.heat or self.film_heat(record, solution.inputs, step)
+        heat = solution.inputs.oil  # of the first steady solution, and without oil, isothermal
+        if not isinstance(heat, FilmHeat):
+            heat = self.film_heat(record, solution.inputs, step)
         friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
         rubbing = friction * loads.friction_pressure * s.p0
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.grid.n)
@@ -145,9 +150,10 @@ class HeatStep:
         n, nodes, backward = self.scales.grid.n, solution.nodes, solution.inputs.conditions.entrainment < 0.0
         given = solution.inputs, nodes.reynolds_unknown, nodes.film, solution.loads.oil_mask, heat.guess
         inputs, q, h, oil, guess = map(mirrored, given) if backward else given
-        solved = guess.copy()
+        filled = inputs.oil.begin()
         couette, *of_nodes = np.zeros(n + 1), np.empty(n), np.empty(n), np.empty(n)
-        at = self.reynolds.properties(q, h, inputs, solved)
+        at = self.reynolds.properties(q, h, filled)
+        solved = filled.guess if isinstance(filled, FilmHeat) else guess
         limits = self._max_flow(h, oil, inputs)
         law = self.reynolds.face_law(inputs), self.reynolds.flow_table(inputs)
         faces(at, *law, oil, limits, couette, *of_nodes)
@@ -187,13 +193,12 @@ class HeatStep:
         """State of the film, both fluxes, the heat of shear and e."""
         rubbed, fractions = _rubbed(walls, responses, film.rubbing)
         heat = heat.with_rows((W1, W2, R1, R2), (*rubbed, *responses))
-        base, profile, t = (row.copy() for row in state)
-        new, *fluxes, shear, extrapolated = out = [np.empty(len(t)) for _ in range(5)]
-        transport(
-            base, profile, t, *film[:-1], self.inlet, self.coldest, tuple(heat.law), heat.of_nodes, *out
-        )
+        state, rows, couette = state.copy(), np.array(film[:-2]), film.couette
+        *fluxes, shear, extrapolated = out = np.empty((4, state.shape[1]))
+        ambient = self.inlet, self.coldest
+        transport(state, rows, couette, ambient, tuple(heat.law), heat.of_nodes, out)
         fluxes = [q + part * film.rubbing for q, part in zip(fluxes, fractions, strict=True)]
-        return np.array((base, profile, new)), fluxes, shear, extrapolated
+        return state, fluxes, shear, extrapolated
 
     def _moving(self, heat: FilmHeat, film: Film) -> Temperatures:
         responses = heat.of_nodes[[R1, R2]]

@@ -25,10 +25,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
-from ehlpetsc.effects.heat.film_law import FilmLaw, film_temperature, fixed_at
+from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_oil import FilmLaw
 
 SWEEPS = 50
+PRESSURE, THICKNESS, LEFT, OLD, STORED, CHANGE, EXTRAPOLATED = range(7)  # rows: fields of a Film
+IN_SPACE, IN_TIME = 0, 1  # rows of the limiters
 SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the sweeps
 
 
@@ -84,99 +87,125 @@ def _limited(difference: float, next_one: float) -> float:
 
 
 @compiled
-def _limiters(
-    t: np.ndarray,
-    old: np.ndarray,
-    change: np.ndarray,
-    couette: np.ndarray,
-    in_space: np.ndarray,
-    in_time: np.ndarray,
-) -> None:
+def _limiters(t: np.ndarray, film: np.ndarray, flow: np.ndarray, limiters: np.ndarray) -> None:
     """Fill in both limiters of every node at temperatures t; oil enters and leaves as at the end nodes."""
     last = len(t) - 1
     for i in range(last + 1):
         # t knows the neighbours of the old level and changes less than the solution: BDF2 at most
-        in_time[i] = min(_limited(t[i] - old[i], change[i]), 0.5)
-        in_space[i] = 0.0
+        limiters[IN_TIME, i] = min(_limited(t[i] - film[OLD, i], film[CHANGE, i]), 0.5)
+        limiters[IN_SPACE, i] = 0.0
         if 0 < i < last:
             left, right = t[i] - t[i - 1], t[i + 1] - t[i]
-            in_space[i] = _limited(left, right) if couette[i + 1] >= 0.0 else _limited(right, left)
+            limiters[IN_SPACE, i] = _limited(left, right) if flow[i + 1] >= 0.0 else _limited(right, left)
 
 
 @compiled
 def transport(
-    base: np.ndarray,
-    profile: np.ndarray,
-    t: np.ndarray,
-    pressure: np.ndarray,
-    thickness: np.ndarray,
-    left: np.ndarray,
-    old: np.ndarray,
-    stored: np.ndarray,
-    change: np.ndarray,
-    before_step: np.ndarray,
+    state: np.ndarray,
+    film: np.ndarray,
     flow: np.ndarray,
-    inlet: float,
-    coldest: float,
+    ambient: tuple[float, float],
     law: tuple,
     of_nodes: np.ndarray,
-    t_new: np.ndarray,
-    q1: np.ndarray,
-    q2: np.ndarray,
-    shear_heat: np.ndarray,
-    extrapolated: np.ndarray,
+    out: np.ndarray,
 ) -> int:
     """Temperatures of the film and heat fluxes of a solution, by sweeps along the film; returns their number.
 
-    `base`, `profile`, `t`: state of the film to start from; the limiters are taken at the mean temperatures t
-        [K]. `base` and `profile` become those of the solution.
-    `pressure`, `thickness`, `left`, `old`, `stored`, `change`, `before_step`, `flow`: as `pressure` to
-        `couette` of :class:`Film`. One by one, as numba looks up the types of many arrays in a tuple, and of
-        named tuples, anew in some calls, slowly.
-    `inlet`, `coldest`: temperature of the oil that enters, minimum of it and both bodies [K].
+    `state`: of the film to start from, rows `BASE` to `MEAN`, at which the limiters are taken; becomes that
+        of the solution, shape (3, nodes).
+    `film`, `flow`: fields `pressure` to `extrapolated` of :class:`Film`, shape (7, nodes); its `couette`.
+    `ambient`: temperature of the oil that enters, minimum of it and both bodies [K].
     `law`, `of_nodes`: as of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
-    `t_new`, `q1`, `q2`, `shear_heat`, `extrapolated`: filled in; the last one is e at the end of the step,
-        over the step [W/m^2].
+    `out`: filled in: both heat fluxes, heat of shear, e at the end of the step over the step [W/m^2], shape
+        (4, nodes).
+
+    Arrays of rows, as numba looks up the types of many arrays in a tuple, and of named tuples, anew in some
+    calls, slowly.
     """
-    nodes, law = len(t), FilmLaw(*law)
-    in_space, in_time = np.empty(nodes), np.empty(nodes)
-    _limiters(t, old, change, flow, in_space, in_time)
-    t_new[:] = t
+    nodes, law = len(flow) - 1, FilmLaw(*law)
+    limiters = np.empty((2, nodes))
+    _limiters(state[MEAN], film, flow, limiters)
     backward = flow[nodes // 2] < 0.0  # with the flow; the limiters need what is upstream
     for sweep in range(SWEEPS):
         largest, turned = 0.0, False
         for k in range(nodes):
             i = nodes - 1 - k if backward else k
-            from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
-            turned = turned or (from_left if backward else from_right) > 0.0
-            before, after = t_new[i - 1] if i > 0 else inlet, t_new[i + 1] if i < nodes - 1 else inlet
-            first_order = stored[i] * old[i] + before_step[i]
-            if from_left > 0.0:
-                drawn = in_space[i - 1] * (before - t_new[i - 2]) if i > 1 else 0.0
-                first_order += from_left * (before + drawn)
-            if from_right > 0.0:
-                drawn = in_space[i + 1] * (after - t_new[i + 2]) if i < nodes - 2 else 0.0
-                first_order += from_right * (after + drawn)
-            fixed = fixed_at(i, of_nodes, law)
-            for _ in range(2):
-                beyond = stored[i] * in_time[i]
-                to_right, to_left = in_space[i] * max(flow[i + 1], 0.0), in_space[i] * max(-flow[i], 0.0)
-                a = stored[i] + from_left + from_right + beyond + to_right + to_left
-                b = first_order + beyond * old[i] + to_right * before + to_left * after
-                value, _, _, q1[i], q2[i], shear_heat[i], _, base[i], profile[i] = film_temperature(
-                    base[i], profile[i], pressure[i], thickness[i], left[i], a, b, *fixed
-                )
-                upstream = before if flow[i + 1] >= 0.0 else after
-                drop = max(in_space[i] * (upstream - value), in_time[i] * (old[i] - value))
-                if drop <= max(value - coldest, 0.0):
-                    break
-                in_space[i] = in_time[i] = 0.0
-            largest = max(largest, abs(value - t_new[i]))
-            t_new[i], extrapolated[i] = value, beyond * (value - old[i])
-        if not turned or largest < SWEEP_TOLERANCE * inlet:
+            turned = turned or (flow[i] if backward else -flow[i + 1]) > 0.0
+            before = state[MEAN, i]
+            _solve_node(i, state, film, flow, limiters, ambient, law, of_nodes, out)
+            largest = max(largest, abs(state[MEAN, i] - before))
+        if not turned or largest < SWEEP_TOLERANCE * ambient[0]:
             return sweep + 1
         backward = not backward
     return SWEEPS
+
+
+@inlined
+def _solve_node(
+    i: int,
+    state: np.ndarray,
+    film: np.ndarray,
+    flow: np.ndarray,
+    limiters: np.ndarray,
+    ambient: tuple[float, float],
+    law: FilmLaw,
+    of_nodes: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Temperature and fluxes of node i, between neighbours whose temperatures are given."""
+    (inlet, coldest), old = ambient, film[OLD, i]
+    carried, before, after = _carried_in(i, state, film, flow, limiters, inlet)
+    node, (last, walls) = (film[PRESSURE, i], film[THICKNESS, i], film[LEFT, i]), fixed_at(i, of_nodes)
+    for _ in range(2):
+        a, b, beyond = _balance(i, carried, before, after, film, flow, limiters)
+        start, balance = (state[BASE, i], state[PROFILE, i]), (a, b, of_nodes[G, i])
+        found, _ = film_temperature(start, node, balance, last, walls, law)
+        state[BASE, i], state[PROFILE, i] = found.base, found.profile
+        upstream = before if flow[i + 1] >= 0.0 else after
+        drop = max(limiters[IN_SPACE, i] * (upstream - found.mean), limiters[IN_TIME, i] * (old - found.mean))
+        if drop <= max(found.mean - coldest, 0.0):
+            break
+        limiters[IN_SPACE, i] = limiters[IN_TIME, i] = 0.0
+    state[MEAN, i] = found.mean
+    out[0, i], out[1, i], out[2, i] = found.q1, found.q2, found.shear_heat
+    out[3, i] = beyond * (found.mean - old)
+
+
+@inlined
+def _carried_in(
+    i: int, state: np.ndarray, film: np.ndarray, flow: np.ndarray, limiters: np.ndarray, inlet: float
+) -> tuple[float, float, float]:
+    """Heat of the old level and of the flow from both neighbours [W/m^2], and their temperatures [K]."""
+    last, from_left, from_right = len(flow) - 2, max(flow[i], 0.0), max(-flow[i + 1], 0.0)
+    before = state[MEAN, i - 1] if i > 0 else inlet
+    after = state[MEAN, i + 1] if i < last else inlet
+    carried = film[STORED, i] * film[OLD, i] + film[EXTRAPOLATED, i]
+    if from_left > 0.0:
+        drawn = limiters[IN_SPACE, i - 1] * (before - state[MEAN, i - 2]) if i > 1 else 0.0
+        carried += from_left * (before + drawn)
+    if from_right > 0.0:
+        drawn = limiters[IN_SPACE, i + 1] * (after - state[MEAN, i + 2]) if i < last - 1 else 0.0
+        carried += from_right * (after + drawn)
+    return carried, before, after
+
+
+@inlined
+def _balance(
+    i: int,
+    carried: float,
+    before: float,
+    after: float,
+    film: np.ndarray,
+    flow: np.ndarray,
+    limiters: np.ndarray,
+) -> tuple[float, float, float]:
+    """a and b of :mod:`.film_law` with both extrapolations, and the part of a by that in time."""
+    stored, in_space = film[STORED, i], limiters[IN_SPACE, i]
+    from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
+    beyond = stored * limiters[IN_TIME, i]
+    to_right, to_left = in_space * max(flow[i + 1], 0.0), in_space * max(-flow[i], 0.0)
+    a = stored + from_left + from_right + beyond + to_right + to_left
+    return a, carried + beyond * film[OLD, i] + to_right * before + to_left * after, beyond
 
 
 @compiled
@@ -191,8 +220,9 @@ def heat_taken(
 ) -> float:
     """Heat that the oil stores and takes out of the contact, summed over the cells [W/m^2].
 
-    `old`, `stored`, `before_step`, `flow`, `inlet`: as of :func:`transport`.
-    `t`, `extrapolated`: as it fills them in, shape (nodes,).
+    `old`, `stored`, `before_step`, `flow`: `old`, `stored`, `extrapolated` and `couette` of :class:`Film`.
+    `inlet`: temperature of the oil that enters [K].
+    `t`, `extrapolated`: temperatures and e of the solution, as of :func:`transport`, shape (nodes,).
     """
     nodes = len(t)
     # oil that the pressure moves takes its heat along from where it turns: the Couette flow alone carries
