@@ -25,6 +25,8 @@ class LineMatrices:
     `near_field`: nodes of deflection on either side in the assembled matrix.
     """
 
+    linear_atol = 1e-2
+
     def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
         self.problem, self.exchange, self.ranks, self.near_field = problem, exchange, ranks, near_field
         self.factors: Factors | None = None

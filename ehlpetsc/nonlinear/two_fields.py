@@ -31,7 +31,12 @@ FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the 
 
 
 class Matrices(Protocol):
-    """Jacobian and preconditioner of a kind of contact."""
+    """Jacobian and preconditioner of a kind of contact.
+
+    `linear_atol`: absolute tolerance of the linear residual over that of Newton's method.
+    """
+
+    linear_atol: float
 
     def jacobian(self, ksp: PETSc.KSP) -> Any:
         """Matrix-free Jacobian, context of a Python matrix, for a Krylov solver with its options."""

@@ -43,6 +43,7 @@ class EliminatedFilm:
         self.spacings = problem.grid.steps
         self.coarse_space = CoarseSpace(problem.deflection.kernel, self.periodic)
         self.terms = fitted_terms(problem.deflection, self.spacings)
+        self._nothing = np.zeros(len(problem.window))
         self.builds = 0
         self.applications = 0  # since the last set-up: iterations of GMRES
         self.pc: PETSc.PC | None = None
@@ -103,14 +104,15 @@ class EliminatedFilm:
             for thing in (self.pc, self.matrix, self.b, self.u):
                 thing.destroy()
         sizes = (rows, block * p.n)
-        self.matrix = PETSc.Mat().createAIJ(
-            (sizes, sizes), csr=(pointers, columns[:count], values[:count]), comm=self.comm
-        )
+        self._entries = pointers, columns[:count].copy(), values[:count].copy()  # PETSc does not copy them
+        self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=self.comm)
         self.pc = PETSc.PC().create(self.comm)
         self.pc.setOperators(self.matrix)
         self.pc.setFromOptions()
         self.pc.setUp()
         self.b, self.u = self.matrix.createVecs()
+        self._transport = np.zeros_like(derivatives)
+        self._transport[:, ::2] = self.by_separation
         mine, nodes = self.reduction.kind[owned], block * np.arange(p.local)
         self.row_of_r = nodes + TERMS + (mine == CONTACT)
         self.row_of_g = np.flatnonzero((mine == CONTACT) | (mine == BOUND))
@@ -158,8 +160,7 @@ class EliminatedFilm:
         b_load = full[-1] if operator.size > local else 0.0
         if self.ranks.size > 1:
             b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
-        reynolds = self._pad(self.by_separation)
-        b_r = b_r - p.reynolds.product(reynolds, exchange.window(b_g), self._nothing(), p.owned.start)
+        b_r = b_r - p.reynolds.product(self._transport, exchange.window(b_g), self._nothing, p.owned.start)
         b = np.zeros(self.b.getLocalSize())
         b[self.row_of_r[self.has_reynolds]] = b_r[self.has_reynolds]
         b[self.block * self.row_of_g + TERMS] = full[0:local:2][self.row_of_g]
@@ -179,11 +180,3 @@ class EliminatedFilm:
             out[-1] = approach
         operator.deflected = out, sums.deflection, float(sums.load[0])
         y.array[:] = out[operator.active]
-
-    def _pad(self, by_separation: np.ndarray) -> np.ndarray:
-        padded = np.zeros((len(by_separation), 12))
-        padded[:, ::2] = by_separation
-        return padded
-
-    def _nothing(self) -> np.ndarray:
-        return np.zeros(len(self.problem.window))

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 class PlaneMatrices:
     """Matrix-free Jacobian; the preconditioner around that of the user's options."""
 
+    linear_atol = 0.1  # an iteration costs a convolution
+
     def __init__(self, problem: EHLProblem, exchange: PlaneExchange, ranks: MPI.Comm):
         self.problem, self.exchange, self.ranks = problem, exchange, ranks
         self.preconditioner: EliminatedFilm | None = None
