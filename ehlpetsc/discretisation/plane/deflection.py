@@ -101,7 +101,7 @@ class Deflection:
     `stiffness`: C of the module.
     `film_scale`: of the row scale, in a^2/R.
     `periodic`: across.
-    `local`: nodes of this rank, whole rows.
+    `owned`: local nodes in the window.
 
     `kernel`: C K, shape (n_y, n_x).
     `row_scale`: coefficient of the separation in a row; that of h00 is its negative.
@@ -115,8 +115,10 @@ class Deflection:
         stiffness: float,
         film_scale: float,
         periodic: bool,
+        owned: slice,
         ranks: Transposition | None = None,
     ):
+        self.owned = owned
         (n_y, n_x), (dy, dx) = shape, spacings
         self.cell, self.periodic = dx * dy, periodic
         self.row_scale = np.sqrt(self.cell) / film_scale
@@ -129,8 +131,8 @@ class Deflection:
         return PressureSums(self.convolution(pressure), np.array([self.cell * pressure.sum()]))
 
     def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
-        """Local rows, from the separation at the local nodes."""
-        return self.row_scale * (separation - approach - sums.deflection)
+        """Local rows, from the separation at the nodes of the window."""
+        return self.row_scale * (separation[self.owned] - approach - sums.deflection)
 
     @cached_property
     def largest_eigenvalue(self) -> float:

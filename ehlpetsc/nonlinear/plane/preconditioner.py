@@ -28,17 +28,36 @@ from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, reduction_of
 from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
 
+PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
 MAX_KEPT = 14  # iterations of GMRES up to which the matrix is kept
 
 
 class EliminatedFilm:
     """Context of PETSc's Python preconditioner.
 
-    `iterations`: function that returns the iterations of the last linear solve.
+    Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm`` (the default).
     """
 
-    def __init__(self, problem: EHLProblem, jacobian: PlaneJacobian, ranks: MPI.Comm, comm: PETSc.Comm):
-        self.problem, self.jacobian, self.ranks, self.comm = problem, jacobian, ranks, comm
+    def setUp(self, pc: PETSc.PC) -> None:
+        """Prepare the elimination for the state of the operator."""
+        self.operator: PlaneJacobian = pc.getOperators()[0].getPythonContext()
+        self.operator.elimination.prepare(self.operator)
+
+    def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        """Solve for one right-hand side."""
+        operator, full = self.operator, np.zeros(self.operator.size)
+        full[operator.active] = x.array_r
+        y.array[:] = operator.elimination.solve(full)[operator.active]
+
+
+class Elimination:
+    """Elimination of film and load with its factors, kept from one matrix to the next.
+
+    PETSc creates a new preconditioner whenever the set of active unknowns changes.
+    """
+
+    def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
+        self.problem, self.ranks, self.comm = problem, ranks, comm
         self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
         self.spacings = problem.grid.steps
         self.coarse_space = CoarseSpace(problem.deflection.kernel, self.periodic)
@@ -49,9 +68,9 @@ class EliminatedFilm:
         self.pc: PETSc.PC | None = None
         self.kind: np.ndarray | None = None
 
-    def setUp(self, pc: PETSc.PC) -> None:
+    def prepare(self, operator: PlaneJacobian) -> None:
         """Assemble and factor anew where the kept matrix no longer serves."""
-        self.operator: PlaneJacobian = pc.getOperators()[0].getPythonContext()
+        self.operator = operator
         inactive = np.zeros(len(self.problem.window), dtype=bool)
         inactive[self.problem.owned.start + self.operator.inactive_nodes] = True
         self.reduction = reduction_of(self.operator.state, inactive)
@@ -108,6 +127,7 @@ class EliminatedFilm:
         self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=self.comm)
         self.pc = PETSc.PC().create(self.comm)
         self.pc.setOperators(self.matrix)
+        self.pc.setOptionsPrefix(PREFIX)
         self.pc.setFromOptions()
         self.pc.setUp()
         self.b, self.u = self.matrix.createVecs()
@@ -150,12 +170,11 @@ class EliminatedFilm:
             load = self.ranks.allreduce(load)
         return pressure, u[rows], float(load)
 
-    def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """Solve for one right-hand side."""
+    def solve(self, full: np.ndarray) -> np.ndarray:
+        """Unknowns for a local right-hand side, both of the whole system."""
         p, operator, exchange = self.problem, self.operator, self.operator.exchange
         self.applications += 1
-        full, local = np.zeros(operator.size), n_dofs(p.local)
-        full[operator.active] = x.array_r
+        local = n_dofs(p.local)
         b_g, b_r = full[0:local:2] / p.deflection.row_scale, full[1:local:2]
         b_load = full[-1] if operator.size > local else 0.0
         if self.ranks.size > 1:
@@ -179,4 +198,4 @@ class EliminatedFilm:
         if operator.size > local:
             out[-1] = approach
         operator.deflected = out, sums.deflection, float(sums.load[0])
-        y.array[:] = out[operator.active]
+        return out
