@@ -35,6 +35,12 @@ class Transposition(Protocol):
     def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
         """Inverse of `to_waves`."""
 
+    def local(self, nodes: int) -> slice:
+        """Nodes of this rank, of all `nodes`."""
+
+    def gathered(self, local: np.ndarray) -> np.ndarray:
+        """Values of all nodes from those of each rank."""
+
 
 class OneRank:
     """Transposition of one rank, which has everything."""
@@ -47,6 +53,12 @@ class OneRank:
 
     def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
         return waves
+
+    def local(self, nodes: int) -> slice:
+        return slice(0, nodes)
+
+    def gathered(self, local: np.ndarray) -> np.ndarray:
+        return local
 
 
 class PressureSums(NamedTuple):
@@ -140,5 +152,6 @@ class Deflection:
         return float(np.abs(self.integral(np.ones(self.convolution.n_y * self.convolution.n_x))).max())
 
     def integral(self, pressure: np.ndarray) -> np.ndarray:
-        """Elastic deflection at every node of the mesh, in a^2/R; on one rank."""
-        return self.convolution(pressure)
+        """Elastic deflection at every node of the mesh, in a^2/R, by the pressures there; collective."""
+        ranks = self.convolution.ranks
+        return ranks.gathered(self.convolution(pressure[ranks.local(len(pressure))]))
