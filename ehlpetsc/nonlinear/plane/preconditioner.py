@@ -197,5 +197,5 @@ class Elimination:
         out[2 * operator.inactive_nodes + 1] = 0.0
         if operator.size > local:
             out[-1] = approach
-        operator.deflected = out, sums.deflection, float(sums.load[0])
+        operator.remember(out, pressure, sums)
         return out
