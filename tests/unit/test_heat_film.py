@@ -170,6 +170,16 @@ def test_heat_of_a_film_that_closes():
     assert solved(h=0.0)[5] == 0.0
 
 
+@pytest.mark.parametrize("sliding", [1e-17, 1e-9, 12.5])
+def test_stress_of_a_film_at_rest_but_for_rounding(sliding):
+    """The heat of shear is then rounding of the balance, which exceeds the heat itself."""
+    law = LAWS["newtonian"]._replace(sliding=sliding)
+    *_, (ln_eta, beta, _), base, y, shear = solved(law=law)
+    rate = np.sinh(y) / y if y > 1e-6 else 1.0
+    viscous = law.eta0 * np.exp(ln_eta - beta * (base - REFERENCE) - SPREAD) * sliding / 3e-7
+    assert shear == pytest.approx(viscous / rate, rel=1e-6)
+
+
 @pytest.mark.parametrize("guess", [150.0, 363.0, 5000.0])
 def test_the_temperature_does_not_depend_on_the_guess(guess):
     for law in LAWS.values():
@@ -286,7 +296,7 @@ def carried(profile, nodes, way=1.0, moving=False):
         a, b = explicit_transport(stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
         of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
-        new, q1, q2, _, beyond = out = [np.empty(nodes) for _ in range(5)]
+        new, q1, q2, _, beyond, _ = out = [np.empty(nodes) for _ in range(6)]
         assert transport(b / a, zero.copy(), b / a, *film, INLET, INLET, tuple(STILL), of_nodes, *out) == 1
         taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
         worst = max(worst, abs(taken + q1.sum() + q2.sum()))

@@ -109,7 +109,7 @@ def heated_nodal(
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
         of_node = of_nodes[A, i], of_nodes[B, i], *fixed_at(i, of_nodes, law)
         left = 1.0 + min(q[i], 0.0)
-        t, t_p, t_h, _, _, _, line, base[i], profile[i] = film_temperature(
+        t, t_p, t_h, _, _, _, line, base[i], profile[i], _ = film_temperature(
             base[i], profile[i], p, at[H, i], left, *of_node
         )
         zero = law.viscosity[2]

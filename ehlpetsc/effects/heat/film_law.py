@@ -255,6 +255,8 @@ def film_temperature(
         ln(eta/eta0) at `reference`, :math:`\beta` [1/K], derivative of the first by p [1/Pa].
     base, profile
         :math:`T_s` [K] and y.
+    shear
+        Mean shear stress by the flow law [Pa]; Phi over the sliding speed is rounding where nothing slides.
     """
     w1, w2 = walls[0], walls[1]
     over_k, k_slope = _resistivity(p, left, law)
@@ -280,7 +282,7 @@ def film_temperature(
     t, y = base, profile
     temperature, energy_t, q1, q2, phi = base, base, 0.0, 0.0, 0.0
     t_p, t_h, change, low, high = 0.0, 0.0, 0.0, 0.0, 0.0
-    tau, by_x, by_limit, is_heated = 0.0, 0.0, 0.0, False
+    tau, shear, by_x, by_limit, is_heated = 0.0, 0.0, 0.0, 0.0, False
     for case in (PARABOLA, INSULATED, APART):
         exchange, alpha = exchange_law(case, r, walls)
         if heat == 0.0:
@@ -335,6 +337,7 @@ def film_temperature(
                 if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
                     if abs(d - _split(case, energy_t, r, walls, exchange, alpha, beta)) < MAX_SPLIT_CHANGE:
                         break
+            shear = tau - by_x * (beta * change + lr_y * change_y)
             phi += phi_t * change + phi_y * change_y
             energy_t = t + phi * uniform
             temperature = t + m_phi * phi + (mean + mean_y * change_y) / beta
@@ -368,4 +371,4 @@ def film_temperature(
             break
         if case == INSULATED and energy_t >= min(w1, w2):
             break
-    return temperature, t_p, t_h, q1, q2, phi, (ln_eta, beta, eta_p), t, y
+    return temperature, t_p, t_h, q1, q2, phi, (ln_eta, beta, eta_p), t, y, shear

@@ -125,6 +125,7 @@ def transport(
     q2: np.ndarray,
     shear_heat: np.ndarray,
     extrapolated: np.ndarray,
+    shear: np.ndarray,
 ) -> int:
     """Temperatures of the film and heat fluxes of a solution, by sweeps along the film; returns their number.
 
@@ -135,8 +136,8 @@ def transport(
         named tuples, anew in some calls, slowly.
     `inlet`, `coldest`: temperature of the oil that enters, minimum of it and both bodies [K].
     `law`, `of_nodes`: as of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
-    `t_new`, `q1`, `q2`, `shear_heat`, `extrapolated`: filled in; the last one is e at the end of the step,
-        over the step [W/m^2].
+    `t_new`, `q1`, `q2`, `shear_heat`, `extrapolated`, `shear`: filled in; `extrapolated` is e at the end of
+        the step, over the step [W/m^2], `shear` the shear stress [Pa].
     """
     nodes, law = len(t), FilmLaw(*law)
     in_space, in_time = np.empty(nodes), np.empty(nodes)
@@ -163,9 +164,10 @@ def transport(
                 to_right, to_left = in_space[i] * max(flow[i + 1], 0.0), in_space[i] * max(-flow[i], 0.0)
                 a = stored[i] + from_left + from_right + beyond + to_right + to_left
                 b = first_order + beyond * old[i] + to_right * before + to_left * after
-                value, _, _, q1[i], q2[i], shear_heat[i], _, base[i], profile[i] = film_temperature(
+                found = film_temperature(
                     base[i], profile[i], pressure[i], thickness[i], left[i], a, b, *fixed
                 )
+                value, _, _, q1[i], q2[i], shear_heat[i], _, base[i], profile[i], shear[i] = found
                 upstream = before if flow[i + 1] >= 0.0 else after
                 drop = max(in_space[i] * (upstream - value), in_time[i] * (old[i] - value))
                 if drop <= max(value - coldest, 0.0):
