@@ -134,6 +134,10 @@ class Scales:
         """Operating conditions of the reference state."""
         return Conditions(self.load, self.R, self.u1, self.u2)
 
+    def half_width(self, conditions: Conditions) -> float:
+        """Hertz half-width of the conditions at an instant [m], at most `a`."""
+        return hertz_line(conditions.load, conditions.radius, self.E)[0]
+
     @classmethod
     def of(cls, case: Any) -> Self:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""

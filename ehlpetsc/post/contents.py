@@ -66,15 +66,15 @@ def datasets_of(
 def point_temperatures(loads: Loads, surface: str, motion: Passage) -> PointTemperatures:
     r"""Highest and mean surface temperature of body points and their flash temperature.
 
-    The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
-    over the stored frames; the flash temperature is the highest temperature minus that of the body.
+    The mean is over the time at which a point is inside the Hertz contact of the instant, by the trapezoidal
+    rule over the stored frames; the flash temperature is the highest temperature minus that of the body.
     nan for points that did not pass the whole contact.
     """
     highest, (sums, times) = np.full(motion.enter.size, np.nan), np.zeros((2, motion.enter.size))
     step = np.diff(loads.time)
     for frame, duration in enumerate(0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))):
         x = motion.positions(frame, loads.x, loads.dx)
-        values, is_inside = loads.temperatures(surface, frame, x), np.abs(x) <= loads.a
+        values, is_inside = loads.temperatures(surface, frame, x), np.abs(x) <= loads.half_width(frame)
         highest = np.fmax(highest, values)
         sums[is_inside] += duration * values[is_inside]
         times[is_inside] += duration

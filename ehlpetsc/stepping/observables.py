@@ -32,7 +32,8 @@ def diagnostics(
             shear = effect.film_shear(state.records[effect.name], solution, shear)
     fields, contact_mask = _fields(scene, conditions, solution, shear), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
-    load, film = s.dx * pressure.sum(), mean_film(s, solution.nodes.film)
+    width = s.half_width(conditions) / s.a
+    load, film = s.dx * pressure.sum(), mean_film(s, solution.nodes.film, width)
     friction_1, friction_2 = (s.dx * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
     smooth_film = smooth_films(case.fluid, s.E, conditions)[1] if case.fluid else np.nan
     scalars = {
@@ -44,7 +45,7 @@ def diagnostics(
         "contacts": int(contact_mask.sum()),
         "load": load,
         "load_error": abs(load / conditions.load - 1.0),
-        "mass_error": mass_error(problem, solution),
+        "mass_error": mass_error(problem, solution, width),
         "approach": solution.unknowns.h00 * s.h,
         "friction": friction_2,
         "friction_1": friction_1,
@@ -96,23 +97,27 @@ def _of_oil(loads: SurfaceLoads, s: Scales) -> dict:
     return {"oil_pressure": oil.max(), "nodes_below_1nm": int(thin.sum())}
 
 
-def mean_film(scales: Scales, h: np.ndarray) -> float:
-    """Mean film [m] of the middle half of the Hertz contact; h in a^2/R."""
-    middle = np.abs(scales.x) <= 0.5
-    return float(h[middle].mean() * scales.h)
+def mean_film(scales: Scales, h: np.ndarray, width: float) -> float:
+    """Mean film [m] of the middle half of the Hertz contact of the instant.
+
+    `h`: film in a^2/R. `width`: half-width of the instant over a, that of the widest contact of the run.
+    """
+    distance = np.abs(scales.x)
+    return float(h[distance <= max(0.5 * width, distance.min())].mean() * scales.h)
 
 
-def mass_error(problem: EHLProblem, solution: Solution) -> float:
+def mass_error(problem: EHLProblem, solution: Solution, width: float) -> float:
     r"""Mass defect of a step over the mass that the contact carries.
 
-    :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
-    where mass is conserved at every node. At contact nodes of direct contact, F is the mass that is not
-    conserved; at other nodes, and at all nodes in mixed contact, it is the residual of Newton's method.
-    (The mass flow at the inlet is no reference: nearly all of the thick film there flows back.) The inlet
-    node has no balance: its pressure or its oil film is prescribed.
+    :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` in the Hertz contact, `width` its
+    half-width at the instant over a, both times u: 0 where mass is conserved at every node. At contact nodes
+    of direct contact, F is the mass that is not conserved; at other nodes, and at all nodes in mixed contact,
+    it is the residual of Newton's method. (The mass flow at the inlet is no reference: nearly all of the
+    thick film there flows back.) The inlet node has no balance: its pressure or its oil film is prescribed.
     """
     if problem.fluid is None:
         return 0.0
     defect = problem.film_scale * np.abs(solution.residual[1:]).sum()
-    carried = solution.mass[np.abs(problem.x) <= 1.0].mean()
+    distance = np.abs(problem.x)
+    carried = solution.mass[distance <= max(width, distance.min())].mean()
     return float(defect / max(carried, MIN_BALANCE_FILM / problem.scales.h))

@@ -129,9 +129,21 @@ def test_hertz_contact_and_flow_are_those_of_the_instant(tmp_path, drawn):
     x, pressure = next(line for line in upper.lines if line.get_linestyle() == ":").get_data()
     assert pressure.max() == pytest.approx(1e-9 * p0, rel=1e-3)
     assert np.abs(x[pressure > 0.0]).max() == pytest.approx(a / A, abs=0.01)
-    assert f"u = -0.2 m/s, slide/roll ratio 0, a = {1e3 * a:.3g} mm" in figure._suptitle.get_text()
+    named = f"u = -0.2 m/s, slide/roll ratio 0, a = {1e3 * A:.3g} mm, half-width {a / A:.3g} a, p0 = "
+    assert named in figure._suptitle.get_text()  # a is the unit of x/a
     assert [text.get_text() for text in upper.texts] == ["← flow"]
     assert upper.get_ylim()[1] >= pressure.max()
+
+
+def test_film_axis_ends_above_the_film_in_the_contact_of_the_instant(tmp_path, drawn):
+    """Under a ninetieth of the load the contact is a tenth as wide, the film beside it much thicker."""
+    path = reversing(tmp_path / "v.h5", np.linspace(527e3, 6e3, 41))
+    assert draw(path, "--step", 40) == 0
+    with read_result(path) as r:
+        inside = np.abs(r.x) <= (6 / 527) ** 0.5 * A
+        thickest = 1e6 * r.frame("film_thickness", 40)[inside].max()
+        assert over_time._limits([r], np.array([40]))[1] == pytest.approx(1.15 * thickest)
+    assert drawn[0].axes[1].get_ylim()[1] == pytest.approx(1.15 * thickest)
 
 
 def test_picture_options_and_formats(tmp_path, result, drawn, monkeypatch):
