@@ -117,6 +117,8 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
             f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
         )
+    if case.gears:
+        yield from case.gears.pair.notes()
     rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
     if rough and case.time is None and case.motion is not None:
         yield (
@@ -140,8 +142,10 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
 
 def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
-    film, friction = expected_film(case, scales) * scales.h, case.contact.boundary_friction
-    friction = expected_friction(case.fluid, friction, scales, film) if case.motion else None
+    friction = case.contact.boundary_friction if case.motion else None
+    if case.motion and case.fluid:
+        film = expected_film(case, scales) * scales.h
+        friction = expected_friction(case.fluid, scales.load, scales.a, scales.u1 - scales.u2, film)
     return list(isothermal(case, scales, friction))
 
 
