@@ -44,7 +44,7 @@ def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[fl
 
     The inlet entrains the mass of an incompressible oil, which passes the contact with its density at p0;
     the pressure of the exit constriction is lower. Both are within 4 % of computed films, compressible
-    and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_exact_solutions.py`), where
+    and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_scales.py`), where
     :math:`h_{Moes}` alone exceeds the central film by 22 to 27 %.
 
     Parameters

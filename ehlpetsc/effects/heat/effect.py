@@ -1,7 +1,7 @@
 r"""Heat: temperatures of the film and of both surfaces, and the viscosity at them.
 
 Equations and the temperature of a node: :mod:`ehlpetsc.effects.heat.film_law`; conduction into the bodies:
-:mod:`ehlpetsc.effects.heat.half_space_conduction`. In the solve of a step the temperature of a node follows
+:mod:`ehlpetsc.effects.heat.half_spaces`. In the solve of a step the temperature of a node follows
 from its pressure and film, with the response of both surfaces to the flux of the step; heat of the pressure
 flow and of rubbing solids, and the heat that the film carries along, are those of the last level there. Of
 the accepted solution all temperatures and fluxes are then computed with its own flow, so that the energy
