@@ -305,6 +305,11 @@ def test_passing_profile_length_follows_from_travel():
     assert np.ptp(passing(Roughness.of(short, scales).surface_1, short, scales)) == 0.0
 
 
+def test_case_picture_of_a_gear_does_not_give_one_slide_roll_ratio():
+    title = draw_case(CASES / "fzg.toml")._suptitle.get_text()
+    assert "slide/roll" not in title and "of the widest contact; conditions over time" in title
+
+
 def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     out = tmp_path / "c.png"
     assert draw(CASES / "table1_rough.toml", "-o", out) == 0
