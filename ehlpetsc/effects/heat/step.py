@@ -193,13 +193,15 @@ class HeatStep:
 
     def _moving(self, heat: FilmHeat, film: Film) -> Temperatures:
         responses = heat.of_nodes[[R1, R2]]
-        state, fluxes, *of_shear = self._nodes(heat, film, heat.walls, responses, heat.guess)
+        state, fluxes, shear, extrapolated, stress = self._nodes(
+            heat, film, heat.walls, responses, heat.guess
+        )
         walls = [w + r * q for w, r, q in zip(heat.walls, responses, fluxes, strict=True)]
         bodies = [
             body.accept(body_step, q)
             for body, body_step, q in zip(self.bodies, heat.bodies, fluxes, strict=True)
         ]
-        return Temperatures(state, walls, fluxes, *of_shear, bodies, responses)
+        return Temperatures(state, walls, fluxes, shear, extrapolated, stress, bodies, responses)
 
     def _steady(self, record: HeatRecord, heat: FilmHeat, film: Film, step: Step) -> Temperatures:
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
@@ -220,11 +222,15 @@ class HeatStep:
             state = np.array((record.base, record.profile, record.film))
             if temperatures is not None:
                 state = temperatures.state
-            state, new_fluxes, *of_shear = self._nodes(heat, film, walls_without_flux, responses, state)
+            state, new_fluxes, shear, extrapolated, stress = self._nodes(
+                heat, film, walls_without_flux, responses, state
+            )
             bodies = [
                 body.record(flux, terms) for body, flux, (_, terms) in zip(self.bodies, q, risen, strict=True)
             ]
-            temperatures = Temperatures(state, walls, new_fluxes, *of_shear, bodies, responses)
+            temperatures = Temperatures(
+                state, walls, new_fluxes, shear, extrapolated, stress, bodies, responses
+            )
             return np.concatenate(new_fluxes)
 
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
