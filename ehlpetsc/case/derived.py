@@ -27,6 +27,7 @@ from ehlpetsc.physics.viscosity_laws import (
 )
 
 if TYPE_CHECKING:
+    from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
 
 MEASURED_KEY = "asperity_height"
@@ -190,13 +191,35 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     def relative(temperature: np.ndarray) -> np.ndarray:
         return 1.0 + 516.0 * (1.0 / temperature - 1.0 / 311.0)
 
+    path = path_of_contact(case.gears.pair)
     return Rating(
-        path_of_contact(case.gears.pair),
+        path,
         modulus_of(case),
         roughness,
         lambda T: fluid.viscosity * np.exp(viscosity(0.0 * T, fluid, thermal, T)[0]),
         lambda T: fluid.pressure_viscosity * relative(T) / relative(reference),
+        None if roughness else _film_friction(case, path),
         bulk,
         (heat.inlet_temperature if heat else None) or reference,
         (solids[0].effusivity, solids[1].effusivity),
     )
+
+
+def _film_friction(case: Values, path: ContactPath) -> np.ndarray:
+    """Coefficient of friction of the smooth isothermal film along a path of contact, 0 without load."""
+    from ehlpetsc.gears.path import hertz
+    from ehlpetsc.physics.film_formulas import contact_films
+    from ehlpetsc.physics.flash_temperature import expected_friction
+    from ehlpetsc.physics.geometry import GEOMETRIES
+    from ehlpetsc.physics.operation import Conditions
+
+    modulus, found = modulus_of(case), np.zeros(len(path.rho))
+    columns = zip(path.load, path.radius, path.speed_1, path.speed_2, strict=True)
+    half_widths = hertz(path, modulus)[0]
+    for k, conditions in enumerate(map(Conditions._make, columns)):
+        if conditions.load > 0.0:
+            film, _ = contact_films(GEOMETRIES["line"], modulus, math.inf, case.fluid, conditions)
+            found[k] = expected_friction(
+                case.fluid, conditions.load, half_widths[k], conditions.sliding, film
+            )
+    return found

@@ -112,7 +112,10 @@ STEP_SCALARS = {
         "1", "magnitude of the mean friction force of both walls over load", over_run="last", summary=".4g"
     ),
     "film_central": StepScalar(
-        "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"
+        "m",
+        "mean film of the middle half of the Hertz contact of the instant",
+        over_run="last",
+        summary=".4g",
     ),
     "lambda_ratio": StepScalar(
         "1", "expected smooth minimum film over the combined Rq", over_run="last", summary=".4g"

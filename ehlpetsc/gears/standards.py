@@ -29,6 +29,7 @@ class Rating:
     `roughness`: Ra, mean of both flanks [m]; 0: smooth.
     `viscosity`, `pressure_viscosity`: of the oil at ambient pressure [Pa s], [1/Pa], functions of temperature
         [K].
+    `film_friction`: coefficient of friction along the path of smooth flanks, shape (n,); None: rough ones.
     `bulk`, `oil`: temperatures of the gears, mean of both, and of the oil that is supplied [K].
     """
 
@@ -37,6 +38,7 @@ class Rating:
     roughness: float
     viscosity: Callable[[np.ndarray], np.ndarray]
     pressure_viscosity: Callable[[np.ndarray], np.ndarray]
+    film_friction: np.ndarray | None
     bulk: float
     oil: float
     effusivities: tuple[float, float] = (STEEL.effusivity, STEEL.effusivity)
@@ -105,10 +107,12 @@ def bulk_temperatures(
     coefficients of heat transfer h [W/(m^2 K)], :math:`T_{oil}+\frac12P_{loss}/(hA)`: half of the losses to
     each gear, A its two sides and the cylinder of its tips.
 
-    `coefficient`: coefficient of friction, also along the path; None: of ISO/TR 14179-2.
+    `coefficient`: coefficient of friction, also along the path; None: of ISO/TR 14179-2 or, where that of
+    smooth flanks is none, of the oil film.
     """
     path, pair = rating.path, rating.path.pair
-    coefficient = friction(rating) if coefficient is None else coefficient
+    if coefficient is None:
+        coefficient = friction(rating) if rating.film_friction is None else rating.film_friction
     if heat_transfer is None:
         flashes = flash(rating, coefficient)
         mean = 0.5 * (flashes[1:] + flashes[:-1]) @ np.diff(path.rho) / np.ptp(path.rho)

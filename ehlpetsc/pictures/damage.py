@@ -13,13 +13,20 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.pictures import style
-from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
+from ehlpetsc.post.fatigue.statistics import (
+    MIN_ASPERITIES,
+    exceedance,
+    fitted_asperities,
+    fitted_exceedance,
+)
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.stresses.half_plane import stress, von_mises
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 
 FORMATS = ("png", "svg")
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
+EXCEEDANCE_DECADES = 12  # of damage below the maximum in distributions
+GOOD_FIT = 0.9  # r^2 of a Weibull line that needs no word
 SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, as in the paper
 FIELD_DEPTH = 1.5  # half-widths
 STRESSES = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$", r"$\sigma_{vM}$")
@@ -217,15 +224,29 @@ def depth_picture(result: PostResult) -> Figure:
 
 
 def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: str) -> Figure:
-    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit."""
+    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit.
+
+    Damage less than `EXCEEDANCE_DECADES` below the maximum; a poor fit is dashed, its r^2 in the legend.
+    """
     figure, axes = style.new_figure(1, 1, (7.0, 4.0))
+    highest = max((under.max(initial=0.0) for _, under, _ in curves), default=0.0)
+    least = highest * 10.0**-EXCEEDANCE_DECADES
     for (label, under, fit), colour in zip(curves, style.shades(len(curves)), strict=True):
         falling, fraction = exceedance(under)
-        damaged = falling[falling > 0.0]
-        axes.plot(damaged, fraction[falling > 0.0], ".", ms=3, color=colour)
+        shown = falling > least
+        damaged, count = falling[shown], fitted_asperities(under)
+        axes.plot(damaged, fraction[shown], ".", ms=3, color=colour)
         values = np.geomspace(damaged[-1] / 3.0, 3.0 * damaged[0], 300) if damaged.size else damaged
-        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), color=colour, lw=1.2, label=label)
+        is_fitted, dashes = np.isfinite(fit.alpha) and count >= MIN_ASPERITIES, "-"
+        if not is_fitted:
+            values, label = values[:0], f"{label}, {count} with damage: no fit"
+        elif fit.r_squared < GOOD_FIT:
+            dashes, label = "--", f"{label}, $r^2$ = {fit.r_squared:.2f}"
+        line = dict(color=colour, lw=1.2, ls=dashes, label=label)
+        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), **line)
     axes.set(xscale="log", ylim=(0.0, 1.0))
+    if highest > 0.0:
+        axes.set_xlim(left=max(axes.get_xlim()[0], least))
     axes.set(xlabel="damage D of one pass", ylabel="share of asperities above D")
     axes.grid(color="0.92")
     style.legend_beside(axes, title="dots: asperities\nlines: Weibull fit")
@@ -234,7 +255,11 @@ def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: 
 
 
 def _ratio(result: PostResult) -> str:
-    return f"slide/roll ratio {result.ratio:.3g}"
+    """Slide/roll ratio, of conditions over time its range."""
+    low, high = result.attrs.get("slide_roll_ratios", (result.ratio, result.ratio))
+    if not np.isfinite(high - low):
+        return "entrainment that reverses"
+    return f"slide/roll ratio {low:.3g}" + ("" if low == high else f" to {high:.3g}")
 
 
 def rule_name(result: PostResult) -> str:

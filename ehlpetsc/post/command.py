@@ -123,7 +123,8 @@ def _summary(output: str, wall: float) -> None:
             words.append(f"{surface}: D_max={result.passed(surface)[k].max():.3e}")
             words += [f"{name}={result.passed(surface, name)[k].max():.3g}" for name in result.criteria]
         if (fit := result.fits[k]).beta > 0:
-            words.append(f"weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
+            words.append(f"weibull of surface {result.main}:")
+            words.append(f"alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
         print(" ".join(words))
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():

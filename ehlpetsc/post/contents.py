@@ -11,7 +11,13 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.materials import DEFAULT
-from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
+from ehlpetsc.post.fatigue.statistics import (
+    MIN_ASPERITIES,
+    asperities,
+    fitted_asperities,
+    log_life,
+    weibull_fit,
+)
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared
 from ehlpetsc.post.stresses.body_points import Passage
@@ -19,7 +25,6 @@ from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import SURFACES, PointTemperatures, WeibullFit, stored_names
 
 FORMAT_VERSION = 1
-MIN_ASPERITIES = 10  # for a distribution
 SCALES = {"s": "damage/s", "z": "damage/z_over_a"}
 
 
@@ -42,8 +47,8 @@ def datasets_of(
     }
     if profile is not None:
         found |= {f"profile/{surface}_s": profile[0], f"profile/{surface}_z": profile[1]}
-    enough = peaks.s.size >= MIN_ASPERITIES
-    fits = [weibull_fit(log_life(row) if enough else []) for row in under]
+    enough = [fitted_asperities(row) >= MIN_ASPERITIES for row in under]
+    fits = [weibull_fit(log_life(row) if fitted else []) for row, fitted in zip(under, enough, strict=True)]
     for name, column in zip(WeibullFit._fields, np.array(fits).T, strict=True):
         found[f"weibull/{surface}_{name}"] = column
     for depth, count in zip(depths, at_least_one, strict=True):
@@ -52,10 +57,14 @@ def datasets_of(
                 f"note: {count} of {peaks.s.size} asperities of surface {surface} have damage of 1 "
                 f"or more at z/a = {depth:g}: failure in the first pass"
             )
-    if profile is not None and not enough:
+    if profile is not None and not all(enough):
+        fewest = min(map(fitted_asperities, under))
+        with_damage = (
+            "" if fewest == peaks.s.size else f", {fewest} with damage between 0 and 1 at some depth"
+        )
         report(
-            f"note: {peaks.s.size} asperities of surface {surface} passed: a Weibull distribution needs "
-            f"{MIN_ASPERITIES} or more"
+            f"note: {peaks.s.size} asperities of surface {surface} passed{with_damage}: a Weibull "
+            f"distribution needs {MIN_ASPERITIES} or more"
         )
     if loads.is_heated(surface):
         temperatures = point_temperatures(loads, surface, motion)
@@ -66,15 +75,15 @@ def datasets_of(
 def point_temperatures(loads: Loads, surface: str, motion: Passage) -> PointTemperatures:
     r"""Highest and mean surface temperature of body points and their flash temperature.
 
-    The mean is over the time at which a point is inside the Hertz contact, |x| <= a, by the trapezoidal rule
-    over the stored frames; the flash temperature is the highest temperature minus that of the body.
+    The mean is over the time at which a point is inside the Hertz contact of the instant, by the trapezoidal
+    rule over the stored frames; the flash temperature is the highest temperature minus that of the body.
     nan for points that did not pass the whole contact.
     """
     highest, (sums, times) = np.full(motion.enter.size, np.nan), np.zeros((2, motion.enter.size))
     step = np.diff(loads.time)
     for frame, duration in enumerate(0.5 * (np.append(step, 0.0) + np.insert(step, 0, 0.0))):
         x = motion.positions(frame, loads.x, loads.dx)
-        values, is_inside = loads.temperatures(surface, frame, x), np.abs(x) <= loads.a
+        values, is_inside = loads.temperatures(surface, frame, x), np.abs(x) <= loads.half_width(frame)
         highest = np.fmax(highest, values)
         sums[is_inside] += duration * values[is_inside]
         times[is_inside] += duration
@@ -84,6 +93,17 @@ def point_temperatures(loads: Loads, surface: str, motion: Passage) -> PointTemp
     return PointTemperatures(highest, mean, highest - loads.case.heat.bulk_temperature[int(surface) - 1])
 
 
+def slide_roll_ratios(loads: Loads) -> np.ndarray | None:
+    """Minimum and maximum slide/roll ratio of conditions over time, infinite where entrainment reverses."""
+    if loads.case.conditions is None:
+        return None
+    table = loads.case.conditions.sampled()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = np.where(table.entrainment == 0.0, np.inf, (table.u1 - table.u2) / table.entrainment)
+    turns = np.ptp(np.sign(table.entrainment)) > 0.0
+    return np.array([-np.inf, np.inf] if turns else [ratios.min(), ratios.max()])
+
+
 def attributes_of(prepared: Prepared) -> dict[str, Any]:
     """Root attributes: provenance and scales of the result, settings of the case.
 
@@ -91,6 +111,7 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
     """
     loads, case = prepared.loads, prepared.loads.case
     mean = (loads.speeds["1"] + loads.speeds["2"]) / 2
+    ratios = slide_roll_ratios(loads)
     passed = [name for name, motion in prepared.motions.items() if motion.complete.any()]
     return {
         "title": loads.attrs["title"],
@@ -102,6 +123,7 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
         "outlet": loads.x[-1],
         "p0": loads.p0,
         "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
+        **({} if ratios is None else {"slide_roll_ratios": ratios}),
         "every": case.output.every,
         "material": ", ".join(case.contact.material or (DEFAULT,)),
         "strain": case.post.strain,

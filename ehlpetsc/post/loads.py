@@ -37,7 +37,8 @@ class Loads(Result):
         self.case = stored_case(self.attrs["case"], overrides)
         self.a, self.p0, u1, u2 = (float(self.attrs[name]) for name in ("a", "p0", "u1", "u2"))
         self.speeds, self.dx = {"1": u1, "2": u2}, spacing(self.x)
-        self.operation = operation_of(self.case, Scales.of(self.case))
+        self.scales = Scales.of(self.case)
+        self.operation = operation_of(self.case, self.scales)
         self.travelled = {surface: self._travelled(surface) for surface in SURFACES}
         self.profiles = {surface: self._sorted_profile(surface) for surface in SURFACES}
 
@@ -54,6 +55,10 @@ class Loads(Result):
             return None
         order = np.argsort(profile[0])
         return profile[0][order].astype(float), profile[1][order].astype(float)
+
+    def half_width(self, frame: int) -> float:
+        """Hertz half-width of the conditions at a frame [m]."""
+        return self.scales.a * self.scales.size(self.operation.at(self.time[frame]))
 
     def is_heated(self, surface: str) -> bool:
         """Whether the temperature of a surface is stored; False without [heat]."""

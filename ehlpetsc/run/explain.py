@@ -34,7 +34,7 @@ def main(words: list[str]) -> int:
 def explain(case: Case) -> str:
     """Text summary of a case: conditions, surfaces, mesh, run time.
 
-    Raises `profiles.ProfileError`.
+    Raises :class:`ehlpetsc.base.errors.ProfileError`.
     """
     scales = Scales.of(case)
     rough = Roughness.of(case, scales)
@@ -47,6 +47,7 @@ def explain(case: Case) -> str:
             f"Hertz: half-width a = {scales.a * 1e3:.6f} mm, maximum pressure p0 = {scales.p0 / 1e9:.6f} GPa",
         ],
         _layer(case.contact, scales),
+        _default_friction(case),
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
@@ -67,6 +68,14 @@ def _layer(contact: Any, s: Scales) -> list[str]:
         f"Layer: rms height {1e9 * contact.asperity_height:.3g} nm; its asperities carry "
         f"{1e-6 * CONTACT_PRESSURE:g} MPa at a film of {films[0]:.3g} nm and p0 at {films[1]:.3g} nm"
     ]
+
+
+def _default_friction(case: Case) -> list[str]:
+    """Coefficient of friction of the solids that a case leaves out; [] if it gives one."""
+    if case.default_friction is None:
+        return []
+    default = f"{case.default_friction:g}, the default of contact.boundary_friction"
+    return [f"Solids: coefficient of friction {default}, where they touch"]
 
 
 def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:

@@ -62,7 +62,7 @@ def test_omitted_sections_are_none_or_default():
     assert c.output.fields == STORED
     dry = case.load(CASES / "dry_hertz.toml")
     assert (dry.fluid, dry.motion) == (None, None)
-    assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.0, 0.0)
+    assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.1, 0.0)
 
 
 def test_values_are_read_as_written():

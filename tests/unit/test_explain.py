@@ -34,6 +34,16 @@ def test_explain_figures_of_the_main_case():
     assert [part for part in parts if part not in text] == []
 
 
+def test_default_friction_of_solids_is_named_where_they_slide():
+    (line,) = starting(lines("table1_smooth.toml"), "Solids: ")
+    assert (
+        line
+        == "Solids: coefficient of friction 0.1, the default of contact.boundary_friction, where they touch"
+    )
+    for name, keys in (("table1_rough.toml", ()), ("table1_smooth.toml", ["motion.slide_roll_ratio=0.0"])):
+        assert starting(lines(name, *keys), "Solids: ") == []
+
+
 def test_rough_start_is_named():
     begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
     assert begun == ["Start: rough, after a ramp before time 0"]

@@ -169,6 +169,16 @@ def test_distances_are_integrals_of_speeds():
     )
 
 
+@pytest.mark.parametrize("last", [0.0, 1.2])
+def test_speeds_that_are_rounding_of_rest_or_rolling_are_zero(last):
+    """Else the friction of solids, mu p with the sign of u1 - u2, is that of a rounding error."""
+    fast = [2.384353324024164, 1.192176662012082, 0.7, last]
+    operation = make(u1=fast, u2=np.array(fast) / 3.0 * [1.0, 1.0, 1.0, 3.0] * (1.0 + 2e-16))
+    assert operation.at(3e-3).sliding == 0.0
+    assert operation.at(3e-3).u1 == pytest.approx(last, rel=1e-14, abs=0.0)
+    assert operation.at(2.9e-3).sliding > 1e-3
+
+
 def test_interpolation_does_not_overshoot():
     operation = make(load=[1e5, 5e5, 5e5, 1e5])
     loads = [operation.at(t).load for t in np.linspace(0.0, 3e-3, 999)]

@@ -41,6 +41,13 @@ class Case(Values):
         return self._text
 
     @property
+    def default_friction(self) -> float | None:
+        """Coefficient of friction of sliding solids by default; None: given, or nothing slides."""
+        given = "boundary_friction" in self._tables["contact"]
+        slides = self.motion is not None and (self.conditions is not None or self.motion.slide_roll_ratio)
+        return self.contact.boundary_friction if slides and not given else None
+
+    @property
     def path(self) -> Path:
         """Path of the case file, in whose folder profile files are."""
         return self._path

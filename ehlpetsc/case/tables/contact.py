@@ -63,7 +63,7 @@ KEYS = {
         replaced_by=("material",),
     ),
     "poisson_ratio": Required("Poisson's ratio `nu`", "", 0, 0.5, many="both", replaced_by=("material",)),
-    "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.0),
+    "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.1),
     "model": Key(
         "direct: where `h = 0` the Reynolds equation is dropped; mixed: oil and solids share the load",
         choices=("direct", "mixed"),

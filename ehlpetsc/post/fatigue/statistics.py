@@ -7,6 +7,7 @@ import numpy as np
 from ehlpetsc.results.post_result import WeibullFit
 
 MIN_PROMINENCE = 0.1  # of Rq: smaller peaks are noise of the measurement
+MIN_ASPERITIES = 10  # for a distribution
 MIN_SPREAD = 1e-6  # relative: damages are accurate to about 1e-6
 
 
@@ -74,6 +75,11 @@ def log_life(damage: np.ndarray) -> np.ndarray:
     """-log10 D; infinite without damage."""
     with np.errstate(divide="ignore"):
         return -np.log10(damage)
+
+
+def fitted_asperities(damage: np.ndarray) -> int:
+    """Number of asperities whose damage, between 0 and 1, the line of :func:`weibull_fit` goes through."""
+    return int(np.count_nonzero((damage > 0.0) & (damage < 1.0)))
 
 
 def exceedance(damage: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
