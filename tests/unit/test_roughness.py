@@ -14,6 +14,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.moving_surface import Passage
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
@@ -31,9 +32,8 @@ def phi(rough, x, t, cell=None):
 
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
-    return Profile(
-        Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP_LENGTH * A, abs(speed) * duration
-    )
+    passage = Passage(speed, moving, -2.5 * A, 1.5 * A, RAMP_LENGTH * A, abs(speed) * duration)
+    return Profile(Samples(X, z, repeats), passage)
 
 
 def rough(name, *overrides):
@@ -348,7 +348,7 @@ def test_travel_to_entry_and_filling():
         inside = np.abs(s.x) <= 1.0
         before, then = (-phi(Roughness(profile, None), x, t * s.a / s.u_max) for t in (reaches, fills))
         assert (before[inside] == 0.0).all() and (before[s.x < -1.05] != 0.0).any()
-        whole = profile._at(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
+        whole = profile._spline(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
         np.testing.assert_allclose(then[inside], whole, rtol=1e-9)
     backwards, s = rough("table1_rough.toml", "motion.slide_roll_ratio=-4")  # u -1, 3: enters at the outlet
     reaches, fills = entry_times(backwards.surface_1, s)
