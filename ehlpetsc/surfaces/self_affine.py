@@ -37,13 +37,20 @@ class Spectrum(NamedTuple):
         return within * relative ** -(2 * self.hurst + dimensions)
 
 
-def heights(shape: Sequence[int], spacing: Sequence[float], spectrum: Spectrum, seed: int) -> np.ndarray:
+def heights(
+    shape: Sequence[int],
+    spacing: Sequence[float],
+    spectrum: Spectrum,
+    seed: int,
+    direction: float = 0.0,
+) -> np.ndarray:
     """Periodic heights [m] of one realisation, Gaussian, of mean 0 and root mean square `sq` exactly.
 
     White noise, filtered in Fourier space by the square root of the spectrum.
 
     `shape`: points, (nx,) or (ny, nx).
     `spacing`: their distances [m], (dx,) or (dy, dx).
+    `direction`: of the stretch against x, towards y [degrees].
 
     ProfileError where the points resolve no wave of the spectrum: `short_cutoff` below two spacings or
     above the period.
@@ -56,13 +63,26 @@ def heights(shape: Sequence[int], spacing: Sequence[float], spectrum: Spectrum, 
             f"short_cutoff = {spectrum.short_cutoff:g} m; allowed: at least two spacings, {shortest:g} m, at "
             f"most the period, {period:g} m"
         )
-    axes = [
-        2 * np.pi * (np.fft.rfftfreq if k == len(shape) - 1 else np.fft.fftfreq)(n, d)
-        for k, (n, d) in enumerate(zip(shape, spectrum_spacing, strict=True))
-    ]
-    q = np.sqrt(sum(np.square(component) for component in np.meshgrid(*axes, indexing="ij")))
+    along, *across = turned_wavenumbers(shape, spacing, direction)
+    q = np.sqrt(sum(np.square(component / spectrum.peklenik) for component in across) + along**2)
     noise = np.fft.rfftn(np.random.default_rng(seed).standard_normal(shape))
     noise *= np.sqrt(spectrum.density(q, len(shape)))
     noise.flat[0] = 0.0
     z = np.fft.irfftn(noise, s=shape, axes=range(len(shape)))
     return z * (spectrum.sq / np.sqrt(np.mean(z**2)))
+
+
+def turned_wavenumbers(
+    shape: Sequence[int], spacing: Sequence[float], direction: float = 0.0
+) -> list[np.ndarray]:
+    """Angular wavenumbers [rad/m] of a real transform along a direction and, in two dimensions, across it.
+
+    `direction`: against x, towards y [degrees].
+    """
+    frequencies = [np.fft.fftfreq] * (len(shape) - 1) + [np.fft.rfftfreq]
+    axes = [2 * np.pi * f(n, d) for f, n, d in zip(frequencies, shape, spacing, strict=True)]
+    x, *y = np.meshgrid(*axes, indexing="ij")[::-1]
+    if not y or not direction:
+        return [x, *y]
+    c, s = np.cos(np.radians(direction)), np.sin(np.radians(direction))
+    return [c * x + s * y[0], c * y[0] - s * x]

@@ -6,11 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.surfaces.self_affine import Spectrum, heights
+
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
+CUTOFF_POINTS, ROLL_OFFS = 6, 200  # points of the shortest self-affine wave, longest waves
+MAX_POINTS = 1_000_000
 FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
 SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 
@@ -23,6 +27,8 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     """
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
+    if spec.kind == "self-affine":
+        return *self_affine_profile(spec), True
     if spec.kind in SINGLE_FEATURES:
         return *bump(spec), False
     is_square = spec.kind == "square"
@@ -48,6 +54,14 @@ def bump_centre(spec: Values) -> float:
     return 2 * spec.wavelength if spec.position is None else spec.position
 
 
+def self_affine_profile(spec: Values) -> tuple[np.ndarray, np.ndarray]:
+    """Abscissas and heights [m] of a random profile with the spectrum of :mod:`.self_affine`."""
+    spectrum = Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff)
+    step = spec.short_cutoff / CUTOFF_POINTS
+    n = min(int(ROLL_OFFS * spec.roll_off / step), MAX_POINTS)
+    return step * np.arange(n), heights((n,), (step,), spectrum, spec.seed)
+
+
 def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
     r"""Random profile with autocorrelation :math:`\exp[-(X/l)^2]` before its heights are skewed.
 
@@ -60,15 +74,20 @@ def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[n
     Returns abscissas and heights [m] of mean 0.
     """
     from scipy.ndimage import gaussian_filter1d
-    from scipy.optimize import brentq
 
     n = GROUND_LENGTH * GROUND_POINTS
     noise = np.random.default_rng(seed).standard_normal(n)
-    normal = gaussian_filter1d(noise, GROUND_POINTS / 2, mode="mirror", truncate=6.0)
-    normal = (normal - normal.mean()) / normal.std()
-    z = _pearson3(normal, brentq(lambda s: _skewness(_pearson3(normal, s)) - skewness, -8.0, 8.0, xtol=1e-10))
-    z -= z.mean()
+    z = with_skewness(gaussian_filter1d(noise, GROUND_POINTS / 2, mode="mirror", truncate=6.0), skewness)
     return np.arange(n) * (correlation / GROUND_POINTS), z * (ra / np.abs(z).mean())
+
+
+def with_skewness(heights: np.ndarray, skewness: float) -> np.ndarray:
+    """Normal heights mapped by their rank to Pearson III ones with this skewness exactly, of mean 0."""
+    from scipy.optimize import brentq
+
+    normal = (heights - heights.mean()) / heights.std()
+    z = _pearson3(normal, brentq(lambda s: _skewness(_pearson3(normal, s)) - skewness, -8.0, 8.0, xtol=1e-10))
+    return z - z.mean()
 
 
 def _pearson3(normal: np.ndarray, skewness: float) -> np.ndarray:
