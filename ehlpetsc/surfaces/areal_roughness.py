@@ -32,7 +32,7 @@ class MovingTopography(MovingSurface):
     def __init__(self, topography: Topography, passage: Passage, y: np.ndarray, dy: float) -> None:
         super().__init__(passage)
         self.given, self.X, self.repeats = topography, topography.X, topography.repeats
-        self.rq = float(topography.z.std())
+        self.rq = topography.sq
         faces = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
         rows = topography.row_means(topography.middle + self._sign * faces)
         self._rows, self._spline = len(y), ContinuedSpline(topography.X, rows, topography.along)

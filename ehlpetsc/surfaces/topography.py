@@ -75,10 +75,21 @@ class Topography:
             return float(np.sqrt(np.mean(np.gradient(self.z[0], self.X) ** 2)))
         return rms_gradient(self.z, self.dx, self.dy)
 
+    @property
+    def _once(self) -> np.ndarray:
+        """Heights without the last row and column where they repeat the first."""
+        across, along = (slice(-1 if way == "periodic" else None) for way in (self.across, self.along))
+        return self.z[across, along]
+
+    @cached_property
+    def sq(self) -> float:
+        """Root mean square height [m]."""
+        return float(self._once.std())
+
     @cached_property
     def parameters(self) -> ArealParameters:
         """Roughness parameters of the map."""
-        z = np.repeat(self.z, RIDGE_ROWS, axis=0) if self.is_ridge else self.z
+        z = np.repeat(self._once, RIDGE_ROWS, axis=0) if self.is_ridge else self._once
         return ArealParameters.of(z, self.dx, self.dy)
 
     def row_means(self, faces: np.ndarray) -> np.ndarray:
