@@ -199,10 +199,9 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
-        if spec and (keys := areal_keys(spec)):
-            faults.append(
-                Fault("", f"surface.{side}: {', '.join(keys)}: of maps, which a line contact has not")
-            )
+        for key in areal_keys(spec) if spec else ():
+            reason = "of maps, and a line contact has profiles; leave it out"
+            faults.append(Fault("", f"surface.{side}.{key}: {reason}"))
         if spec is None or spec.synthetic:  # smooth, or its faults are reported with its keys
             continue
         try:
