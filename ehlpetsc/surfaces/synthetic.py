@@ -6,15 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.surfaces.self_affine import Spectrum, heights
-
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
-CUTOFF_POINTS, ROLL_OFFS = 6, 200  # points of the shortest self-affine wave, longest waves
-MAX_POINTS = 1_000_000
+SHORTEST_WAVE_POINTS, ROLL_OFFS = (
+    10,
+    200,
+)  # of a self-affine profile: a short_cutoff, in its length
+MAX_POINTS = 4_000_000  # of self-affine profiles, which are shorter beyond it
 FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
 SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 
@@ -28,7 +29,7 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
     if spec.kind == "self-affine":
-        return *self_affine_profile(spec), True
+        return *self_affine(spec), True
     if spec.kind in SINGLE_FEATURES:
         return *bump(spec), False
     is_square = spec.kind == "square"
@@ -39,6 +40,16 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     if is_square:
         wave = np.tanh(wave / FLANK_WIDTH) / np.tanh(1 / FLANK_WIDTH)
     return x, spec.amplitude * wave, True
+
+
+def self_affine(spec: Values) -> tuple[np.ndarray, np.ndarray]:
+    """Random profile with a self-affine spectrum, see :class:`.self_affine.Spectrum`: X, z [m]."""
+    from ehlpetsc.surfaces.self_affine import Spectrum, heights
+
+    spacing = spec.short_cutoff / SHORTEST_WAVE_POINTS
+    n = int(min(ROLL_OFFS * spec.roll_off / spacing, MAX_POINTS))
+    spectrum = Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff)
+    return spacing * np.arange(n), heights((n,), (spacing,), spectrum, spec.seed)
 
 
 def bump(spec: Values) -> tuple[np.ndarray, np.ndarray]:
@@ -52,14 +63,6 @@ def bump(spec: Values) -> tuple[np.ndarray, np.ndarray]:
 def bump_centre(spec: Values) -> float:
     """Abscissa of the middle of a ridge or dent [m]."""
     return 2 * spec.wavelength if spec.position is None else spec.position
-
-
-def self_affine_profile(spec: Values) -> tuple[np.ndarray, np.ndarray]:
-    """Abscissas and heights [m] of a random profile with the spectrum of :mod:`.self_affine`."""
-    spectrum = Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff)
-    step = spec.short_cutoff / CUTOFF_POINTS
-    n = min(int(ROLL_OFFS * spec.roll_off / step), MAX_POINTS)
-    return step * np.arange(n), heights((n,), (step,), spectrum, spec.seed)
 
 
 def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[np.ndarray, np.ndarray]:

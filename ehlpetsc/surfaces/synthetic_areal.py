@@ -8,15 +8,14 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import self_affine, synthetic
-from ehlpetsc.surfaces.synthetic import CUTOFF_POINTS, POINTS_PER_WAVE
+from ehlpetsc.surfaces.synthetic import MAX_POINTS, POINTS_PER_WAVE
 from ehlpetsc.surfaces.topography import Topography
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
 
 GROUND_POINTS, GROUND_LENGTH = 5, 60  # points a correlation length, correlation lengths along x
-ROLL_OFFS = 20  # longest self-affine waves along x
-MAX_POINTS = 4_000_000  # of a map
+CUTOFF_POINTS, ROLL_OFFS = 6, 20  # points of the shortest wave, longest self-affine waves along x
 RANDOM = ("ground", "self-affine")  # may have any direction
 
 

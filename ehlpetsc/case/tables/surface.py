@@ -18,21 +18,22 @@ def _kinds(*kinds: str, text: str, keys: dict[str, Key]) -> dict[str, KeyTable]:
     return dict.fromkeys(kinds, KeyTable("surface.1.synthetic", text, {"kind": kind} | keys))
 
 
-SEED = Required("of the random numbers", "", 0, 2**32 - 1, kind=int)
 GROUND_KEYS = {
     "ra": Required("mean height deviation", "m", 1e-12, 1e-3),
     "correlation": Required("`l` of the autocorrelation `exp(-(lag/l)^2)`", *LENGTH),
     "skewness": Key("negative: plateaus with valleys", "", -3, 3, default=0.0),
-    "seed": SEED,
+    "seed": Required("of the random numbers", "", 0, 2**32 - 1, kind=int),
     "correlation_across": Key("`l` across, of an areal surface with a lay; left out: ridges", *LENGTH),
 }
 SELF_AFFINE_KEYS = {
-    "sq": Required("root mean square height", *HEIGHT),
-    "hurst": Required("`H`: the spectrum falls with `q^(-2H-1)`, of a map with `q^(-2H-2)`", "", 0, 1),
-    "roll_off": Required("longest self-affine wavelength; longer ones are as high", *LENGTH),
+    "sq": Required("root mean square height", "m", 1e-12, 1e-3),
+    "hurst": Required(
+        "`H`: the spectrum `C` falls with `q^(-2 H - 1)`, of a map `q^(-2 H - 2)`", "", gt=0, le=1
+    ),
+    "roll_off": Required("wavelength above which `C` is constant", *LENGTH),
     "short_cutoff": Required("shortest wavelength", *LENGTH, below="roll_off"),
-    "peklenik": Key("wavelengths along x over those across; below 1: lay across", "", 0.01, 100, default=1.0),
-    "seed": SEED,
+    "peklenik": Key("of a map: wavelengths along its rows over those across", "", 0.01, 100, default=1.0),
+    "seed": GROUND_KEYS["seed"],
 }
 WAVE_KEYS = {
     "amplitude": Required("half of the peak to valley height", *HEIGHT),
@@ -56,7 +57,7 @@ SYNTHETIC = (
     | _kinds("sine", text="wave with a crest at profile abscissa 0", keys=SINE_KEYS)
     | _kinds("square", text="wave with a crest at profile abscissa 0", keys=WAVE_KEYS)
     | _kinds("ridge", "dent", text="single ridge or dent of Gaussian shape", keys=BUMP_KEYS)
-    | _kinds("self-affine", text="random surface with a prescribed spectrum", keys=SELF_AFFINE_KEYS)
+    | _kinds("self-affine", text="random profile or map with a self-affine spectrum", keys=SELF_AFFINE_KEYS)
 )
 
 
