@@ -199,10 +199,10 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
-        for key in areal_keys(spec) if spec else ():
-            reason = "of maps, and a line contact has profiles; leave it out"
-            faults.append(Fault("", f"surface.{side}.{key}: {reason}"))
-        if spec is None or spec.synthetic:  # smooth, or its faults are reported with its keys
+        of_maps = areal_keys(spec) if spec else []
+        reason = "of maps, and a line contact has profiles; leave it out"
+        faults += [Fault("", f"surface.{side}.{key}: {reason}") for key in of_maps]
+        if spec is None or spec.synthetic or of_maps:  # smooth, or its faults are reported with its keys
             continue
         try:
             _check_profile(folder, spec, case)

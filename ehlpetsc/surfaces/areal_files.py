@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import warnings
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
@@ -153,7 +154,9 @@ def _by_sdfio(path: Path) -> Map:
 def _by_surfalize(path: Path) -> Map:
     import surfalize
 
-    surface = surfalize.Surface.load(str(path))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # that spacings differ
+        surface = surfalize.Surface.load(str(path))
     return Map(UNITS["um"] * surface.data, UNITS["um"] * surface.step_x, UNITS["um"] * surface.step_y)
 
 

@@ -12,7 +12,7 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import synthetic_areal
 from ehlpetsc.surfaces.areal_files import Map, MapLayout, checked, is_map, read_map
 from ehlpetsc.surfaces.continued_spline import Continuation
-from ehlpetsc.surfaces.filters import mean_surface, without_form
+from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, mean_surface, without_form
 from ehlpetsc.surfaces.profile_files import UNITS
 from ehlpetsc.surfaces.samples import MEAN_TOLERANCE, mean_deviation, samples
 from ehlpetsc.surfaces.topography import Topography
@@ -42,7 +42,8 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
         return Topography(
             profile.X, np.zeros(1), profile.z[np.newaxis], along, measured=True, notes=profile.notes
         )
-    _refuse(spec, ("x_unit", "x"), "of a profile, not of a map; its spacing is in m")
+    if spec.x is None:
+        _refuse(spec, ("x_unit",), "of x, not of spacing, which is in m; leave it out")
     surface = _processed(found, spec)
     return surface.periodic_over(width) if is_strip else surface
 
@@ -59,10 +60,19 @@ def _map(folder: Path, spec: Values) -> Map | None:
     if spec.z is not None:
         if np.ndim(spec.z) == 1:
             return None
-        z = UNITS[spec.unit or "m"] * np.array(spec.z, float)
-        return checked(Map(z, spec.spacing, spec.spacing_across or spec.spacing), layout)
+        dx = spec.spacing or _step(spec.x, "x", spec)
+        dy = spec.spacing_across or spec.spacing or _step(spec.y, "y", spec)
+        return checked(Map(UNITS[spec.unit or "m"] * np.array(spec.z, float), dx, dy), layout)
     path = folder / spec.file
     return read_map(path, layout) if spec.columns is None and is_map(path, layout) else None
+
+
+def _step(values: list[float], key: str, spec: Values) -> float:
+    """Distance [m] of equally spaced abscissas."""
+    steps = np.diff(values)
+    if np.ptp(steps) > 2 * SPACING_TOLERANCE * abs(steps.mean()) or not steps.mean() > 0:
+        raise ProfileError(f"{key}: allowed for a map: equally spaced, increasing")
+    return UNITS[spec.x_unit or spec.unit or "m"] * float(steps.mean())
 
 
 def _processed(found: Map, spec: Values) -> Topography:

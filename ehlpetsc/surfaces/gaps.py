@@ -33,7 +33,7 @@ def filled(z: np.ndarray, dx: float, dy: float, widest: float | None) -> tuple[n
     width = gap_width(missing, dx, dy)
     if width > (widest or 0.0):
         raise ProfileError(
-            f"{count} heights missing, the widest gap {width:.3g} m; write fill_gaps = {width * 1.01:.2g} or "
+            f"{count} heights missing, the widest gap {width:.3g} m; write fill_gaps = {width * 1.06:.2g} or "
             "more to have gaps of that width filled [m]"
         )
     note = f"{count} missing heights filled or, at the edges, cut off; widest gap {1e6 * width:.3g} um"

@@ -63,7 +63,7 @@ def test_missing_heights_are_filled_up_to_the_width_stated(tmp_path, suffix):
     assert z.shape == (38, 60)  # the last two rows are missing altogether
     np.testing.assert_allclose(z, Z[:-2], rtol=0, atol=0.03e-7)
     assert notes == ("133 missing heights filled or, at the edges, cut off; widest gap 8 um",)
-    with pytest.raises(ProfileError, match=r"^133 .*widest gap 8e-06 m; write fill_gaps = 8\.1e-06 "):
+    with pytest.raises(ProfileError, match=r"^133 .*widest gap 8e-06 m; write fill_gaps = 8\.5e-06 "):
         read_map(path, layout)
 
 
@@ -274,3 +274,47 @@ def test_a_profile_in_a_file_is_a_ridge_and_has_no_direction(tmp_path):
     np.testing.assert_allclose(ridge.z[0], Z[7] - Z[7].mean(), atol=1e-22)
     with pytest.raises(ProfileError, match="^direction: of a map, not of a profile$"):
         areal_samples(tmp_path, spec(path, direction=10.0), 1e-4, False)
+
+
+def test_a_matrix_of_heights_in_the_case_is_a_map():
+    keys = {"z": (1e6 * Z).tolist(), "unit": "um", "level": True}
+    by_axes = values_of(PROFILE, keys | {"x": (1e6 * X).tolist(), "y": (1e6 * Y).tolist()})
+    by_spacing = values_of(PROFILE, keys | {"spacing": DX, "spacing_across": DY})
+    first, second = (areal_samples(None, found, 1e-4, False) for found in (by_axes, by_spacing))
+    np.testing.assert_allclose(first.z, without_form((Y, X), Z, 1), atol=1e-18)
+    np.testing.assert_allclose(second.z, first.z, atol=1e-18)
+    assert (first.dx, first.dy) == pytest.approx((DX, DY))
+
+
+def test_axes_that_are_not_equally_spaced_are_refused():
+    keys = {"z": Z[:4].tolist(), "x": (X**1.1).tolist(), "y": [0.0, 1.0, 2.0, 3.0]}
+    with pytest.raises(ProfileError, match="^x: allowed for a map: equally spaced, increasing$"):
+        areal_samples(None, values_of(PROFILE, keys), 1e-4, False)
+
+
+ROWS = [[0.0, 1.0, 0.0, 1.0]] * 4
+REFUSED_MATRICES = {
+    "rows of different lengths": ({"z": [*ROWS[:3], [0.0] * 5]}, "z = .* allowed: "),
+    "three rows": ({"z": ROWS[:3]}, "z = .* allowed: "),
+    "words": ({"z": [["a"] * 4] * 4}, "z = .* allowed: "),
+    "x alone": ({"z": ROWS, "x": [0, 1, 2, 3], "spacing": None}, "x and y are both for "),
+    "y of another length": (
+        {"z": ROWS, "x": [0, 1, 2, 3], "y": [0, 1, 2, 3, 4], "spacing": None},
+        "y has 5 values, z 4 rows; allowed: as many",
+    ),
+    "x of another length": (
+        {"z": ROWS, "x": [0, 1, 2, 3, 4], "y": [0, 1, 2, 3], "spacing": None},
+        "x has 5 values, z 4; allowed: as many",
+    ),
+}
+
+
+@pytest.mark.parametrize(("keys", "message"), REFUSED_MATRICES.values(), ids=REFUSED_MATRICES)
+def test_a_faulty_matrix_in_the_case_is_refused(keys, message):
+    from support import CASES
+
+    from ehlpetsc.base.errors import CaseError
+    from ehlpetsc.case.loading import load
+
+    with pytest.raises(CaseError, match=message):
+        load(CASES / "table1_smooth.toml", {"surface.2": {"spacing": 1e-6} | keys})

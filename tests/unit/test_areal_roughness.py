@@ -226,8 +226,9 @@ def test_too_fine_a_random_map_is_refused():
         "surface.1={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4, wavelength_across=1e-4}}",
         "surface.1={synthetic={kind='ground', ra=1e-7, correlation=1e-5, seed=1, correlation_across=1e-4}}",
         "surface.1.direction=90",
+        "surface.1={z=[[0, 1, 0, 1], [1, 0, 1, 0], [0, 1, 0, 1], [1, 0, 1, 1]], spacing=1e-6}",
     ],
 )
 def test_keys_of_maps_are_refused_in_a_line_contact(keys):
-    with pytest.raises(case.CaseError, match=r"surface\.1\.\S*(_across|direction): of maps, "):
+    with pytest.raises(case.CaseError, match=r"surface\.1\.\S*(_across|direction|z): of maps, "):
         case.load(CASES / "table1_rough.toml", [keys])

@@ -71,8 +71,14 @@ def _check_source(profile: Values) -> dict[str, Any]:
         raise Refused("x is for heights z")
     if profile.z is not None and (profile.x is None) == (profile.spacing is None):
         raise Refused("heights z need either x or spacing")
-    if profile.x is not None and len(profile.x) != len(profile.z):
-        raise Refused(f"x has {len(profile.x)} values, z {len(profile.z)}; allowed: as many")
+    is_matrix = profile.z is not None and isinstance(profile.z[0], list)
+    columns = len(profile.z[0]) if is_matrix else len(profile.z or ())
+    if profile.x is not None and len(profile.x) != columns:
+        raise Refused(f"x has {len(profile.x)} values, z {columns}; allowed: as many")
+    if (profile.y is not None) != (is_matrix and profile.x is not None):
+        raise Refused("x and y are both for the rows and columns of a matrix z, y for no other z")
+    if profile.y is not None and len(profile.y) != len(profile.z):
+        raise Refused(f"y has {len(profile.y)} values, z {len(profile.z)} rows; allowed: as many")
     of_text = [key for key in ("columns", "decimal", "header_lines") if key in given]
     if profile.z is not None and of_text:
         raise Refused(f"{', '.join(of_text)}: for a file, not for heights z")
@@ -92,8 +98,16 @@ KEYS = {
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
     "fill_gaps": Key("longest gap of missing heights that the spline bridges", "m", 0, 1),
-    "z": Key("heights in unit, here instead of in a file", "", -1e9, 1e9, many="list", min_items=4),
+    "z": Key(
+        "heights in unit, here instead of in a file; of a map: its rows",
+        "",
+        -1e9,
+        1e9,
+        many="list or matrix",
+        min_items=4,
+    ),
     "x": Key("of the heights z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
+    "y": Key("of the rows of z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
     "level": Key("subtract the least-squares line or plane", kind=bool, default=False),
     "form": Key("degree of the least-squares polynomial subtracted", "", 1, 12, kind=int),
     "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave `L` loses `2^(-(cutoff/L)^2)` of it", *LENGTH),
@@ -121,6 +135,8 @@ OF_SYNTHETIC_MAPS = ("wavelength_across", "correlation_across", "peklenik")
 def areal_keys(surface: Values) -> list[str]:
     """Keys given for a surface that a line contact, of profiles, cannot use."""
     given = [key for key in OF_MAPS if getattr(surface, key) is not None]
+    if surface.z is not None and isinstance(surface.z[0], list):
+        given.append("z")
     made = surface.synthetic.as_dict() if surface.synthetic else {}
     return given + [f"synthetic.{key}" for key in OF_SYNTHETIC_MAPS if made.get(key) not in (None, 1.0)]
 
