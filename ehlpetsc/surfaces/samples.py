@@ -44,6 +44,11 @@ class Samples:
         """Mean distance of the samples [m]."""
         return self.length / (self.X.size - 1)
 
+    @property
+    def rms_slope(self) -> float:
+        """Root mean square slope between neighbouring samples."""
+        return float(np.sqrt(np.mean((np.diff(self.z) / np.diff(self.X)) ** 2)))
+
 
 def samples(folder: Path, spec: Values) -> Samples:
     """Samples of one surface: read or generated, levelled, filtered, centred, flipped, scaled.

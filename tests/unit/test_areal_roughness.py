@@ -13,6 +13,7 @@ from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
 from ehlpetsc.surfaces.areal_samples import areal_samples
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import Passage
+from ehlpetsc.surfaces.profile_checks import absurd
 from ehlpetsc.surfaces.roughness import Roughness
 from ehlpetsc.surfaces.topography import Topography
 
@@ -140,6 +141,21 @@ def test_a_strip_keeps_the_heights_of_the_middle_of_the_map():
     strip = measured.periodic_over(400e-6)
     np.testing.assert_allclose(strip.Y[[0, -1]], (100e-6, 300e-6))
     np.testing.assert_allclose(strip.z, measured.z[20:61], rtol=0, atol=1e-20)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"amplitude": 1e-7}, None),
+        ({"amplitude": 1e-4}, "Rq "),
+        ({"amplitude": 8e-6, "wavelength": 10e-6}, "slopes of "),
+        ({"amplitude": 1e-7, "wavelength_across": 9e-3}, "points 141 um apart"),
+    ],
+)
+def test_maps_in_another_unit_are_noticed(keys, message):
+    wave = {"kind": "sine", "wavelength": 30e-6, "wavelength_across": 75e-6}
+    found = absurd(made(**wave | keys), A, DX, 1e-6, 1e-7)
+    assert found is None if message is None else found.startswith(message)
 
 
 def test_waves_that_the_mesh_does_not_resolve_are_counted():
