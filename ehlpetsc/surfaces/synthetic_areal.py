@@ -8,7 +8,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import self_affine, synthetic
-from ehlpetsc.surfaces.synthetic import MAX_POINTS, POINTS_PER_WAVE
+from ehlpetsc.surfaces.synthetic import POINTS_PER_WAVE
 from ehlpetsc.surfaces.topography import Topography
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 GROUND_POINTS, GROUND_LENGTH = 5, 60  # points a correlation length, correlation lengths along x
 CUTOFF_POINTS, ROLL_OFFS = 6, 20  # points of the shortest wave, longest self-affine waves along x
+MAX_POINTS = 16_000_000  # of a map
 RANDOM = ("ground", "self-affine")  # may have any direction
 
 

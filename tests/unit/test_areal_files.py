@@ -297,6 +297,7 @@ REFUSED_MATRICES = {
     "rows of different lengths": ({"z": [*ROWS[:3], [0.0] * 5]}, "z = .* allowed: "),
     "three rows": ({"z": ROWS[:3]}, "z = .* allowed: "),
     "words": ({"z": [["a"] * 4] * 4}, "z = .* allowed: "),
+    "two forms": ({"z": ROWS, "level": True, "form": 2}, "level is the form of degree 1: write one "),
     "x alone": ({"z": ROWS, "x": [0, 1, 2, 3], "spacing": None}, "x and y are both for "),
     "y of another length": (
         {"z": ROWS, "x": [0, 1, 2, 3], "y": [0, 1, 2, 3, 4], "spacing": None},

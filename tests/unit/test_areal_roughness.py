@@ -232,7 +232,7 @@ def test_a_direction_of_a_wave_is_refused():
 
 
 def test_too_fine_a_random_map_is_refused():
-    with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 4000000 "):
+    with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 16000000 "):
         made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=1e-3, short_cutoff=1e-6, seed=1)
 
 

@@ -79,6 +79,8 @@ def _check_source(profile: Values) -> dict[str, Any]:
         raise Refused("x and y are both for the rows and columns of a matrix z, y for no other z")
     if profile.y is not None and len(profile.y) != len(profile.z):
         raise Refused(f"y has {len(profile.y)} values, z {len(profile.z)} rows; allowed: as many")
+    if profile.level and profile.form:
+        raise Refused("level is the form of degree 1: write one of them")
     of_text = [key for key in ("columns", "decimal", "header_lines") if key in given]
     if profile.z is not None and of_text:
         raise Refused(f"{', '.join(of_text)}: for a file, not for heights z")
