@@ -81,10 +81,10 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
     ]
     followed = map_coordinates(correlation, places, order=1, cval=np.nan)
     below = followed < CORRELATION_THRESHOLD
-    first = np.maximum(below.argmax(axis=0), 1)
-    after, before = (followed[k, np.arange(DIRECTIONS)] for k in (first, first - 1))
-    fallen = lag[first] - step * (CORRELATION_THRESHOLD - after) / (before - after)
-    fallen[~below.any(axis=0)] = np.nan
+    fallen, falls = np.full(DIRECTIONS, np.nan), np.flatnonzero(below.any(axis=0))
+    first = below.argmax(axis=0)[falls]
+    after, before = followed[first, falls], followed[first - 1, falls]
+    fallen[falls] = lag[first] - step * (CORRELATION_THRESHOLD - after) / (before - after)
     if np.isnan(fallen).all():
         return np.nan, np.nan
     return float(np.nanmin(fallen)), float(fallen.max())
