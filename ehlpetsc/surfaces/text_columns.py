@@ -18,7 +18,7 @@ from ehlpetsc.base.errors import ProfileError
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[ed][+-]?\d+)?"
 MISSING = r"(?:-?nan(?:\(ind\))?|-?1\.#\w+|#?n/?a|bad|\*+|-+)"  # markers, besides empty cells
 CELL = re.compile(f"(?:({NUMBER})|({MISSING})?)", re.IGNORECASE)
-WITH_UNIT = re.compile(rf"{NUMBER}\s*[^\W\d_/:.-]", re.IGNORECASE)  # as 0.12 um, unlike a date or a name
+WITH_UNIT = re.compile(rf"(?>{NUMBER})\s*[^\W\d_/:.-]", re.IGNORECASE)  # as 0.12 um, unlike a date or a name
 COMMENT = re.compile(r"(?:^|(?<=[\s,;|]))#(?!n/?a).*", re.IGNORECASE | re.MULTILINE)
 SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})  # minus and dash of word processors
 UNIT_NAMES = {

@@ -61,6 +61,7 @@ READABLE = {
     ),
     "inches": (lines("{},{}\n", 1 / 0.0254, 1e6 / 0.0254), {"x_unit": "inch", "unit": "microinch"}),
     "mils": (lines("{},{}\n", 1e3 / 0.0254, 1e3 / 0.0254), {"unit": "mil"}),
+    "heading that begins with a number": ("7,points\n" + lines("{:e},{:e}\n"), {}),
     "thousands": (lines("{0:,.1f};{1:,.3f}\n", 1e9, 1e9), {"decimal": ".", "unit": "nm"}),
 }
 
