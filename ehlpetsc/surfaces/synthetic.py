@@ -11,6 +11,11 @@ if TYPE_CHECKING:
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
+SHORTEST_WAVE_POINTS, ROLL_OFFS = (
+    10,
+    200,
+)  # of a self-affine profile: a short_cutoff, in its length
+MAX_POINTS = 4_000_000  # of self-affine profiles, which are shorter beyond it
 FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
 SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 
@@ -23,6 +28,8 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     """
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
+    if spec.kind == "self-affine":
+        return *self_affine(spec), True
     if spec.kind in SINGLE_FEATURES:
         return *bump(spec), False
     is_square = spec.kind == "square"
@@ -33,6 +40,16 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     if is_square:
         wave = np.tanh(wave / FLANK_WIDTH) / np.tanh(1 / FLANK_WIDTH)
     return x, spec.amplitude * wave, True
+
+
+def self_affine(spec: Values) -> tuple[np.ndarray, np.ndarray]:
+    """Random profile with a self-affine spectrum, see :class:`.self_affine.Spectrum`: X, z [m]."""
+    from ehlpetsc.surfaces.self_affine import Spectrum, heights
+
+    spacing = spec.short_cutoff / SHORTEST_WAVE_POINTS
+    n = int(min(ROLL_OFFS * spec.roll_off / spacing, MAX_POINTS))
+    spectrum = Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff)
+    return spacing * np.arange(n), heights((n,), (spacing,), spectrum, spec.seed)
 
 
 def bump(spec: Values) -> tuple[np.ndarray, np.ndarray]:

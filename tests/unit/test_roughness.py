@@ -7,7 +7,7 @@ import pytest
 from support import CASES
 
 import ehlpetsc
-from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
@@ -309,6 +309,33 @@ def test_ground_heights_depend_on_their_seed_only():
     )
     np.testing.assert_array_equal(first, again)
     assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
+
+
+def test_self_affine_profile_has_its_height_and_waves():
+    """A mesh with nodes at a fifth of the shortest wave resolves all of its variance."""
+    spec = "{kind='self-affine', sq='0.2 um', hurst=0.8, roll_off=80e-6, short_cutoff=8e-6, seed=3}"
+    r, _ = rough("table1_smooth.toml", f"surface.2.synthetic={spec}")
+    profile = r.surface_2
+    assert profile.rq == pytest.approx(0.2e-6, rel=1e-9)
+    assert profile.given.length == pytest.approx(200 * 80e-6, rel=1e-3)
+    assert profile.unresolved_variance(1.6e-6) < 0.01 < profile.unresolved_variance(4e-6)
+    falling = (1.0 - 10.0**-1.6) / 1.6  # of the variance, beside 1 of the plateau
+    shorter = (0.5 + falling) / (1.0 + falling)  # than twice roll_off
+    assert profile.unresolved_variance(40e-6) == pytest.approx(shorter, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("hurst=1.5, roll_off=80e-6, short_cutoff=8e-6", "hurst = 1.5: allowed: a number > 0 and <= 1 "),
+        ("hurst=0.8, roll_off=8e-6, short_cutoff=80e-6", "short_cutoff = 8e-05: allowed: .* below roll_off "),
+        ("hurst=0.8, short_cutoff=80e-6", "roll_off is missing; "),
+    ],
+)
+def test_invalid_self_affine_spectrum_is_refused(keys, message):
+    spec = f"surface.2.synthetic={{kind='self-affine', sq=2e-7, seed=3, {keys}}}"
+    with pytest.raises(CaseError, match=message):
+        rough("table1_smooth.toml", spec)
 
 
 def test_coarse_mesh_note_has_its_figure():

@@ -24,6 +24,13 @@ GROUND_KEYS = {
     "skewness": Key("negative: plateaus with valleys", "", -3, 3, default=0.0),
     "seed": Required("of the random numbers", "", 0, 2**32 - 1, kind=int),
 }
+SELF_AFFINE_KEYS = {
+    "sq": Required("root mean square height", "m", 1e-12, 1e-3),
+    "hurst": Required("`H`: the spectrum `C` falls with `q^(-2 H - 1)`", "", gt=0, le=1),
+    "roll_off": Required("wavelength above which `C` is constant", *LENGTH),
+    "short_cutoff": Required("shortest wavelength", *LENGTH, below="roll_off"),
+    "seed": GROUND_KEYS["seed"],
+}
 WAVE_KEYS = {
     "amplitude": Required("half of the peak to valley height", *HEIGHT),
     "wavelength": Required("crest to crest; sine: `z = amplitude cos(2 pi X/wavelength)`", *LENGTH),
@@ -35,6 +42,7 @@ BUMP_KEYS = {
 }
 SYNTHETIC = (
     _kinds("ground", text="random profile with prescribed Ra and skewness", keys=GROUND_KEYS)
+    | _kinds("self-affine", text="random profile with a self-affine spectrum", keys=SELF_AFFINE_KEYS)
     | _kinds("sine", "square", text="wave with a crest at profile abscissa 0", keys=WAVE_KEYS)
     | _kinds("ridge", "dent", text="single ridge or dent of Gaussian shape", keys=BUMP_KEYS)
 )
