@@ -9,6 +9,7 @@ import codecs
 import csv
 import io
 import re
+import unicodedata
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ UNIT_NAMES = {
     "mm": ("mm",),
     "um": ("um", "\u00b5m", "\u03bcm", "micron", "microns", "micrometer", "micrometre"),
     "nm": ("nm",),
-    "angstrom": ("\u00c5", "\u212b", "ang", "angstrom", "angstroms", "\u00e5ngstr\u00f6m"),
+    "angstrom": ("\u00c5", "ang", "angstrom", "angstroms", "\u00e5ngstr\u00f6m"),
     "inch": ("in", "in.", "inch", "inches"),
     "microinch": ("uin", "\u00b5in", "\u03bcin", "microin", "microinch", "microinches"),
     "mil": ("mil", "mils", "thou"),
@@ -70,6 +71,7 @@ def text_columns(
 
 def units_in(header: str) -> list[str]:
     """Units of length in brackets, or after a slash, in a header, in their order."""
+    header = unicodedata.normalize("NFC", header)  # an A and a ring above to one letter
     return [UNIT_OF_NAME[name.lower()] for name in UNIT_IN_HEADER.findall(header)]
 
 
@@ -89,11 +91,12 @@ def _decoded(path: Path) -> str:
 
 def _first_line(lines: list[str]) -> int:
     """Index of the first line of numbers; with a column of words, of the first line like the last one."""
-    kinds = [_kinds(line) for line in lines]
-    numbers = (k for k, kind in enumerate(kinds) if "1" in kind and "w" not in kind)
-    last = next((kind for kind in reversed(kinds) if kind), "")
-    alike = (k for k, kind in enumerate(kinds) if kind == last and "1" in kind)
-    return next(numbers, next(alike, len(lines)))
+    numbers = (k for k, line in enumerate(lines) if "1" in (kinds := _kinds(line)) and "w" not in kinds)
+    first = next(numbers, None)
+    if first is None:
+        last = next(filter(None, map(_kinds, reversed(lines))), "")
+        first = next((k for k, line in enumerate(lines) if "1" in last == _kinds(line)), len(lines))
+    return first
 
 
 def _kinds(line: str) -> str:

@@ -162,6 +162,7 @@ REFUSED = {
         {},
         '^its header names um and angstrom, .* unit = "angstrom" .* x_unit = "um"$',
     ),
+    "angstrom of two signs": ("x;z [A\u030a]\n" + lines("{};{}\n"), {}, 'unit = "angstrom" for the heights$'),
     "mil in the header": (
         "x/mil;z/\u00b5in\n" + lines("{};{}\n"),
         {},
@@ -271,13 +272,14 @@ def test_repeated_no_data_values_are_missing_heights(tmp_path, value, shown, til
     assert len(notes) == 1 and "4 of them the value" in notes[0]
 
 
-@pytest.mark.parametrize("kind", ["quantised", "clipped", "square", "ridge"])
+@pytest.mark.parametrize("kind", ["quantised", "clipped", "square", "ridge", "dimples"])
 def test_repeated_heights_that_join_their_neighbours_are_no_missing_ones(kind):
     x, z = wave()
     z = {
         "quantised": np.round(z, 8),
         "clipped": np.minimum(z, 5.1e-6),
         "square": np.where(np.sin(x / 7e-6) > 0, 1e-6, 0.0),
+        "dimples": np.where(np.arange(400) % 40 < 25, 0.0, z - 1e-5),
         "ridge": np.maximum(0.0, 1e-6 - np.abs(x - 1e-4) * 0.01),
     }[kind]
     _, checked_z, notes = checked(x, z, Layout())
