@@ -13,6 +13,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.gaps import filled
+from ehlpetsc.surfaces.outliers import no_data_value
 from ehlpetsc.surfaces.profile_files import MAX_ABSCISSA, TEXT, UNITS
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
@@ -175,6 +176,10 @@ def checked(found: Map, layout: MapLayout) -> Map:
         raise ProfileError(f"{shape} heights; allowed: a matrix of {MIN_POINTS} x {MIN_POINTS} or more")
     if not (0 < dx < MAX_ABSCISSA and 0 < dy < MAX_ABSCISSA):
         raise ProfileError(f"spacings {dx:g} and {dy:g} m; allowed: above 0")
+    no_data = ""
+    while (value := no_data_value(z.ravel())) is not None:
+        no_data += f", {np.count_nonzero(z == value)} of them the value {value:.6g} m far from all others"
+        z[z == value] = np.nan
     wrong = np.abs(z) >= MAX_ABSCISSA
     if wrong.any():
         row, column = np.unravel_index(wrong.argmax(), z.shape)
@@ -183,6 +188,6 @@ def checked(found: Map, layout: MapLayout) -> Map:
             "heights, nan where they are missing"
         )
     if np.isnan(z).any():
-        z, note = filled(z, dx, dy, layout.fill_gaps)
+        z, note = filled(z, dx, dy, layout.fill_gaps, no_data)
         notes += (note,)
     return Map(z, dx, dy, notes)

@@ -9,13 +9,16 @@ from ehlpetsc.base.errors import ProfileError
 MIN_PRESENT = 0.5  # of the heights of a map
 
 
-def filled(z: np.ndarray, dx: float, dy: float, widest: float | None) -> tuple[np.ndarray, str]:
+def filled(
+    z: np.ndarray, dx: float, dy: float, widest: float | None, source: str = ""
+) -> tuple[np.ndarray, str]:
     """Map with missing heights filled by a membrane, the solution of Laplace's equation in each gap.
 
     Rows and columns at the edges without any height are cut off.
 
     `z`: m, nan where it is missing, shape (ny, nx).
     `widest`: width of the widest gap that is filled [m]; None: none.
+    `source`: of messages, on the values that are none.
 
     Returns the map and a note on it.
     """
@@ -28,15 +31,18 @@ def filled(z: np.ndarray, dx: float, dy: float, widest: float | None) -> tuple[n
     z, missing = z[inside], missing[inside]
     if missing.mean() > 1 - MIN_PRESENT:
         raise ProfileError(
-            f"{count} heights missing; allowed: no more than half of those between the first and the last"
+            f"{count} heights missing{source}; allowed: no more than half of those between the first and "
+            "the last"
         )
     width = gap_width(missing, dx, dy)
     if width > (widest or 0.0):
         raise ProfileError(
-            f"{count} heights missing, the widest gap {width:.3g} m; write fill_gaps = {width * 1.06:.2g} or "
-            "more to have gaps of that width filled [m]"
+            f"{count} heights missing{source}, the widest gap {width:.3g} m; write fill_gaps = "
+            f"{width * 1.06:.2g} or more to have gaps of that width filled [m]"
         )
-    note = f"{count} missing heights filled or, at the edges, cut off; widest gap {1e6 * width:.3g} um"
+    note = (
+        f"{count} missing heights filled or, at the edges, cut off{source}; widest gap {1e6 * width:.3g} um"
+    )
     return _with_membrane(z, missing, dx, dy) if missing.any() else z, note
 
 

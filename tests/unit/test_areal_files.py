@@ -160,6 +160,24 @@ def test_the_width_of_a_gap_is_that_of_its_widest_circle():
     assert gap_width(missing, DX, DY) == pytest.approx(2 * 2 * DY)
 
 
+def test_a_value_far_from_all_others_is_no_height(tmp_path):
+    z = Z + 1e-9 * np.random.default_rng(2).standard_normal(Z.shape)
+    z[10:13, 20:24] = z[30, 5] = 9.999e-3
+    np.save(tmp_path / "map.npy", z)
+    with pytest.raises(
+        ProfileError, match=r"^13 heights missing, 13 of them the value 0\.009999 m far from "
+    ):
+        read_map(tmp_path / "map.npy", SPACED)
+    found = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=9e-6))
+    np.testing.assert_allclose(found.z, Z, rtol=0, atol=0.05e-7)
+
+
+def test_spikes_of_a_map_are_not_bridged(tmp_path):
+    np.save(tmp_path / "map.npy", Z)
+    with pytest.raises(ProfileError, match="^bridge_spikes: of a profile, not of a map; leave it out$"):
+        areal_samples(tmp_path, spec(tmp_path / "map.npy", spacing=DX, bridge_spikes=True), 1e-4, False)
+
+
 def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):
     plane = 1e-3 * X + 2e-3 * Y[:, np.newaxis]
     holed = plane.copy()

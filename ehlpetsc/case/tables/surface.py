@@ -6,7 +6,7 @@ from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 
-UNITS = ("m", "mm", "um", "nm")  # of profile files
+UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
@@ -100,6 +100,7 @@ KEYS = {
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
     "fill_gaps": Key("longest gap of missing heights that the spline bridges", "m", 0, 1),
+    "bridge_spikes": Key("have the spline bridge spikes of at most five points", kind=bool, default=False),
     "z": Key(
         "heights in unit, here instead of in a file; of a map: its rows",
         "",
