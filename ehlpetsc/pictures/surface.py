@@ -1,8 +1,9 @@
-"""Roughness parameters, power spectrum and picture of a profile file: ``ehlpetsc surface FILE``.
+"""Roughness parameters, power spectrum and picture of a surface file: ``ehlpetsc surface FILE``.
 
-FILE is a profile as in ``[surface.1]``, whose keys ``--set unit=um``, ``--set cutoff=0.8e-3`` and so on set.
-The least-squares line is subtracted, except with ``--set level=false``. Without a cutoff the parameters are
-those of the primary profile. ``--csv FILE.csv`` writes the power spectral density.
+FILE is a profile or map as in ``[surface.1]``, whose keys ``--set unit=um``, ``--set cutoff=0.8e-3`` and so
+on set. The least-squares line or plane is subtracted, except with ``--set level=false``. Without a cutoff the
+parameters are those of the primary profile. ``--csv FILE.csv`` writes the power spectral density of a
+profile.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import check, in_si
 from ehlpetsc.case.combinations import parsed, put
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.pictures import style
+from ehlpetsc.pictures import areal_surface, style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
+from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
 from ehlpetsc.surfaces.profile_parameters import (
     MIN_POINTS,
     CoreParameters,
@@ -32,6 +34,7 @@ from ehlpetsc.surfaces.profile_parameters import (
     power_spectrum,
 )
 from ehlpetsc.surfaces.samples import Samples, samples
+from ehlpetsc.surfaces.topography import Topography
 
 TABLE = "surface.1."
 SIZE = (9.0, 6.0)  # inches
@@ -41,7 +44,7 @@ HEADING = "wavelength [m],wavenumber [rad/m],power spectral density [m^3]"
 def arguments() -> CommandParser:
     """Parse the command line."""
     parser = CommandParser("surface", __doc__)
-    parser.add_argument("file", help="profile file")
+    parser.add_argument("file", help="profile or map")
     parser.add_argument("-o", "--output", help="picture [FILE.surface.png]")
     parser.add_argument("--no-picture", action="store_true", help="the parameters alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="power spectral density over the wavenumber")
@@ -65,6 +68,8 @@ def run(chosen: argparse.Namespace) -> None:
         if file is not None:
             check_derived(Path(file), [path], endings, option)
     try:
+        if holds_map(Path(), spec):
+            return _run_map(chosen, areal_samples(Path(), spec, 0.0, False), target)
         profile = samples(Path(), spec)
         if profile.X.size < MIN_POINTS:
             raise ProfileError(f"{profile.X.size} points; allowed for parameters: at least {MIN_POINTS}")
@@ -82,15 +87,26 @@ def run(chosen: argparse.Namespace) -> None:
         print(target)
 
 
+def _run_map(chosen: argparse.Namespace, surface: Topography, target: Path | None) -> None:
+    if chosen.csv is not None:
+        raise ProfileError("--csv: of a profile, not of a map; leave it out")
+    print("\n".join(areal_surface.lines(chosen.file, surface)))
+    if target is not None:
+        style.save(areal_surface.draw(Path(chosen.file).name, surface), target)
+        print(target)
+
+
 def _spec(file: str, overrides: list[str]) -> Values:
     """Checked table [surface.1] of a file; raises `CaseError`."""
-    table: dict[str, Any] = {"file": file, "level": True}
+    table: dict[str, Any] = {"file": file}
     for override in overrides:
         try:
             keys, value = parsed(override.removeprefix(TABLE))
             put(table, keys, value)
         except ValueError:
             raise CaseError([f"--set {override}: allowed: KEY=VALUE, as in unit=um"]) from None
+    if "form" not in table:
+        table.setdefault("level", True)
     faults = in_si({"surface": {"1": table}})
     spec, found = (None, []) if faults else check(PROFILE, table, TABLE)
     if faults or found:

@@ -177,7 +177,7 @@ def checked(found: Map, layout: MapLayout) -> Map:
     if not (0 < dx < MAX_ABSCISSA and 0 < dy < MAX_ABSCISSA):
         raise ProfileError(f"spacings {dx:g} and {dy:g} m; allowed: above 0")
     no_data = ""
-    while (value := no_data_value(z.ravel())) is not None:
+    while (value := no_data_value(_to_and_fro(z))) is not None:
         no_data += f", {np.count_nonzero(z == value)} of them the value {value:.6g} m far from all others"
         z[z == value] = np.nan
     wrong = np.abs(z) >= MAX_ABSCISSA
@@ -191,3 +191,10 @@ def checked(found: Map, layout: MapLayout) -> Map:
         z, note = filled(z, dx, dy, layout.fill_gaps, no_data)
         notes += (note,)
     return Map(z, dx, dy, notes)
+
+
+def _to_and_fro(z: np.ndarray) -> np.ndarray:
+    """Heights along a path of neighbours: every second row from its end."""
+    path = z.copy()
+    path[1::2] = z[1::2, ::-1]
+    return path.ravel()

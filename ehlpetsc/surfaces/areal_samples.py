@@ -34,8 +34,7 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
     if spec.synthetic is not None:
         surface = synthetic_areal.sampled(spec.synthetic, spec.direction or 0.0, width, is_strip)
         return replace(surface, z=spec.scale * surface.z)
-    found = _map(folder, spec)
-    if found is None:
+    if not holds_map(folder, spec):
         _refuse(spec, ("spacing_across", "direction", "position_across"), "of a map, not of a profile")
         profile = samples(folder, spec)
         along: Continuation = "mirrored" if profile.repeats else "zero"
@@ -46,7 +45,7 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
         raise ProfileError("bridge_spikes: of a profile, not of a map; leave it out")
     if spec.x is None:
         _refuse(spec, ("x_unit",), "of x, not of spacing, which is in m; leave it out")
-    surface = _processed(found, spec)
+    surface = _processed(_map(folder, spec), spec)
     return surface.periodic_over(width) if is_strip else surface
 
 
@@ -56,17 +55,25 @@ def _refuse(spec: Values, keys: tuple[str, ...], reason: str) -> None:
         raise ProfileError(f"{', '.join(given)}: {reason}")
 
 
-def _map(folder: Path, spec: Values) -> Map | None:
-    """Map in the file of a surface, or in its table; None: a profile."""
-    layout = MapLayout(**{key: getattr(spec, key) for key in MapLayout._fields})
+def holds_map(folder: Path, spec: Values) -> bool:
+    """Whether the file of a surface, or the heights in its table, are a map and not a profile."""
     if spec.z is not None:
-        if np.ndim(spec.z) == 1:
-            return None
-        dx = spec.spacing or _step(spec.x, "x", spec)
-        dy = spec.spacing_across or spec.spacing or _step(spec.y, "y", spec)
-        return checked(Map(UNITS[spec.unit or "m"] * np.array(spec.z, float), dx, dy), layout)
-    path = folder / spec.file
-    return read_map(path, layout) if spec.columns is None and is_map(path, layout) else None
+        return np.ndim(spec.z) == 2
+    return spec.columns is None and is_map(folder / spec.file, layout_of_map(spec))
+
+
+def layout_of_map(spec: Values) -> MapLayout:
+    """Layout of the file of a map."""
+    return MapLayout(**{key: getattr(spec, key) for key in MapLayout._fields})
+
+
+def _map(folder: Path, spec: Values) -> Map:
+    """Map in the file of a surface, or in its table."""
+    if spec.z is None:
+        return read_map(folder / spec.file, layout_of_map(spec))
+    dx = spec.spacing or _step(spec.x, "x", spec)
+    dy = spec.spacing_across or spec.spacing or _step(spec.y, "y", spec)
+    return checked(Map(UNITS[spec.unit or "m"] * np.array(spec.z, float), dx, dy), layout_of_map(spec))
 
 
 def _step(values: list[float], key: str, spec: Values) -> float:

@@ -172,6 +172,12 @@ def test_a_value_far_from_all_others_is_no_height(tmp_path):
     np.testing.assert_allclose(found.z, Z, rtol=0, atol=0.05e-7)
 
 
+def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
+    tilted = np.repeat(Z[::4], 4, axis=0) + 1e-2 * X
+    np.save(tmp_path / "map.npy", tilted)
+    np.testing.assert_array_equal(read_map(tmp_path / "map.npy", SPACED).z, tilted)
+
+
 def test_spikes_of_a_map_are_not_bridged(tmp_path):
     np.save(tmp_path / "map.npy", Z)
     with pytest.raises(ProfileError, match="^bridge_spikes: of a profile, not of a map; leave it out$"):

@@ -1,8 +1,10 @@
-"""Roughness parameters of areal surfaces against those of waves."""
+"""Roughness parameters of areal surfaces, and the command that prints and draws them."""
 
 import numpy as np
 import pytest
+from support import refused
 
+from ehlpetsc.pictures.surface import main
 from ehlpetsc.surfaces.areal_parameters import ArealParameters, autocorrelation, correlation_lengths
 
 AMPLITUDE, WAVE = 1e-7, 40e-6
@@ -65,3 +67,34 @@ def test_a_plane_has_no_shape():
 
 def test_a_map_shorter_than_its_texture_has_no_correlation_length():
     assert np.isnan(correlation_lengths(np.ones((8, 8)) + 1e-3 * np.eye(8), STEP, STEP)).all()
+
+
+def test_the_command_prints_and_draws_a_map(tmp_path, capsys):
+    path = tmp_path / "map.npy"
+    np.save(path, waves()[:128, :256] + 1e-3 * X[:256])
+    assert main([str(path), "--set", f"spacing={STEP!r}"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0] == f"{path}: 0.3188 x 0.1588 mm, 256 x 128 points 1.25 um and 1.25 um apart"
+    values = {line.split()[0]: float(line.split()[1]) for line in shown[1:-1]}
+    assert values["Sq"] == pytest.approx(1e6 * AMPLITUDE / 2, rel=0.01)  # without the plane
+    assert values["Sku"] == pytest.approx(9 / 4, rel=0.02) and 0.7 < values["Str"] < 1.0
+    assert (
+        shown[-1] == str(tmp_path / "map.surface.png") and (tmp_path / "map.surface.png").stat().st_size > 1e4
+    )
+
+
+def test_form_of_a_map_replaces_its_plane(tmp_path, capsys):
+    np.save(tmp_path / "map.npy", waves()[:128, :256] + 10.0 * X[:256] ** 2)
+    words = [str(tmp_path / "map.npy"), "--no-picture", "--set", f"spacing={STEP!r}"]
+    heights = []
+    for more in ([], ["--set", "form=2"]):
+        assert main([*words, *more]) == 0
+        heights.append(float(capsys.readouterr().out.split("Sq")[1].split()[0]))
+    assert heights[0] > 1.5e6 * AMPLITUDE / 2
+    assert heights[1] == pytest.approx(1e6 * AMPLITUDE / 2, rel=0.02)
+
+
+def test_the_spectrum_of_a_map_is_refused(tmp_path, capsys):
+    np.save(tmp_path / "map.npy", waves()[:64, :64])
+    words = [tmp_path / "map.npy", "--set", "spacing=1e-6", "--no-picture", "--csv", tmp_path / "a.csv"]
+    assert "--csv: of a profile, not of a map; leave it out" in refused(capsys, main, *words)
