@@ -245,7 +245,7 @@ def _note_of_gaps(x: np.ndarray, is_missing: np.ndarray, longest: float | None, 
 
 def _note_of_spikes(x: np.ndarray, is_spike: np.ndarray, are_bridged: bool) -> str:
     place, action = 1e6 * (x[is_spike.argmax()] - x[0]), "; bridge_spikes = true bridges them"
-    found = f"{groups(is_spike)} spikes, {np.count_nonzero(is_spike)} points in all"
+    found = f"spikes: {groups(is_spike)} with {np.count_nonzero(is_spike)} points in all"
     return f"{found}, the first at x = {place:.4g} um{', bridged' if are_bridged else action}"
 
 

@@ -107,6 +107,17 @@ def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
     assert note.startswith("6 missing ") and note.endswith(" 4 um")
 
 
+@pytest.mark.parametrize(
+    "marker", ["", "nan", "NaN", "-nan(ind)", "1.#QNAN", "#N/A", "n/a", "BAD", "*****", "---"]
+)
+@pytest.mark.parametrize("separator", [";", ","])
+def test_markers_of_a_missing_height(tmp_path, marker, separator):
+    path = tmp_path / "p.csv"
+    path.write_text("".join(f"{k}e-6{separator}{marker if k == 4 else k % 3}\n" for k in range(9)))
+    with pytest.raises(ProfileError, match="^1 heights missing, the longest gap 2e-06 m behind x = 3e-06; "):
+        read_profile(path)
+
+
 def test_omitted_lines_are_missing_heights(tmp_path):
     """The spline would bridge them without a warning, and the spacing printed would be a mean."""
     x = np.arange(400) * 1e-6
@@ -302,7 +313,7 @@ def test_spikes_are_noted_and_bridged_on_request():
     x, z, faulty = with_spikes()
     _, same, (note,) = checked(x, faulty, Layout())
     np.testing.assert_array_equal(same, faulty)
-    assert note == "3 spikes, 7 points in all, the first at x = 30 um; bridge_spikes = true bridges them"
+    assert note == "spikes: 3 with 7 points in all, the first at x = 30 um; bridge_spikes = true bridges them"
     _, bridged, (note,) = checked(x, faulty, Layout(bridge_spikes=True))
     np.testing.assert_allclose(bridged, z, atol=2e-7)
     assert note.endswith("x = 30 um, bridged")

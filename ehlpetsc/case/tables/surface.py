@@ -42,9 +42,9 @@ BUMP_KEYS = {
 }
 SYNTHETIC = (
     _kinds("ground", text="random profile with prescribed Ra and skewness", keys=GROUND_KEYS)
-    | _kinds("self-affine", text="random profile with a self-affine spectrum", keys=SELF_AFFINE_KEYS)
     | _kinds("sine", "square", text="wave with a crest at profile abscissa 0", keys=WAVE_KEYS)
     | _kinds("ridge", "dent", text="single ridge or dent of Gaussian shape", keys=BUMP_KEYS)
+    | _kinds("self-affine", text="random profile with a self-affine spectrum", keys=SELF_AFFINE_KEYS)
 )
 
 
