@@ -1,4 +1,4 @@
-"""Outliers in measured heights: no-data values of instruments, and spikes of optical ones."""
+"""Faults of measured heights: no-data values of instruments, held heights, and spikes of optical ones."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ SPIKE_WIDTH = 5  # maximum, in points
 WAVE_WINDOW = 101  # points, of medians that follow the waves but not the roughness
 SPIKE_RATIOS = 10.0, 4.0  # of a spike over the noise, and over the roughness, both in the root mean square
 SHOULDER_RATIO = 0.3  # of this limit, for points beside a spike that belong to it
+HELD_POINTS, MAX_HELD_SHARE, RARE_SHARE = 5, 0.2, 0.01
 ROUNDING = 1e-9  # of the heights
 SIGMA_OF_MAD = 1.4826  # standard deviation of Gaussian heights over their median absolute deviation
 
@@ -64,6 +65,23 @@ def spikes(z: np.ndarray) -> np.ndarray:
         return np.zeros(z.size, bool)
     foot = deviation > SHOULDER_RATIO * threshold
     return binary_propagation(deviation > threshold, mask=foot) & present
+
+
+def held(z: np.ndarray) -> np.ndarray:
+    """Whether each height belongs to `HELD_POINTS` equal ones in a row, where equal neighbours are rare.
+
+    An instrument holds a height across a drop-out or at the end of its range. More than `MAX_HELD_SHARE` of
+    all points are plateaus of a shape.
+    """
+    is_equal = np.diff(z) == 0.0
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], is_equal.astype(np.int8), [0]])))
+    runs = ends.reshape(-1, 2)  # first and last point
+    flags = np.zeros(z.size, bool)
+    for first, last in runs[runs[:, 1] - runs[:, 0] >= HELD_POINTS - 1]:
+        flags[first : last + 1] = True
+    others = is_equal & ~np.isin(z[1:], z[flags])
+    is_rare = np.count_nonzero(others) < RARE_SHARE * z.size
+    return flags & (is_rare and flags.mean() <= MAX_HELD_SHARE)
 
 
 def groups(flags: np.ndarray) -> int:

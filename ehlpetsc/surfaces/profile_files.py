@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.outliers import groups, no_data_value, spikes
+from ehlpetsc.surfaces.outliers import groups, held, no_data_value, spikes
 from ehlpetsc.surfaces.softgauges import read_softgauge
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
@@ -189,6 +189,8 @@ def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, n
     is_missing, is_spike = np.isnan(z), spikes(z)
     if is_missing.any():
         notes.append(_note_of_gaps(x, is_missing, layout.fill_gaps, no_data))
+    if (is_held := held(z)).any():
+        notes.append(_note_of_held_heights(x, is_held))
     if is_spike.any():
         notes.append(_note_of_spikes(x, is_spike, layout.bridge_spikes))
         is_missing |= is_spike & layout.bridge_spikes
@@ -243,9 +245,17 @@ def _note_of_gaps(x: np.ndarray, is_missing: np.ndarray, longest: float | None, 
     )
 
 
+def _note_of_held_heights(x: np.ndarray, is_held: np.ndarray) -> str:
+    count, place = np.count_nonzero(is_held), 1e6 * (x[is_held.argmax()] - x[0])
+    return (
+        f"equal heights in a row: {count}, from x = {place:.4g} um on, of drop-outs or the end of the range; "
+        "nan in their place and fill_gaps bridge them"
+    )
+
+
 def _note_of_spikes(x: np.ndarray, is_spike: np.ndarray, are_bridged: bool) -> str:
     place, action = 1e6 * (x[is_spike.argmax()] - x[0]), "; bridge_spikes = true bridges them"
-    found = f"{groups(is_spike)} spikes, {np.count_nonzero(is_spike)} points in all"
+    found = f"spikes: {groups(is_spike)} with {np.count_nonzero(is_spike)} points in all"
     return f"{found}, the first at x = {place:.4g} um{', bridged' if are_bridged else action}"
 
 

@@ -45,7 +45,7 @@ def _smd(text: str) -> tuple[np.ndarray, np.ndarray]:
         raise ProfileError("SMD: allowed: CX and CZ with type, points, unit, scale and type of the numbers")
     listed = [words[2] for words in lines if words[:2] == ["SPACING", "CX"] and len(words) > 2]
     spacing = next(iter([*axis_x[AXIS_WORDS:], *listed]), None)
-    if axis_x[1] == "A" or spacing is None:
+    if spacing is None:
         raise ProfileError("SMD: x without spacing; allowed: equally spaced points, CX I or SPACING CX")
     z = _smd_length(axis_z) * _numbers(records[2], "SMD")
     _check_count(z.size, int(_number(axis_z[2], "SMD")), "CZ", "SMD")

@@ -11,10 +11,8 @@ if TYPE_CHECKING:
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
-SHORTEST_WAVE_POINTS, ROLL_OFFS = (
-    10,
-    200,
-)  # of a self-affine profile: a short_cutoff, in its length
+SHORTEST_WAVE_POINTS = 10  # of a self-affine profile, per short_cutoff
+ROLL_OFFS = 200  # length of a self-affine profile, in roll_off
 MAX_POINTS = 4_000_000  # of self-affine profiles, which are shorter beyond it
 FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
 SINGLE_FEATURES = ("ridge", "dent")  # do not repeat

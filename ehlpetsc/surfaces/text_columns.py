@@ -57,7 +57,7 @@ def text_columns(
     columns = np.empty((0, 0))
     if re.search(r"\d", body):
         try:
-            columns = np.loadtxt(io.StringIO(body), delimiter=separator, ndmin=2).T
+            columns = np.loadtxt(io.StringIO(body), delimiter=separator, comments=None, ndmin=2).T
         except ValueError:
             columns = _cell_by_cell(body, separator, above).T
         while len(columns) and np.isnan(columns[-1]).all():  # behind separators at the ends of the lines

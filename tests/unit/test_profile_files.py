@@ -107,6 +107,17 @@ def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
     assert note.startswith("6 missing ") and note.endswith(" 4 um")
 
 
+@pytest.mark.parametrize(
+    "marker", ["", "nan", "NaN", "-nan(ind)", "1.#QNAN", "#N/A", "n/a", "BAD", "*****", "---"]
+)
+@pytest.mark.parametrize("separator", [";", ","])
+def test_markers_of_a_missing_height(tmp_path, marker, separator):
+    path = tmp_path / "p.csv"
+    path.write_text("".join(f"{k}e-6{separator}{marker if k == 4 else k % 3}\n" for k in range(9)))
+    with pytest.raises(ProfileError, match="^1 heights missing, the longest gap 2e-06 m behind x = 3e-06; "):
+        read_profile(path)
+
+
 def test_omitted_lines_are_missing_heights(tmp_path):
     """The spline would bridge them without a warning, and the spacing printed would be a mean."""
     x = np.arange(400) * 1e-6
@@ -272,12 +283,11 @@ def test_repeated_no_data_values_are_missing_heights(tmp_path, value, shown, til
     assert len(notes) == 1 and "4 of them the value" in notes[0]
 
 
-@pytest.mark.parametrize("kind", ["quantised", "clipped", "square", "ridge", "dimples"])
+@pytest.mark.parametrize("kind", ["quantised", "square", "ridge", "dimples"])
 def test_repeated_heights_that_join_their_neighbours_are_no_missing_ones(kind):
     x, z = wave()
     z = {
         "quantised": np.round(z, 8),
-        "clipped": np.minimum(z, 5.1e-6),
         "square": np.where(np.sin(x / 7e-6) > 0, 1e-6, 0.0),
         "dimples": np.where(np.arange(400) % 40 < 25, 0.0, z - 1e-5),
         "ridge": np.maximum(0.0, 1e-6 - np.abs(x - 1e-4) * 0.01),
@@ -302,7 +312,7 @@ def test_spikes_are_noted_and_bridged_on_request():
     x, z, faulty = with_spikes()
     _, same, (note,) = checked(x, faulty, Layout())
     np.testing.assert_array_equal(same, faulty)
-    assert note == "3 spikes, 7 points in all, the first at x = 30 um; bridge_spikes = true bridges them"
+    assert note == "spikes: 3 with 7 points in all, the first at x = 30 um; bridge_spikes = true bridges them"
     _, bridged, (note,) = checked(x, faulty, Layout(bridge_spikes=True))
     np.testing.assert_allclose(bridged, z, atol=2e-7)
     assert note.endswith("x = 30 um, bridged")
@@ -313,6 +323,18 @@ def test_heights_beside_a_drop_out_are_no_spike():
     z[100:120] = np.nan
     _, _, notes = checked(x, z, Layout(fill_gaps=2e-5))
     assert len(notes) == 1 and notes[0].startswith("20 missing")
+
+
+@pytest.mark.parametrize("kind", ["drop-out", "clipped"])
+def test_held_heights_are_noted(kind):
+    x, z = wave()
+    if kind == "drop-out":
+        z[100:130], found = z[99], "31, from x = 49.5 um on, "
+    else:
+        z, found = np.minimum(z, 5.32e-6), "21, from x = 8 um on, "
+    _, same, (note,) = checked(x, z, Layout())
+    np.testing.assert_array_equal(same, z)
+    assert note.startswith(f"equal heights in a row: {found}")
 
 
 def test_map_of_heights_is_no_profile(tmp_path):
