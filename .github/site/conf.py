@@ -9,6 +9,7 @@ FRONT = "README"
 SECTIONS = {
     "User guide": (
         "cases/README",
+        "cases/surfaces",
         "cases/contact",
         "cases/heat",
         "cases/gears",

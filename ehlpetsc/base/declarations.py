@@ -48,7 +48,7 @@ class Key:
         Keys of the table, or tables (``"[gears]"``), that provide the value of a required key.
     many
         "": one value; "both": one for both surfaces or a list of one for each, stored as a pair; "two": a
-        list of two; "axes": one, or a list of two, along and across; "list".
+        list of two; "axes": one, or a list of two, along and across; "list"; "list or matrix", of rows.
     min_items, max_items
         Length of a list, or of a text.
     needs

@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple, TypeGuard
 
@@ -165,6 +166,13 @@ def _value(key: Key, value: Any) -> Any:
         value = [value, value]
     if not key.many or key.many == "axes" and not isinstance(value, list | tuple):
         return _item(key, value)
+    if key.many == "list or matrix" and isinstance(value, list | tuple) and value:
+        key = replace(key, many="list")
+        if isinstance(value[0], list | tuple):
+            rows = [_value(key, row) for row in value]
+            if len(rows) < key.min_items or len(set(map(len, rows))) > 1:
+                raise _Wrong
+            return rows
     shortest, longest = (
         (2, 2) if key.many in ("both", "two", "axes") else (key.min_items, key.max_items or math.inf)
     )

@@ -18,7 +18,7 @@ from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_column
 from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
-from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.case.tables.surface import PROFILE, SIDES, areal_keys
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.laws import Law
@@ -199,7 +199,10 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
-        if spec is None or spec.synthetic:  # smooth, or its faults are reported with its keys
+        of_maps = areal_keys(spec) if spec else []
+        reason = "of maps, and a line contact has profiles; leave it out"
+        faults += [Fault("", f"surface.{side}.{key}: {reason}") for key in of_maps]
+        if spec is None or spec.synthetic or of_maps:  # smooth, or its faults are reported with its keys
             continue
         try:
             _check_profile(folder, spec, case)

@@ -189,7 +189,8 @@ def test_invalid_toml_is_refused_with_its_line(tmp_path):
     [
         (None, "file: "),
         ("0,0\n1e-6,0\n2e-6,0\n", ": 3 points; "),
-        ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", ": 3 heights are not missing; "),
+        ("0,0\n1e-6,nan\n2e-6,0\n3e-6,0\n", ": 3 heights are not missing; "),
+        ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", ': line 2: "zero" is not a number; '),
         ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "x = 1e-06 follows x = 2e-06"),
     ],
 )

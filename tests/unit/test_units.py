@@ -1,13 +1,14 @@
 """Values with a unit: every unit of the keys with what data sheets write for it."""
 
 import math
+import re
 import tomllib
 
 import pytest
 from support import CASES
 
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.base.units import converted
+from ehlpetsc.base.units import UnitFault, converted
 from ehlpetsc.case import keys
 from ehlpetsc.case.loading import load, members
 
@@ -109,10 +110,20 @@ def test_series_accepts_units():
         ("motion.slide_roll_ratio", "25 mm", 'motion.slide_roll_ratio = "25 mm": not a unit'),
         ("surface.1.synthetic", {"kind": ["sine"], "amplitude": "1 um"}, '"ground" | "sine"'),
         ("contact.load", "-1 N/mm", "contact.load = -1000.0: "),
+        ("contact.radius", "10,5 mm", '"10,5 mm": a comma in a number; allowed: digits .* as "10.5 mm"$'),
+        ("contact.load", "1.000,5 N/mm", 'as "1000.5 N/mm"$'),
+        ("motion.entrainment_speed", "3,0", 'as "3.0"$'),
+        ("fluid.viscosity", "15 cSt", '"15 cSt": kinematic, .* density, at 870 kg/m.3 "13.05 mPa s"$'),
+        ("fluid.viscosity", "0.2 St", '"0.2 St": kinematic, .* "17.4 mPa s"$'),
     ],
 )
 def test_wrong_unit_is_refused_in_one_line(key, value, words):
     with pytest.raises(CaseError) as refused:
         load(SMOOTH, {key: value})
     (line,) = refused.value.faults
-    assert words in line
+    assert words in line or re.search(words, line)
+
+
+def test_dynamic_viscosity_is_refused_where_a_kinematic_one_belongs():
+    with pytest.raises(UnitFault, match='^"87 mPa s": dynamic, .* over the density, .* "100 cSt"$'):
+        converted("87 mPa s", "m^2/s")
