@@ -29,7 +29,7 @@ def _kind(key: Key) -> str:
             return f"a list of {choices}"
         return f"one of {choices}" + (", or a list of two of them" if key.many == "both" else "")
     plural = PLURALS.get(key.kind)
-    if key.many == "both":
+    if key.many in ("both", "axes"):
         return f"{NAMES[key.kind]} or a list of two {plural}"
     if key.many:
         return f"a list{' of two' if key.many == 'two' else ' of' if plural else ''} {plural or ''}".strip()
