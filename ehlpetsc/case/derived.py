@@ -15,11 +15,11 @@ from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, na
 from ehlpetsc.case.checking import FAULTY, Fault, Tables, check, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
 from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.physics.viscosity_laws import (
-    STANDARD_TEMPERATURE,
     gold_pressure_viscosity,
     roelands_slope_of_secant,
     walther,

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.laws import LAWS, ROELANDS_PRESSURE, ROELANDS_VISCOSITY
-from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO, STANDARD_TEMPERATURE
+from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO
 
 
 @dataclass(frozen=True)

@@ -14,16 +14,15 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.declarations import Key
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives
 
 KELVIN = 273.15  # K at 0 degrees Celsius
-STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
 GLASSY = -0.5  # x/(C2 + x) of Yasutomi's law below which the logarithm continues linearly, towards a solid
 # temperature dependence of a power law
 ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER, ROELANDS_WALTHER = 0.0, 1.0, 2.0, 3.0, 4.0
 ROELANDS_ZERO = 138.0  # K
 GOLD_PRESSURE = 2e8  # Pa: that of the secant of Gold's coefficients
 WALTHER_SHIFT = 0.7  # mm^2/s
-Derivatives = tuple[Any, ...]
 
 
 def power_law(
@@ -197,9 +196,11 @@ def yasutomi(
 
 YASUTOMI = {
     "yasutomi_c1": Key("`C1` of Yasutomi's law", gt=0, le=100),
-    "yasutomi_c2": Key("`C2`", unit="K", gt=0, le=1000),
+    "yasutomi_c2": Key("`C2`", unit="K", gt=0, le=1000, is_difference=True),
     "yasutomi_glass": Key("`T_g0`, glass transition at ambient pressure", unit="K", ge=50, le=700),
-    "yasutomi_a1": Key("`A1` of the glass transition `T_g0 + A1 ln(1 + A2 p)`", unit="K", ge=0, le=2000),
+    "yasutomi_a1": Key(
+        "`A1` of the glass transition `T_g0 + A1 ln(1 + A2 p)`", unit="K", ge=0, le=2000, is_difference=True
+    ),
     "yasutomi_a2": Key("`A2`", unit="1/Pa", ge=0, le=1e-6),
     "yasutomi_b1": Key("`b1` of the factor `(1 + b1 p)^b2`", unit="1/Pa", ge=0, le=1e-6),
     "yasutomi_b2": Key("`b2`", ge=-5, le=0),

@@ -27,7 +27,7 @@ from dataclasses import replace
 from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.physics.rheology import SHEAR_LAWS
+from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
 
@@ -166,7 +166,7 @@ def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
     fluid = inputs.fluid
     if fluid and fraction < 1.0:
         change = {"exponent_factor": fraction}
-        stresses = {key: getattr(fluid, key) for key in SHEAR_LAWS}
-        change |= {key: stress / fraction**4 for key, stress in stresses.items() if stress is not None}
+        stress = list(SHEAR_LAWS[shear_law(fluid)].keys)[:1]
+        change |= {key: getattr(fluid, key) / fraction**4 for key in stress}
         fluid = fluid.copy(update=change)
     return replace(inputs, fluid=fluid, phi=roughness * inputs.phi)

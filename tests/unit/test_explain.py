@@ -100,6 +100,7 @@ def test_predicted_iterations_within_a_factor_of_one_and_a_half(name, overrides,
         (["contact.radius=12"], r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12"),
         (["fluid.viscosity=15"], r"film, 49\.5 um, .* 336 um: viscosity = 15 Pa s"),
         (["fluid.law='barus'"], r'^fluid\.reference_viscosity, fluid\.roelands_pressure: .* law = "barus"'),
+        (["fluid.density='incompressible'"], r'^fluid\.gamma, fluid\.lambda: .* density = "incompressible"$'),
     ],
 )
 def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, words):

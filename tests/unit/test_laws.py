@@ -8,7 +8,9 @@ from support import CASES
 
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
+from ehlpetsc.case.tables import FLUID
 from ehlpetsc.physics import laws, oils, viscosity_laws
 from ehlpetsc.run.simulation import Simulation
 
@@ -17,14 +19,17 @@ V40, V100 = 220e-6, 19e-6
 WALTHER_CONSTANTS = viscosity_laws.walther_constants(V40, V100)
 GPA = 1e9 * np.array([0.0, 0.5, 1.0, 2.0, 4.0])
 T9 = oils.OILS["t9"].fluid
+T9_YASUTOMI = {name: T9[name] for name in viscosity_laws.YASUTOMI}
 YASUTOMI = [T9[name] for name in viscosity_laws.YASUTOMI]
 
 
+OIL = {"viscosity": 0.005, "law": "roelands", "pressure_viscosity": 11.1e-9}
+OIL |= {"reference_viscosity": 63.2e-6, "roelands_pressure": 1.0 / 5.1e-9}
+OIL |= {"density": "dowson-higginson", "gamma": 2.27e-9, "lambda": 1.68e-9}
+
+
 def oil(**changes):
-    keys = {"viscosity": 0.005, "temperature": None, "law": "roelands", "pressure_viscosity": 11.1e-9}
-    keys |= {"reference_viscosity": 63.2e-6, "roelands_z": None, "roelands_pressure": 1.0 / 5.1e-9}
-    keys |= {"density": "dowson-higginson", "gamma": 2.27e-9, "lambda_": 1.68e-9}
-    return SimpleNamespace(**laws.completed({**keys, **changes}))
+    return values_of(FLUID, OIL | changes)
 
 
 @pytest.mark.parametrize(
@@ -109,6 +114,18 @@ def test_yasutomi_by_the_equation_in_degrees_celsius():
         [0.002018, 0.007728, 0.1413, 2.409],
     ]
     np.testing.assert_allclose(found, expected, rtol=6e-4)
+
+
+def test_constants_of_yasutomi_in_degrees_celsius():
+    """C2 and A1 are differences of temperatures, Tg is a temperature: C2 and A1 were 273.15 K too large."""
+    celsius = {"yasutomi_c2": "17.38 degC", "yasutomi_glass": "-83.2 C", "yasutomi_a1": "340.11 degF"}
+    given = {f"fluid.{key}": value for key, value in ({"law": "yasutomi"} | T9_YASUTOMI | celsius).items()}
+    others = dict.fromkeys(f"fluid.{key}" for key in ("reference_viscosity", "roelands_pressure"))
+    fluid = load(CASE, others | {"fluid.pressure_viscosity": None} | given).fluid
+    found = fluid.yasutomi_c2, fluid.yasutomi_glass, fluid.yasutomi_a1
+    assert found == pytest.approx((17.38, 273.15 - 83.2, 188.95), rel=1e-12)
+    with pytest.raises(CaseError, match=r"fluid\.yasutomi_c2 = -17: allowed: a number > 0 .*\)$"):
+        load(CASE, given | {"fluid.yasutomi_c2": -17})  # no hint to degrees Celsius
 
 
 SQUALANE = {

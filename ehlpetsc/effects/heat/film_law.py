@@ -38,8 +38,8 @@ import numpy as np
 
 from ehlpetsc.base.compiled import inlined
 from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
+from ehlpetsc.physics.law import SLOTS
 from ehlpetsc.physics.laws import (
-    SLOTS,
     conductivity,
     is_linear_in_temperature,
     ln_viscosities,
