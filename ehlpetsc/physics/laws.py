@@ -22,11 +22,15 @@ from ehlpetsc.physics.viscosity_laws import (
     DOOLITTLE,
     EXPONENTIAL,
     ISOTHERMAL,
+    MIN_ABOVE_POLE,
+    MIN_MODULUS,
+    MODULUS,
     ROELANDS,
     ROELANDS_WALTHER,
     WALTHER,
     YASUTOMI,
     doolittle,
+    modulus,
     power_law,
     walther_constants,
     yasutomi,
@@ -114,6 +118,22 @@ def _yasutomi(fluid: Any, heat: Any) -> tuple[float, ...]:
     return c1, c2, glass, *others, above / (c2 + above)
 
 
+def _modulus(fluid: Any, heat: Any) -> tuple[float, ...]:
+    c, d, *others = (getattr(fluid, name) for name in MODULUS)
+    return 1.0, c, d, *others, c / (d + reference_temperature(fluid, heat))
+
+
+def _complete_modulus(fluid: Any) -> dict[str, float]:
+    """As :func:`_complete_with_slope`; D + T and the modulus are positive by constants of T in K."""
+    values = _complete_with_slope(fluid)
+    T = reference_temperature(fluid)
+    if fluid.modulus_d + T < MIN_ABOVE_POLE:
+        raise Refused(f"at {T:g} K is D + T = {fluid.modulus_d + T:.3g} K; allowed: D of T in K", "modulus_d")
+    if (m := fluid.modulus_a1 + fluid.modulus_a2 * T) < MIN_MODULUS:
+        raise Refused(f"a1 + a2 T = {m:.3g} Pa at {T:g} K; allowed: {MIN_MODULUS:g} Pa", "modulus_a1")
+    return values
+
+
 def _complete_with_slope(fluid: Any) -> dict[str, float]:
     """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure."""
     law = LAWS[fluid.law]
@@ -158,6 +178,14 @@ LAWS = {
         "`lg(eta/eta0) = C1 (x0/(C2 + x0) - x/(C2 + x))`, `x = (T - T_g) (1 + b1 p)^b2`",
         YASUTOMI,
         _complete_with_slope,
+        of_temperature=True,
+    ),
+    "modulus": Law(
+        modulus,
+        _modulus,
+        "`ln(eta/eta0) = C/(D + T) - C/(D + T0) + p/(a1 + a2 T + (b1 + b2 T) p)`",
+        MODULUS,
+        _complete_modulus,
         of_temperature=True,
     ),
 }

@@ -130,7 +130,7 @@ KEYS = {
     "viscosity": Required("at ambient pressure", "Pa s", 1e-6, 1e4, replaced_by=("grade", "oil")),
     "grade": GRADE.key,
     "oil": Key(
-        "measured oil: its keys of [fluid] and [heat], which the case overrides",
+        "measured oil, t9 by constants from memory: its keys of [fluid] and [heat], which the case overrides",
         choices=tuple(OILS),
         needs=("fluid.grade left out",),
     ),
@@ -142,7 +142,7 @@ KEYS = {
     "limiting_shear": Key(
         "limiting shear stress over pressure",
         *("", 1e-4, 1),
-        equation="mean shear stress `(tau^-4 + (limiting_shear p)^-4)^(-1/4)`, `tau` without it",
+        equation="mean shear stress `(tau^-20 + (limiting_shear p)^-20)^(-1/20)`, `tau` without it",
     ),
     "limiting_shear_temperature": Key(
         "`k` of `limiting_shear (1 + k (T - T0))`, with [heat]",
