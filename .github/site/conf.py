@@ -11,6 +11,7 @@ SECTIONS = {
         "cases/README",
         "cases/contact",
         "cases/heat",
+        "cases/measured",
         "cases/gears",
         "cases/life",
         "ehlpetsc/run/README",

@@ -199,4 +199,5 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
         bulk,
         (heat.inlet_temperature if heat else None) or reference,
         (solids[0].effusivity, solids[1].effusivity),
+        case.gears.oil_factor,
     )
