@@ -34,6 +34,12 @@ def test_explain_figures_of_the_main_case():
     assert [part for part in parts if part not in text] == []
 
 
+def test_source_of_a_named_oil_is_printed():
+    """Of T9 with a remark that no article was read for its constants."""
+    (line,) = starting(lines("traction.toml"), "Oil t9: ")
+    assert line.endswith("Tribol. Int. 66 (2013) 19; constants from memory")
+
+
 def test_rough_start_is_named():
     begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
     assert begun == ["Start: rough, after a ramp before time 0"]
