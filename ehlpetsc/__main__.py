@@ -49,6 +49,8 @@ def main(words: list[str] | None = None) -> int:
         sys.stdout.flush()
     except SystemExit:
         raise
+    except CaseError as error:  # laws and effects of the user, as a command imports them
+        status = refuse(str(error))
     except BrokenPipeError:  # the reader has gone, as `head -1` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = ExitStatus.STOPPED

@@ -12,6 +12,7 @@ SECTIONS = {
         "cases/surfaces",
         "cases/contact",
         "cases/heat",
+        "cases/measured",
         "cases/gears",
         "cases/life",
         "ehlpetsc/run/README",

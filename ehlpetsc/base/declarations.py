@@ -38,6 +38,8 @@ class Key:
         Meaning, for the page of keys and for messages; symbols and equations in backticks.
     unit
         SI unit of the stored value; "": a pure number.
+    is_difference
+        Whether a value in K is a difference of temperatures: 17 degC is then 17 K.
     kind
         float, int, bool or str; dict: a table with any keys; object: anything. With choices always str.
     default
@@ -79,6 +81,7 @@ class Key:
     needs: tuple[str, ...] = ()
     below: str = ""
     equation: str = ""
+    is_difference: bool = False
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
 

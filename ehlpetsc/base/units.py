@@ -62,10 +62,13 @@ class UnitFault(ValueError):
     """A value with a unit cannot be converted; the message states the reason."""
 
 
-def converted(value: object, unit: str, depth: int = 2) -> object:
-    """Number in `unit` of a text with a unit, also in lists; other values do not change."""
+def converted(value: object, unit: str, is_difference: bool = False, depth: int = 2) -> object:
+    """Number in `unit` of a text with a unit, also in lists; other values do not change.
+
+    `is_difference`: of temperatures, which have no zero to add.
+    """
     if isinstance(value, list) and depth:
-        return [converted(item, unit, depth - 1) for item in value]
+        return [converted(item, unit, is_difference, depth - 1) for item in value]
     match = VALUE.fullmatch(value) if isinstance(value, str) else None
     if isinstance(value, str) and COMMA.fullmatch(value):
         point = value.replace(".", "").replace(",", ".", 1).strip()
@@ -74,7 +77,7 @@ def converted(value: object, unit: str, depth: int = 2) -> object:
         return value
     number, text = float(match[1]), match[2].strip()
     try:
-        zero = ZEROS.get(text, 0.0) if unit == "K" else 0.0
+        zero = ZEROS.get(text, 0.0) if unit == "K" and not is_difference else 0.0
         return float(f"{number * factor(text, unit, number) + zero:.{MAX_DIGITS}g}")
     except UnitFault as fault:
         raise UnitFault(f'"{value}": {fault}') from None

@@ -47,7 +47,7 @@ def in_si(data: Tables) -> list[Fault]:
     for holder, name, key, place in [*_entries(data, CASE, ""), *_series_entries(data.get("series"))]:
         if key and key.kind is float and key.unit not in NUMBERS_ONLY:
             try:
-                holder[name] = converted(holder[name], key.unit)
+                holder[name] = converted(holder[name], key.unit, key.is_difference)
             except UnitFault as fault:
                 faults.append(Fault(place, f"{place} = {fault}"))
     return faults
@@ -91,10 +91,10 @@ def check(
             faults.append(Fault(place, ""))
         elif value is None and not (key.table and key.table.always):
             faults += _missing(place, key, data, root)
-            values[_attribute(name)] = key.default
+            values[attribute(name)] = key.default
         else:
             given = {} if value is None else value
-            values[_attribute(name)], found = _checked(place, key, given, data, root, known)
+            values[attribute(name)], found = _checked(place, key, given, data, root, known)
             faults += found
     for name in data:
         if name not in table.keys:
@@ -225,6 +225,6 @@ def _refused(table: KeyTable, data: Tables, where: str, refused: Refused) -> Fau
     return Fault(place, f"{place} = {show(data[refused.key])}: {reason}")
 
 
-def _attribute(name: str) -> str:
+def attribute(name: str) -> str:
     """Attribute of a key: `lambda_`, `body_1`."""
     return f"body_{name}" if name.isdigit() else f"{name}_" if keyword.iskeyword(name) else name

@@ -43,7 +43,7 @@ def allowed(key: Key) -> str:
 
 def celsius(key: Key, value: object) -> str:
     """Hint to degrees Celsius where a number would be allowed as such; "" otherwise."""
-    if key.unit != "K" or not isinstance(value, int | float) or not abs(value) < 1e4:
+    if key.unit != "K" or key.is_difference or not isinstance(value, int | float) or not abs(value) < 1e4:
         return ""
     return f'; "{value:g} degC"?' if key.ge <= value + 273.15 <= key.le else ""
 

@@ -30,6 +30,7 @@ class Rating:
     `viscosity`, `pressure_viscosity`: of the oil at ambient pressure [Pa s], [1/Pa], functions of temperature
         [K].
     `film_friction`: coefficient of friction along the path of smooth flanks, shape (n,); None: rough ones.
+    `oil_factor`: X_L of ISO/TR 14179-2.
     `bulk`, `oil`: temperatures of the gears, mean of both, and of the oil that is supplied [K].
     """
 
@@ -42,14 +43,15 @@ class Rating:
     bulk: float
     oil: float
     effusivities: tuple[float, float] = (STEEL.effusivity, STEEL.effusivity)
+    oil_factor: float = 1.0
 
 
 def friction(rating: Rating) -> float:
     """Mean coefficient of friction along the path, by load, speed and radius at the pitch point."""
     path, at = rating.path, rating.path.index("C")
     speeds = 2.0 * path.entrainment[at]
-    oil = rating.viscosity(rating.oil)
-    return float(hoehn_michaelis(path.pair.normal_load, speeds, path.radius[at], oil, rating.roughness))
+    of_oil = rating.viscosity(rating.oil), rating.roughness, rating.oil_factor
+    return float(hoehn_michaelis(path.pair.normal_load, speeds, path.radius[at], *of_oil))
 
 
 def flash(rating: Rating, coefficient: float | np.ndarray | None = None) -> np.ndarray:

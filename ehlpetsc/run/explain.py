@@ -13,6 +13,7 @@ from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
 from ehlpetsc.physics.film_formulas import smooth_films
+from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
 from ehlpetsc.run.outputs.progress import duration
@@ -82,7 +83,9 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
+    oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
+        *oil,
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
         f"Expected smooth film (Moes, and the density under p0): central {central * 1e6:.3g} um, "

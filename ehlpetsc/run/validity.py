@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehlpetsc.case.checking import attribute
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
@@ -19,7 +20,7 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 from ehlpetsc.physics.flash_temperature import expected_friction
-from ehlpetsc.physics.laws import LAWS, viscosity
+from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
 from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -151,12 +152,15 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
 
 
 def _oil_warnings(fluid: Any) -> Iterator[str]:
-    """Oil constants that the viscosity law does not use."""
-    others = {name for law in LAWS.values() for name in law.keys}
-    others -= set(LAWS[fluid.law].keys) if fluid else others
-    keys = sorted(f"fluid.{name}" for name in others if getattr(fluid, name) is not None)
-    if keys:
-        yield f'{", ".join(keys)}: not used by law = "{fluid.law}"'
+    """Oil constants that none of the case's laws uses."""
+    if fluid is None:
+        return
+    of_laws = {name: key for laws in TABLES for law in laws.values() for name, key in law.keys.items()}
+    given = {name for name, key in of_laws.items() if getattr(fluid, attribute(name)) != key.default}
+    in_use = [laws[name] for laws, name in zip(TABLES, names_in_use(fluid), strict=True)]
+    unused = sorted(f"fluid.{name}" for name in given.difference(*(law.keys for law in in_use)))
+    if unused:
+        yield f'{", ".join(unused)}: not used by law = "{fluid.law}", density = "{fluid.density}"'
 
 
 def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:

@@ -275,6 +275,9 @@ def test_standards_for_fzg_c_at_stage_9():
     assert rating.roughness == pytest.approx(0.25e-6, rel=1e-6)
     # 0.048 (637.7/(6.584 8.382))^0.2 11.2^-0.05 0.25^0.25
     assert found["mean friction coefficient"] == pytest.approx(0.04907, rel=1e-3)
+    assert values_of(rated("gears.oil_factor=0.65"))["mean friction coefficient"] == pytest.approx(
+        0.65 * found["mean friction coefficient"], rel=1e-12
+    )
     assert found["loss factor H_V"] == pytest.approx(0.1958, abs=5e-5)
     assert found["power lost"] == pytest.approx(100 * 0.04907 * 0.1958, rel=1e-3)
     # 1.6 8.382e-3 (15e-9 226.4e9)^0.6 (0.0112 3.292/1.8976e9)^0.7 (637.7e3/1.8976e9)^-0.13 m
