@@ -10,3 +10,4 @@ from ehlpetsc.post.fatigue.cycles import rainflow
 from ehlpetsc.post.fatigue.statistics import WeibullFit, weibull_fit
 from ehlpetsc.post.fatigue.strain_life import Material, cycles_to_failure
 from ehlpetsc.post.stresses.half_plane import stress, von_mises
+from ehlpetsc.post.stresses.half_space import StressTensor, stress_plane
