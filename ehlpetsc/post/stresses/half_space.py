@@ -126,8 +126,10 @@ def hat_kernels(x: np.ndarray, y: np.ndarray, z: float, nu: float) -> np.ndarray
 
 
 def plane_strain(kernels: np.ndarray, nu: float) -> np.ndarray:
-    """Kernels (2, 6, ...) of a load that does not depend on y from A, B, C, E of the half plane (4, ...)."""
-    a, b, c, e = -2 / np.pi * kernels
+    """Kernels (2, 6, ...) of a load that does not depend on y from -2/pi times A, B, C, E of the
+    half plane (4, ...).
+    """
+    a, b, c, e = kernels
     zero = np.zeros_like(a)
     return np.stack(
         [
@@ -170,7 +172,7 @@ def _kernels(ny: int, nx: int, width: float, z: float, nu: float, periodic: bool
     distance, rows = np.arange(1.0 - nx, nx), rows_across(ny, periodic)
     kernels = hat_kernels(distance, width * rows, z, nu)
     if periodic:
-        kernels = sum_images(kernels, plane_strain(hat(distance, z), nu))
+        kernels = sum_images(kernels, plane_strain(-2 / np.pi * hat(distance, z), nu))
         rows = np.arange(ny) - ny // 2
     out = np.zeros((LOADS, COMPONENTS, *padded_shape(ny, nx, periodic)))
     out[:, :, rows.astype(int)[:, None], distance.astype(int)] = kernels
