@@ -27,16 +27,23 @@ class Dataset(NamedTuple):
     text: str
     axes: str
 
+    def axes_of(self, count: int) -> list[str]:
+        """Axes of an array with `count` of them: one more, y across, in a plane."""
+        axes = self.axes.split()
+        return axes if count == len(axes) else [*axes[:-1], "y", axes[-1]]
+
 
 NOT_PASSED = "nan where a point did not pass the whole contact"
 DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "damage/s": Dataset("m", "body coordinate, x = s + distance travelled", "s"),
+    "damage/y": Dataset("m", "position across the contact", "y"),
     "damage/z_over_a": Dataset("1", "depth over half-width", "z"),
     "damage/{n}": Dataset("1", f"fatigue damage of one pass; {NOT_PASSED}", "z s"),
     "damage/{n}_cycles": Dataset("1", "counted cycles of a pass", "z s"),
     "damage/{n}_peak_range": Dataset("Pa", "largest equivalent stress range", "z s"),
     "damage/{n}_complete": Dataset("1", "1 where a point entered and left the domain", "s"),
     "asperities/{n}_s": Dataset("m", "body coordinate of asperity peaks", "peak"),
+    "asperities/{n}_y": Dataset("m", "position of asperity peaks across the contact", "peak"),
     "asperities/{n}_height": Dataset("m", "height of asperity peaks", "peak"),
     "asperities/{n}_damage": Dataset("1", "damage under asperity peaks, at the nearest body point", "z peak"),
     "criteria/{criterion}/{n}_damage": Dataset("1", "damage of one pass on the worst plane", "z s"),
@@ -98,6 +105,9 @@ class PostResult:
         Surface whose asperities are evaluated; their heights [m], the damage under them, shape (nz, peaks).
     s, z
         Body points [m]; depths z/a.
+    y
+        Positions across the contact [m]; None for a line contact. Arrays over s then have the shape
+        (..., ny, ns).
     surfaces
         Surfaces with damage.
     damage, complete
@@ -123,6 +133,7 @@ class PostResult:
         asperities = (f"asperities/{self.main}_{name}" for name in ("height", "damage"))
         self.height, self.under = map(self._arrays.get, asperities)
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
+        self.y = self._arrays.get("damage/y")
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
         passed = self._of_surfaces("damage/{n}_complete")
@@ -152,13 +163,13 @@ class PostResult:
 
     def passed(self, surface: str, criterion: str | None = None) -> np.ndarray:
         """Damage (nz, points), or that of a criterion, of the points that passed the whole contact."""
-        values = self.criteria[criterion] if criterion else self.damage
-        return values[surface][:, self.complete[surface]]
+        values = (self.criteria[criterion] if criterion else self.damage)[surface]
+        return values[..., self.complete[surface]].reshape(len(self.z), -1)
 
     def worst_point(self, surface: str) -> tuple[float, float]:
         """(s, z/a) of the largest damage."""
         values = np.nan_to_num(self.damage[surface], nan=-1.0)
-        k, j = np.unravel_index(values.argmax(), values.shape)
+        k, *_, j = np.unravel_index(values.argmax(), values.shape)
         return self.s[j], self.z[k]
 
 

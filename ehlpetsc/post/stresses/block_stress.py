@@ -15,6 +15,7 @@ from scipy import fft
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.body_stress import (
+    COMPONENT_BYTES,
     HATS_PER_ELEMENT,
     OFFSETS,
     hermite_kernels,
@@ -165,6 +166,7 @@ class BlockStress:
 
     def __init__(self, ny: int, nx: int, width: float, depths: np.ndarray, nu: float, periodic: bool) -> None:
         self.rows, self.shape = (ny,), padded_shape(ny, nx, periodic)
+        self.bytes_per_sample = len(depths) * ny * COMPONENTS * COMPONENT_BYTES
         self.tables = [kernel_table(ny, nx, width, depth, nu, periodic) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:

@@ -181,6 +181,7 @@ class BodyStress:
 
     def __init__(self, nx: int, depths: np.ndarray) -> None:
         self.n = padded_length(nx)
+        self.bytes_per_sample = len(depths) * self.components * COMPONENT_BYTES
         self.tables = [kernel_table(nx, depth) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
@@ -251,7 +252,7 @@ def histories(
     """
     samples = int((motion.leave - motion.enter)[points].max()) + 3
     shape = len(stress.tables), points.size, *stress.rows, stress.components, samples
-    found = np.zeros(shape, dtype)
+    found: np.ndarray = np.zeros(shape, dtype)
     by_row = found.reshape(*shape[:2], -1, *shape[-2:])
     weights, places = offset_weights(motion.offset), (motion.shift, motion.enter, motion.leave)
     end = motion.leave[points].max() + 1
