@@ -105,7 +105,8 @@ def kernel_table(ny: int, nx: int, width: float, depth: float, nu: float, period
     rows, columns = padded_shape(ny, nx, periodic)
     along = 2 * np.pi / columns * np.arange(columns // 2 + 1)
     across = 2 * np.pi / (rows * width) * np.arange(rows // 2 + 1)
-    factor = low_pass(np.hypot(along, across[:, None]), depth)
+    wave_number = np.hypot(along, across[:, None])
+    factor = low_pass(wave_number, depth, wave_number.max() * (1 + 1e-9))
     kept = np.s_[: np.count_nonzero(factor[:, 0]), : np.count_nonzero(factor[0])]
     signs = np.where(IS_EVEN_ALONG == IS_EVEN_ACROSS, 1, -1) * np.array([1, -1])[:, None, None]
     turn = signs[..., None, None] * np.exp(1j * along)

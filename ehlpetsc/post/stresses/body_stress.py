@@ -127,14 +127,16 @@ def offset_weights(offset: np.ndarray) -> np.ndarray:
     return BarycentricInterpolator(OFFSETS, np.eye(OFFSETS.size))(offset)
 
 
-def low_pass(wave_number: np.ndarray, depth: float) -> np.ndarray:
-    """Factor of each wave number [1/element]: 1, then falling smoothly to 0. Depth in elements.
+def low_pass(wave_number: np.ndarray, depth: float, highest: float = np.pi) -> np.ndarray:
+    """Factor of each wave number up to the highest [1/element]: 1, then falling smoothly to 0.
+
+    `depth` in elements.
 
     Stresses of load ripples decay with the depth as exp(-k z). The spectra of the kernels at larger wave
     numbers come from the ends of their range, where the load is zero. A sharp cut-off would distribute them
     over all nodes: 2e-5 of the load at z = 0.5 a with 400 nodes; the smooth one leaves less than 1e-9.
     """
-    beyond = wave_number - MAX_KZ / max(depth, MAX_KZ / np.pi)
+    beyond = wave_number - MAX_KZ / max(depth, MAX_KZ / highest)
     t = np.clip(1 - beyond / TAPER_WIDTH, 0, 1)
     return t**5 * (126 - 420 * t + 540 * t**2 - 315 * t**3 + 70 * t**4)  # four flat derivatives
 
