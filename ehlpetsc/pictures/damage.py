@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.pictures import style
+from ehlpetsc.pictures.weibull import weibull_picture
 from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.stresses.half_plane import stress, von_mises
@@ -36,17 +37,23 @@ class Map(NamedTuple):
     is_damage: bool = True
 
 
-def draw(inputs: Sequence[str], outputs: Sequence[str], folder: str) -> list[str]:
-    """Draw all pictures of result files and their post-processing results; returns the names of the files.
+def draw(
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    folder: str,
+    kinds: Callable[[str, PostResult], Iterator[tuple[str, Figure]]] | None = None,
+) -> list[str]:
+    """Draw pictures of result files and their post-processing results; returns the names of the files.
 
-    `folder` is "" for that of each result.
+    `folder` is "" for that of each result. `kinds` yields names and pictures, by default all of
+    :func:`pictures`.
     """
     names = []
     if folder:
         Path(folder).mkdir(parents=True, exist_ok=True)
     for path, output in zip(inputs, outputs, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
-        for kind, figure in pictures(path, PostResult(output)):
+        for kind, figure in (kinds or pictures)(path, PostResult(output)):
             files = [f"{stem}.{kind}.{ending}" for ending in FORMATS]
             style.save(figure, *files)
             names += files
@@ -63,6 +70,12 @@ def pictures(path: str, result: PostResult) -> Iterator[tuple[str, Figure]]:
     if result.height.size:
         yield "exceedance", depth_picture(result)
     yield "stress", field_picture(path, result)
+
+
+def weibull_pictures(path: str, result: PostResult) -> Iterator[tuple[str, Figure]]:
+    """Name and picture of the Weibull distributions, if there are enough asperities."""
+    if any(fit.beta > 0 for fit in result.fits):
+        yield "weibull", weibull_picture(result)
 
 
 def damage_picture(result: PostResult, surface: str) -> Figure:

@@ -41,6 +41,8 @@ def _parser() -> CommandParser:
     also = "also compute, beside the paper's damage: " + ", ".join(CRITERIA)
     add("--criterion", nargs="+", choices=CRITERIA, default=(), metavar="NAME", help=also)
     add("--jobs", type=int, default=1, metavar="N", help="threads (default 1)")
+    weibull = "draw the Weibull distributions of the damage at asperities with their confidence bounds"
+    add("--weibull", action="store_true", help=weibull)
     pictures = "also draw PNG and SVG, in FOLDER or beside the result"
     add("--pictures", nargs="?", const="", metavar="FOLDER", help=pictures)
     return parser
@@ -59,8 +61,8 @@ def _run(chosen: argparse.Namespace) -> int:
     work = [partial(_process, job, files, chosen.overwrite) for job in jobs]
     statuses = [exit_status("post", one, output=job.output) for one, job in zip(work, jobs, strict=True)]
     done = [job for job, status in zip(jobs, statuses, strict=True) if status == ExitStatus.DONE]
-    if chosen.pictures is not None and done:
-        statuses.append(exit_status("post", partial(_draw, done, chosen.pictures), output="pictures"))
+    if done and (chosen.weibull or chosen.pictures is not None):
+        statuses.append(exit_status("post", partial(_draw, done, chosen), output="pictures"))
     return max(statuses)
 
 
@@ -146,8 +148,12 @@ def _summary(output: str, wall: float) -> None:
     )
 
 
-def _draw(jobs: Sequence[Job], folder: str) -> None:
-    from ehlpetsc.pictures.damage import draw
+def _draw(jobs: Sequence[Job], chosen: argparse.Namespace) -> None:
+    from ehlpetsc.pictures.damage import draw, pictures, weibull_pictures
 
-    for name in draw([job.path for job in jobs], [job.output for job in jobs], folder):
-        print(name)
+    kinds = [pictures] if chosen.pictures is not None else []
+    for kind in kinds + [weibull_pictures] * chosen.weibull:
+        for name in draw(
+            [job.path for job in jobs], [job.output for job in jobs], chosen.pictures or "", kind
+        ):
+            print(name)

@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.materials import DEFAULT
+from ehlpetsc.post.fatigue.likelihood import weibull_likelihood
 from ehlpetsc.post.fatigue.statistics import asperities, log_life, weibull_fit
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared
@@ -45,9 +46,13 @@ def datasets_of(
     if profile is not None:
         found |= {f"profile/{surface}_s": profile[0], f"profile/{surface}_z": profile[1]}
     enough = peaks.s.size >= MIN_ASPERITIES
-    fits = [weibull_fit(log_life(row) if enough else []) for row in under]
+    fits = [weibull_fit(log_life(row) if enough else np.empty(0)) for row in under]
     for name, column in zip(WeibullFit._fields, np.array(fits).T, strict=True):
         found[f"weibull/{surface}_{name}"] = column
+    likely = [weibull_likelihood(log_life(row) if enough else np.empty(0)) for row in under]
+    for k, name in enumerate(("alpha", "beta")):
+        found[f"weibull/{surface}_likely_{name}"] = np.array([fit[k] for fit in likely])
+        found[f"weibull/{surface}_{name}_bounds"] = np.array([fit.interval()[k] for fit in likely])
     for depth, count in zip(depths, at_least_one, strict=True):
         if count:
             report(
