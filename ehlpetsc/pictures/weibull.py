@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.likelihood import CONFIDENCE, weibull_likelihood
@@ -28,6 +29,9 @@ def weibull_picture(result: PostResult) -> Figure:
         axes.set_visible(False)
     first = panels[0, 0]
     first.set(xscale="log", ylim=_stretched(np.array([0.005, 0.99])))
+    first.xaxis.set_major_formatter("{x:g}")
+    first.xaxis.set_minor_locator(LogLocator(subs=(2, 4, 6, 8)))
+    first.xaxis.set_minor_formatter("{x:g}")
     first.set_yticks(_stretched(np.array(FRACTIONS)), [f"{100 * share:g}" for share in FRACTIONS])
     figure.supxlabel(r"$-\log_{10} D$ of one pass", fontsize="medium")
     figure.supylabel("asperities of shorter life [%]", fontsize="medium")

@@ -30,7 +30,7 @@ def datasets_of(
     """Datasets of a surface that follow from its damage (depths, points), by name."""
     loads, depths, motion = prepared.loads, prepared.depths, prepared.motions[surface]
     profile = loads.profiles[surface]
-    peaks = asperities(profile, prepared.s, motion.complete, loads.rows, loads.is_periodic)
+    peaks = asperities(profile, prepared.s, motion.complete, loads.rows_in_contact, loads.is_periodic)
     under = np.stack([layer[peaks.at] for layer in damage])
     at_least_one = (under >= 1).sum(axis=1)
     found = {

@@ -27,6 +27,7 @@ class Loads(Result):
     `case`: with the overrides. `dx`, `a`, `p0`: spacing of the nodes [m], Hertz half-width [m], Hertz
         pressure [Pa].
     `rows`: (ny,) of a plane, () of a line contact. `dy`: spacing across [m]. `is_periodic`: of a strip.
+    `rows_in_contact`: True for those (ny,) within the half-width b of a point contact; None for a line.
     `speeds`: speed of each surface in the reference state [m/s].
     `travelled`: distance covered by each surface since time 0 at each frame [m].
     `profiles`: (s, z) of each surface, sorted by s, z of shape (*rows, ns); None for a smooth one.
@@ -41,6 +42,8 @@ class Loads(Result):
         self.rows: tuple[int, ...] = () if self.y is None else self.y.shape
         self.dy = 0.0 if self.y is None else spacing(self.y)
         self.is_periodic = self.attrs.get("kind") == "strip"
+        b = np.inf if self.is_periodic else float(self.attrs.get("b", np.inf))
+        self.rows_in_contact = None if self.y is None else np.abs(self.y) < b
         self.operation = operation_of(self.case, Scales.of(self.case))
         self.travelled = {surface: self._travelled(surface) for surface in SURFACES}
         self.profiles = {surface: self._sorted_profile(surface) for surface in SURFACES}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -112,6 +113,8 @@ class PostResult:
     y
         Positions across the contact [m]; None for a line contact. Arrays over s then have the shape
         (..., ny, ns).
+    section_y
+        Position of a section of a plane [m], otherwise None.
     surfaces
         Surfaces with damage.
     damage, complete
@@ -137,7 +140,7 @@ class PostResult:
         asperities = (f"asperities/{self.main}_{name}" for name in ("height", "damage"))
         self.height, self.under = map(self._arrays.get, asperities)
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
-        self.y = self._arrays.get("damage/y")
+        self.y, self.section_y = self._arrays.get("damage/y"), None
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
         passed = self._of_surfaces("damage/{n}_complete")
@@ -165,6 +168,24 @@ class PostResult:
         columns = [self._arrays[f"weibull/{self.main}_{name}"] for name in WeibullFit._fields]
         return [WeibullFit(*map(float, row)) for row in zip(*columns, strict=True)]
 
+    def section(self, y: float) -> PostResult:
+        """Result along x in the row of a plane nearest to y [m], as that of a line contact."""
+        if self.y is None:
+            raise OutputError(f"{self.path}: a line contact has no sections")
+        row, one = int(np.argmin(np.abs(self.y - y))), copy.copy(self)
+        one.y, one.section_y = None, float(self.y[row])
+        one.damage = {side: values[:, row] for side, values in self.damage.items()}
+        one.criteria = {
+            name: {side: values[:, row] for side, values in found.items()}
+            for name, found in self.criteria.items()
+        }
+        one.profiles = {side: (s, z[row]) for side, (s, z) in self.profiles.items()}
+        one.temperatures = {
+            side: PointTemperatures(*(values[row] for values in found))
+            for side, found in self.temperatures.items()
+        }
+        return one
+
     def passed(self, surface: str, criterion: str | None = None) -> np.ndarray:
         """Damage (nz, points), or that of a criterion, of the points that passed the whole contact."""
         values = (self.criteria[criterion] if criterion else self.damage)[surface]
@@ -172,9 +193,16 @@ class PostResult:
 
     def worst_point(self, surface: str) -> tuple[float, float]:
         """(s, z/a) of the largest damage."""
-        values = np.nan_to_num(self.damage[surface], nan=-1.0)
-        k, *_, j = np.unravel_index(values.argmax(), values.shape)
+        k, *_, j = self._worst(surface)
         return self.s[j], self.z[k]
+
+    def worst_row(self, surface: str) -> float:
+        """y [m] of the largest damage of a plane."""
+        return self.y[self._worst(surface)[1]]
+
+    def _worst(self, surface: str) -> tuple:
+        values = np.nan_to_num(self.damage[surface], nan=-1.0)
+        return np.unravel_index(values.argmax(), values.shape)
 
 
 def damage_beside(result: Result) -> PostResult | None:

@@ -129,7 +129,7 @@ def test_asperities_are_local_maxima(periodic, count):
     s, z = wave_map(40, 120)
     z += 0.01 * np.cos(np.pi * s)
     grid = np.arange(-20.0, 140.0)
-    peaks = asperities((s, z), grid, (grid > 9) & (grid < 111), (40,), periodic)
+    peaks = asperities((s, z), grid, (grid > 9) & (grid < 111), np.ones(40, bool), periodic)
     assert peaks.s.size == count
     assert grid[peaks.point] == pytest.approx(peaks.s)
     assert z[peaks.row, peaks.s.astype(int)] == pytest.approx(peaks.height) and peaks.height.min() > 0.9
@@ -171,3 +171,21 @@ def test_utilisation_does_not_depend_on_the_axes():
         turned = np.ascontiguousarray(rotated(six, angle))
         found = count_utilisation(turned, np.full(4, 40), 0.0, NU, Criteria())
         assert found[:, 0] == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.usefixtures("coarse_pictures")
+def test_pictures_of_a_plane(scene, tmp_path, capsys):
+    """Maps over the surface, a section through the worst row, stresses below, Weibull plots with bounds."""
+    y = scene.x[14:35] - scene.x[24]
+    p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
+    path = write_plane(tmp_path / "point.h5", scene, "point", y, p, depths=(0.0, 0.3))
+    assert main([str(path), "--surface", "2", "--pictures", str(tmp_path), "--weibull"]) == 0
+    drawn = {name.name for name in tmp_path.glob("*.png")}
+    kinds = ("damage_map_2", "damage_2", "exceedance", "stress", "weibull")
+    assert drawn == {f"point.{kind}.png" for kind in kinds}
+    assert set(capsys.readouterr().out.split()) >= {str(tmp_path / name) for name in drawn}
+    result = PostResult(tmp_path / "point.post.h5")
+    section = result.section(result.worst_row("2"))
+    assert np.nanmax(section.damage["2"]) == np.nanmax(result.damage["2"])
+    assert section.worst_point("2") == result.worst_point("2")
+    assert abs(section.section_y) < A / 4  # under the middle of the sphere

@@ -1,9 +1,9 @@
 r"""Weibull distribution by maximum likelihood, with censored lives and confidence bounds.
 
 With :math:`w=\beta\ln(x/\alpha)` a failure at x contributes :math:`\ln\beta+w-e^w`, a life that survived x
-:math:`-e^w`, one that failed before x :math:`\ln(1-\exp(-e^w))` to the logarithm of the likelihood. The bounds
-are normal approximations from the observed Fisher information of :math:`(\ln\alpha,\ln\beta)` (Meeker & Escobar
-(1998), Statistical Methods for Reliability Data, chapter 8): too narrow below ten failures.
+:math:`-e^w`, one that failed before x :math:`\ln(1-\exp(-e^w))` to the log-likelihood. The bounds
+are normal approximations from the observed Fisher information of :math:`\ln\alpha` and :math:`\ln\beta`
+(Meeker & Escobar (1998), Statistical Methods for Reliability Data, chapter 8): too narrow below ten failures.
 """
 
 from __future__ import annotations

@@ -28,27 +28,27 @@ def asperities(
     profile: tuple[np.ndarray, np.ndarray] | None,
     s: np.ndarray,
     complete: np.ndarray,
-    rows: tuple[int, ...] = (),
+    rows: np.ndarray | None = None,
     periodic: bool = False,
 ) -> Asperities:
     """Peaks of a surface (s, z) among the body points that passed the whole contact; none if it is smooth.
 
-    `s` are the uniform body points [m], `complete` is true for those that passed. Of a map z (*rows, n) they
-    are its local maxima, `periodic` across or not; a profile has no rows.
+    `s` are the uniform body points [m], `complete` is true for those that passed. Of a map z (ny, n) they are
+    its local maxima, `periodic` across or not, in the `rows` (ny,) that are True; a profile has no rows.
     """
     none = np.empty(0, int)
     if profile is None or not complete.any():
-        return Asperities(np.empty(0), np.empty(0), none, none if rows else None)
+        return Asperities(np.empty(0), np.empty(0), none, None if rows is None else none)
     abscissae, heights = profile
     passed = s[complete]
     inside = (abscissae >= passed[0]) & (abscissae <= passed[-1])
     rough = np.std(heights[..., inside]) if inside.any() else 0.0
     prominence = max(MIN_PROMINENCE * float(rough), float(np.finfo(float).tiny))
     at = np.array(_maxima(heights, prominence, periodic))
-    at = at[:, inside[at[-1]]]
+    at = at[:, inside[at[-1]] & (True if rows is None else rows[at[0]])]
     peaks = abscissae[at[-1]]
     nearest = np.rint((peaks - s[0]) / (s[1] - s[0])).astype(int)
-    return Asperities(peaks, heights[tuple(at)], nearest, at[0] if rows else None)
+    return Asperities(peaks, heights[tuple(at)], nearest, None if rows is None else at[0])
 
 
 def _maxima(heights: np.ndarray, prominence: float, periodic: bool) -> tuple[np.ndarray, ...]:
