@@ -189,3 +189,18 @@ def test_pictures_of_a_plane(scene, tmp_path, capsys):
     assert np.nanmax(section.damage["2"]) == np.nanmax(result.damage["2"])
     assert section.worst_point("2") == result.worst_point("2")
     assert abs(section.section_y) < A / 4  # under the middle of the sphere
+
+
+def test_critical_plane_of_six_components():
+    """As of three under plane strain, to the resolution of the search, and in axes turned by any angle."""
+    from ehlpetsc.post.criteria.critical_plane import count_on_planes
+    from ehlpetsc.post.criteria.laws import Criteria
+
+    line, six = random_histories(3)
+    constants = {"material": Material(), "constants": Criteria(), "strain": "neuber"}
+    expected = count_on_planes(line, np.full(4, 40), 0.0, **constants)[:, 0]
+    for angle in (0.0, 0.5):
+        turned = np.ascontiguousarray(rotated(six, angle))
+        found = count_on_planes(turned, np.full(4, 40), 0.0, **constants)[:, 0]
+        assert found == pytest.approx(expected, rel=0.05)
+    assert (expected > 0).all()
