@@ -109,7 +109,8 @@ class Result:
         self.step = file["step"][: self._frames]
         self.steps = Steps(file["steps"], path)
         self.scalars = self.steps.names
-        self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim > 1]
+        datasets = {name: item for name, item in file.items() if isinstance(item, h5py.Dataset)}
+        self.fields = [n for n, d in datasets.items() if d.ndim > 1 and n != "contact_count"]
         self.x, self.contact_count = file["x"][:], file["contact_count"][:]
         self.y = file["y"][:] if "y" in file else None
 

@@ -7,26 +7,22 @@ from support.made_loads import P0, A, write
 FRICTION = 0.05
 
 
-def write_plane(path, scene, kind, y, pressure, maps=None, **options):
+def write_plane(path, scene, kind, y, pressure, maps=None, extra=None, **options):
     """Write a result of a plane with the case and the steps of a line's `Scene`.
 
     `kind`: "strip" or "point". `pressure` (frames, ny, nx). `maps`: heights (ny, ns) by surface over the
-    abscissae of the scene's profiles. `options`: of :func:`write`.
+    abscissae of the scene's profiles. `extra`: other fields by name. `options`: of :func:`write`.
     """
 
     def edit(file):
-        loads = {
-            "pressure": pressure,
-            "shear_stress_1": -FRICTION * pressure,
-            "shear_stress_2": FRICTION * pressure,
-        }
+        drag, shape = FRICTION * pressure, pressure.shape[1:]
+        fields = {"pressure": pressure, "shear_stress_1": -drag, "shear_stress_2": drag} | (extra or {})
         file.attrs.update(kind=kind, b=A)
         file["y"] = y
-        for name, values in loads.items():
-            del file[name]
-            file.create_dataset(
-                name, data=values, maxshape=(None, *values.shape[1:]), chunks=(4, *values.shape[1:])
-            )
+        for name, values in fields.items():
+            if name in file:
+                del file[name]
+            file.create_dataset(name, data=values, maxshape=(None, *shape), chunks=(4, *shape))
         for side in ("1", "2"):
             profile = file[f"surface/{side}/z"][:]
             del file[f"surface/{side}/z"]

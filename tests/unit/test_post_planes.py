@@ -118,6 +118,23 @@ def test_command_on_a_point(scene, tmp_path, capsys):
         assert across == pytest.approx(nearest, abs=0.51 * (y[1] - y[0]))
 
 
+def test_temperatures_of_a_plane(scene, tmp_path):
+    """Row by row: a rise that grows across and moves with the surface."""
+    y = scene.x[20:29] - scene.x[24]
+    p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
+    rise = np.arange(y.size)[:, None] * np.exp(-((scene.x / A) ** 2))
+    heat = '[heat]\nbulk_temperature = [350.0, 360.0]\n[fluid]\nviscosity = 0.005\nlaw = "barus"\n'
+    heat += 'pressure_viscosity = 11.1e-9\ndensity = "incompressible"\n'
+    extra = {"temperature_1": np.broadcast_to(350.0 + rise, p.shape)}
+    path = write_plane(tmp_path / "hot.h5", scene, "point", y, p, extra=extra, depths=(0.0,), post=heat)
+    run(Job(str(path), str(tmp_path / "hot.post.h5"), ("1",)))
+    result = PostResult(tmp_path / "hot.post.h5")
+    flash = result.temperatures["1"].flash[:, result.complete["1"]]
+    assert flash == pytest.approx(np.tile(np.arange(y.size)[:, None], flash.shape[1]), abs=0.05)
+    section = result.section(y[3])
+    assert section.temperatures["1"].flash[section.complete["1"]] == pytest.approx(flash[3])
+
+
 def wave_map(ny, ns):
     s, y = np.arange(ns) * 1.0, np.arange(ny) * 1.0
     return s, np.sin(2 * np.pi * s / 20) * np.sin(2 * np.pi * (y[:, None] + 5) / 20)
