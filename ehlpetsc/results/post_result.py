@@ -140,7 +140,8 @@ class PostResult:
         asperities = (f"asperities/{self.main}_{name}" for name in ("height", "damage"))
         self.height, self.under = map(self._arrays.get, asperities)
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
-        self.y, self.section_y = self._arrays.get("damage/y"), None
+        self.y = self._arrays.get("damage/y")
+        self.section_y: float | None = None
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
         passed = self._of_surfaces("damage/{n}_complete")

@@ -92,4 +92,5 @@ def _maximum(log_x: np.ndarray, failed: np.ndarray, before: np.ndarray) -> Weibu
     start = np.log([alpha, beta])
     parts = {"jac": lambda theta: terms(theta)[1], "hess": lambda theta: terms(theta)[2]}
     best = minimize(lambda theta: terms(theta)[0], start, method="trust-exact", tol=1e-10, **parts).x
-    return WeibullLikelihood(*map(float, np.exp(best)), np.linalg.inv(terms(best)[2]))
+    scale, shape = map(float, np.exp(best))
+    return WeibullLikelihood(scale, shape, np.linalg.inv(terms(best)[2]))
