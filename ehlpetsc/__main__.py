@@ -31,6 +31,7 @@ COMMANDS = {  # module and its function, by default main, packages that it needs
     "ensemble": ("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
     "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
+    "surface": ("ehlpetsc.pictures.surface", DRAWING, "roughness parameters of a profile or map file"),
     "explain": ("ehlpetsc.run.explain", FORECAST, "film, run time and effects of a case, before it runs"),
     "keys": ("ehlpetsc.case.keys", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": ("ehlpetsc.case.keys:template_command", READING, "a commented case to begin with"),
@@ -48,6 +49,8 @@ def main(words: list[str] | None = None) -> int:
         sys.stdout.flush()
     except SystemExit:
         raise
+    except CaseError as error:  # laws and effects of the user, as a command imports them
+        status = refuse(str(error))
     except BrokenPipeError:  # the reader has gone, as `head -1` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = ExitStatus.STOPPED

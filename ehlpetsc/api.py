@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from ehlpetsc.case.tables import Case
     from ehlpetsc.effects.effect import Effect
-    from ehlpetsc.physics.laws import Law
+    from ehlpetsc.physics.law import Law
 
 __all__ = ["Result", "read_result", "solve"]
 
@@ -73,6 +73,7 @@ def solve(
     overwrite: bool = False,
     progress: bool | None = None,
     laws: Mapping[str, Law] | None = None,
+    density_laws: Mapping[str, Law] | None = None,
     effects: Iterable[type[Effect]] = (),
 ) -> Result:
     """Solve a case.
@@ -96,7 +97,7 @@ def solve(
         replaced, and an unfinished run of it is continued from its restart file.
     progress
         Whether to show progress; by default on a terminal and in a notebook.
-    laws, effects
+    laws, density_laws, effects
         As of `ehlpetsc.load`.
 
     Raises
@@ -126,7 +127,7 @@ def solve(
     from ehlpetsc.run.solve import solve as write_states
     from ehlpetsc.run.stop import StopRequest
 
-    extend(laws or {}, effects)
+    extend(laws, density_laws, effects)
     simulation = Simulation(case, comm, options)
     time = simulation.case.time
     if time is not None and time.passes > 1:

@@ -9,8 +9,10 @@ FRONT = "README"
 SECTIONS = {
     "User guide": (
         "cases/README",
+        "cases/surfaces",
         "cases/contact",
         "cases/heat",
+        "cases/measured",
         "cases/gears",
         "cases/life",
         "ehlpetsc/run/README",

@@ -117,19 +117,24 @@ _KEPT: list[Any] = []  # compiled laws of the user, which must outlive their add
 
 
 @cache
-def address_of(law: Callable, count: int) -> int:
-    """Address, for `call_at`, of a law of two state variables and `count` constants, which is compiled."""
+def address_of(law: Callable, count: int, state: int) -> int:
+    """Address, for `call_at`, of a law of one or two `state` variables and `count` constants, compiled."""
     function, real = numba.njit(error_model="numpy")(law), numba.float64
     pointer = numba.types.CPointer(real)
+    if state == 1:
 
-    @numba.cfunc(numba.void(real, real, pointer, pointer))
-    def call(p: float, T: float, constants: Any, found: Any) -> None:
-        values = numba.carray(found, 3)
-        given = to_fixed_tuple(numba.carray(constants, count), count)
-        values[0], values[1], values[2] = function(p, T, *given)
+        def call(p: float, T: float, constants: Any, found: Any) -> None:
+            values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
+            values[0], values[1] = function(p, *given)
 
-    _KEPT.append(call)
-    return call.address
+    else:
+
+        def call(p: float, T: float, constants: Any, found: Any) -> None:
+            values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
+            values[0], values[1], values[2] = function(p, T, *given)
+
+    _KEPT.append(numba.cfunc(numba.void(real, real, pointer, pointer))(call))
+    return _KEPT[-1].address
 
 
 def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:

@@ -38,6 +38,8 @@ class Key:
         Meaning, for the page of keys and for messages; symbols and equations in backticks.
     unit
         SI unit of the stored value; "": a pure number.
+    is_difference
+        Whether a value in K is a difference of temperatures: 17 degC is then 17 K.
     kind
         float, int, bool or str; dict: a table with any keys; object: anything. With choices always str.
     default
@@ -48,7 +50,7 @@ class Key:
         Keys of the table, or tables (``"[gears]"``), that provide the value of a required key.
     many
         "": one value; "both": one for both surfaces or a list of one for each, stored as a pair; "two": a
-        list of two; "axes": one, or a list of two, along and across; "list".
+        list of two; "axes": one, or a list of two, along and across; "list"; "list or matrix", of rows.
     min_items, max_items
         Length of a list, or of a text.
     needs
@@ -79,6 +81,7 @@ class Key:
     needs: tuple[str, ...] = ()
     below: str = ""
     equation: str = ""
+    is_difference: bool = False
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
 

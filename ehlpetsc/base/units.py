@@ -51,8 +51,10 @@ OTHERS = {
 ZEROS = {"degC": 273.15, "°C": 273.15, "C": 273.15, "degF": 459.67 * 5 / 9}  # K
 SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*"} | {"²": "^2", "³": "^3"})
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
+COMMA = re.compile(r"\s*[-+]?[\d.]*,[\d.,]*\d.*|\s*[-+]?\d[\d.]*,.*")
 TOKEN = r"\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?)|([A-Za-z%°]+)(?:(?:\^|\*\*)?([-+]?\d))?|([*/()]))"
 ANY = "a number, or %"  # where there is no unit
+OIL_DENSITY = 870.0  # kg/m^3, of the example in a message
 MAX_DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
 
 
@@ -60,25 +62,33 @@ class UnitFault(ValueError):
     """A value with a unit cannot be converted; the message states the reason."""
 
 
-def converted(value: object, unit: str, depth: int = 2) -> object:
-    """Number in `unit` of a text with a unit, also in lists; other values do not change."""
+def converted(value: object, unit: str, is_difference: bool = False, depth: int = 2) -> object:
+    """Number in `unit` of a text with a unit, also in lists; other values do not change.
+
+    `is_difference`: of temperatures, which have no zero to add.
+    """
     if isinstance(value, list) and depth:
-        return [converted(item, unit, depth - 1) for item in value]
+        return [converted(item, unit, is_difference, depth - 1) for item in value]
     match = VALUE.fullmatch(value) if isinstance(value, str) else None
+    if isinstance(value, str) and COMMA.fullmatch(value):
+        point = value.replace(".", "").replace(",", ".", 1).strip()
+        raise UnitFault(f'"{value}": a comma in a number; allowed: digits and a decimal point, as "{point}"')
     if not match:
         return value
     number, text = float(match[1]), match[2].strip()
     try:
-        zero = ZEROS.get(text, 0.0) if unit == "K" else 0.0
-        return float(f"{number * factor(text, unit) + zero:.{MAX_DIGITS}g}")
+        zero = ZEROS.get(text, 0.0) if unit == "K" and not is_difference else 0.0
+        return float(f"{number * factor(text, unit, number) + zero:.{MAX_DIGITS}g}")
     except UnitFault as fault:
         raise UnitFault(f'"{value}": {fault}') from None
 
 
-def factor(text: str, unit: str) -> float:
+def factor(text: str, unit: str, number: float = 1.0) -> float:
     """Number of `unit` in one unit of `text`: 1000 of "kN" in "N".
 
     A rate [1/min] counts revolutions: an angle over time is divided by that of a revolution.
+
+    `number`: value in `text`, for messages.
     """
     try:
         size, dimensions = _unit(text)
@@ -89,6 +99,19 @@ def factor(text: str, unit: str) -> float:
     wanted_size, wanted = _unit(unit)
     if unit == "1/min" and dimensions == (*wanted[:-1], 1):
         size, dimensions = size / (2 * pi), wanted
+    kinematic, dynamic = _unit("m^2/s")[1], _unit("Pa s")[1]
+    if (dimensions, wanted) == (kinematic, dynamic):
+        value = 1e3 * number * size * OIL_DENSITY
+        raise UnitFault(
+            f"kinematic, and this key is dynamic; allowed: this times the density, at {OIL_DENSITY:g} kg/m^3 "
+            f'"{value:.4g} mPa s"'
+        )
+    if (dimensions, wanted) == (dynamic, kinematic):
+        value = 1e6 * number * size / OIL_DENSITY
+        raise UnitFault(
+            f"dynamic, and this key is kinematic; allowed: this over the density, at {OIL_DENSITY:g} kg/m^3 "
+            f'"{value:.4g} cSt"'
+        )
     if dimensions != wanted:
         raise UnitFault(f"not a unit of this key; allowed: {f'one of {unit}' if unit else ANY}")
     return size / wanted_size

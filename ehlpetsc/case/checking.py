@@ -5,6 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from operator import ge, gt, le, lt
 from typing import Any, NamedTuple, TypeGuard
 
@@ -46,7 +47,7 @@ def in_si(data: Tables) -> list[Fault]:
     for holder, name, key, place in [*_entries(data, CASE, ""), *_series_entries(data.get("series"))]:
         if key and key.kind is float and key.unit not in NUMBERS_ONLY:
             try:
-                holder[name] = converted(holder[name], key.unit)
+                holder[name] = converted(holder[name], key.unit, key.is_difference)
             except UnitFault as fault:
                 faults.append(Fault(place, f"{place} = {fault}"))
     return faults
@@ -90,10 +91,10 @@ def check(
             faults.append(Fault(place, ""))
         elif value is None and not (key.table and key.table.always):
             faults += _missing(place, key, data, root)
-            values[_attribute(name)] = key.default
+            values[attribute(name)] = key.default
         else:
             given = {} if value is None else value
-            values[_attribute(name)], found = _checked(place, key, given, data, root, known)
+            values[attribute(name)], found = _checked(place, key, given, data, root, known)
             faults += found
     for name in data:
         if name not in table.keys:
@@ -165,6 +166,13 @@ def _value(key: Key, value: Any) -> Any:
         value = [value, value]
     if not key.many or key.many == "axes" and not isinstance(value, list | tuple):
         return _item(key, value)
+    if key.many == "list or matrix" and isinstance(value, list | tuple) and value:
+        key = replace(key, many="list")
+        if isinstance(value[0], list | tuple):
+            rows = [_value(key, row) for row in value]
+            if len(rows) < key.min_items or len(set(map(len, rows))) > 1:
+                raise _Wrong
+            return rows
     shortest, longest = (
         (2, 2) if key.many in ("both", "two", "axes") else (key.min_items, key.max_items or math.inf)
     )
@@ -217,6 +225,6 @@ def _refused(table: KeyTable, data: Tables, where: str, refused: Refused) -> Fau
     return Fault(place, f"{place} = {show(data[refused.key])}: {reason}")
 
 
-def _attribute(name: str) -> str:
+def attribute(name: str) -> str:
     """Attribute of a key: `lambda_`, `body_1`."""
     return f"body_{name}" if name.isdigit() else f"{name}_" if keyword.iskeyword(name) else name

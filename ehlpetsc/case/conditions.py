@@ -36,6 +36,7 @@ def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[fl
 
     try:
         columns, header = text_columns(path)
+        columns = columns[~np.isnan(columns).all(axis=1)]
     except OSError as error:
         raise ProfileError(f"cannot be read: {error.strerror}: {path}") from None
     headings = [line.partition("#")[0].strip() for line in header.splitlines()]

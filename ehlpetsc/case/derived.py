@@ -15,11 +15,12 @@ from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, na
 from ehlpetsc.case.checking import FAULTY, Fault, Tables, check, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
 from ehlpetsc.physics.oils import OILS
+from ehlpetsc.physics.rheology import SHEAR_LAWS
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.physics.viscosity_laws import (
-    STANDARD_TEMPERATURE,
     gold_pressure_viscosity,
     roelands_slope_of_secant,
     walther,
@@ -27,6 +28,7 @@ from ehlpetsc.physics.viscosity_laws import (
 )
 
 if TYPE_CHECKING:
+    from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
 
 MEASURED_KEY = "asperity_height"
@@ -87,18 +89,17 @@ def _slope(secant: float, fluid: Tables) -> float:
 
 
 def _with_oil(tables: Tables) -> Tables:
-    """Constants of a measured oil; a case that gives an Eyring stress has none of Carreau's law."""
+    """Constants of a measured oil; a case that gives a stress of a shear law has none of the oil's."""
     fluid, heat = tables["fluid"], tables.get("heat", {})
     oil, temperature = OILS[fluid["oil"]], _oil_temperature(fluid, heat) or STANDARD_TEMPERATURE
     if not 200.0 < temperature < 700.0:
         return tables
-    of_fluid, of_heat = oil.at(temperature), oil.heat
-    if "eyring_stress" in fluid:
-        of_fluid = {key: value for key, value in of_fluid.items() if not key.startswith("carreau")}
-    if "viscosity_temperature" in heat:
-        of_heat = {key: value for key, value in of_heat.items() if key != "roelands_s0"}
+    of_fluid = oil.at(temperature)
+    if any(key in fluid for law in SHEAR_LAWS.values() for key in list(law.keys)[:1]):
+        of_shear = {key for law in SHEAR_LAWS.values() for key in law.keys}
+        of_fluid = {key: value for key, value in of_fluid.items() if key not in of_shear}
     tables = tables | {"fluid": of_fluid | fluid}
-    return tables | {"heat": of_heat | heat} if heat else tables
+    return tables | {"heat": oil.heat | heat} if heat else tables
 
 
 def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:
@@ -190,13 +191,36 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     def relative(temperature: np.ndarray) -> np.ndarray:
         return 1.0 + 516.0 * (1.0 / temperature - 1.0 / 311.0)
 
+    path = path_of_contact(case.gears.pair)
     return Rating(
-        path_of_contact(case.gears.pair),
+        path,
         modulus_of(case),
         roughness,
         lambda T: fluid.viscosity * np.exp(viscosity(0.0 * T, fluid, thermal, T)[0]),
         lambda T: fluid.pressure_viscosity * relative(T) / relative(reference),
+        None if roughness else _film_friction(case, path),
         bulk,
         (heat.inlet_temperature if heat else None) or reference,
         (solids[0].effusivity, solids[1].effusivity),
+        case.gears.oil_factor,
     )
+
+
+def _film_friction(case: Values, path: ContactPath) -> np.ndarray:
+    """Coefficient of friction of the smooth isothermal film along a path of contact, 0 without load."""
+    from ehlpetsc.gears.path import hertz
+    from ehlpetsc.physics.film_formulas import contact_films
+    from ehlpetsc.physics.flash_temperature import expected_friction
+    from ehlpetsc.physics.geometry import GEOMETRIES
+    from ehlpetsc.physics.operation import Conditions
+
+    modulus, found = modulus_of(case), np.zeros(len(path.rho))
+    columns = zip(path.load, path.radius, path.speed_1, path.speed_2, strict=True)
+    half_widths = hertz(path, modulus)[0]
+    for k, conditions in enumerate(map(Conditions._make, columns)):
+        if conditions.load > 0.0:
+            film, _ = contact_films(GEOMETRIES["line"], modulus, math.inf, case.fluid, conditions)
+            found[k] = expected_friction(
+                case.fluid, conditions.load, half_widths[k], conditions.sliding, film
+            )
+    return found

@@ -18,10 +18,10 @@ from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_column
 from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
-from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.case.tables.surface import PROFILE, SIDES, areal_keys
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.laws import Law
+from ehlpetsc.physics.law import Law
 from ehlpetsc.physics.scales import Scales
 
 DICT_NAME = "case"  # name of a case without a file in messages
@@ -35,6 +35,7 @@ def load(
     overrides: Overrides = None,
     *,
     laws: Mapping[str, Law] | None = None,
+    density_laws: Mapping[str, Law] | None = None,
     effects: Iterable[type[Effect]] = (),
 ) -> Case:
     """Read and check a case; raises `CaseError` with all faults, one message each.
@@ -47,9 +48,9 @@ def load(
     overrides
         ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
         syntax, otherwise text.
-    laws, effects
-        Viscosity laws by name and effects of your own, which with their keys and quantities are known to the
-        process from then on.
+    laws, density_laws, effects
+        Viscosity and density laws by name, and effects, of your own. With their keys and quantities they are
+        known to the process from then on; names of built-in ones are refused.
 
     Examples
     --------
@@ -58,7 +59,7 @@ def load(
     >>> case.fluid.viscosity, case.contact.radius  # Pa s, m
     (0.003, 0.0191)
     """
-    extend(laws or {}, effects)
+    extend(laws, density_laws, effects)
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
     written, folder = copy.deepcopy(data), Path(path).parent
@@ -199,7 +200,10 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
-        if spec is None or spec.synthetic:  # smooth, or its faults are reported with its keys
+        of_maps = areal_keys(spec) if spec else []
+        reason = "of maps, and a line contact has profiles; leave it out"
+        faults += [Fault("", f"surface.{side}.{key}: {reason}") for key in of_maps]
+        if spec is None or spec.synthetic or of_maps:  # smooth, or its faults are reported with its keys
             continue
         try:
             _check_profile(folder, spec, case)

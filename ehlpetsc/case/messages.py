@@ -29,7 +29,7 @@ def _kind(key: Key) -> str:
             return f"a list of {choices}"
         return f"one of {choices}" + (", or a list of two of them" if key.many == "both" else "")
     plural = PLURALS.get(key.kind)
-    if key.many == "both":
+    if key.many in ("both", "axes"):
         return f"{NAMES[key.kind]} or a list of two {plural}"
     if key.many:
         return f"a list{' of two' if key.many == 'two' else ' of' if plural else ''} {plural or ''}".strip()
@@ -43,7 +43,7 @@ def allowed(key: Key) -> str:
 
 def celsius(key: Key, value: object) -> str:
     """Hint to degrees Celsius where a number would be allowed as such; "" otherwise."""
-    if key.unit != "K" or not isinstance(value, int | float) or not abs(value) < 1e4:
+    if key.unit != "K" or key.is_difference or not isinstance(value, int | float) or not abs(value) < 1e4:
         return ""
     return f'; "{value:g} degC"?' if key.ge <= value + 273.15 <= key.le else ""
 

@@ -112,7 +112,10 @@ STEP_SCALARS = {
         "1", "magnitude of the mean friction force of both walls over load", over_run="last", summary=".4g"
     ),
     "film_central": StepScalar(
-        "m", "mean film of the middle half of the Hertz contact", over_run="last", summary=".4g"
+        "m",
+        "mean film of the middle half of the Hertz contact of the instant",
+        over_run="last",
+        summary=".4g",
     ),
     "lambda_ratio": StepScalar(
         "1", "expected smooth minimum film over the combined Rq", over_run="last", summary=".4g"
@@ -180,7 +183,16 @@ def add_quantities(kind: type[Effect]) -> None:
     FIELDS.update({name: replace(field, only=kind.name) for name, field in kind.fields.items()})
     STORED.extend(name for name in kind.fields if name not in STORED)
     STEP_SCALARS.update({name: replace(scalar, only=kind.name) for name, scalar in kind.scalars.items()})
-    OTHERS.update({f"surface/{name}": field for name, field in kind.surface.items()})
+    OTHERS.update(_on_surfaces(kind))
+
+
+def quantities_of(kind: type[Effect]) -> dict[str, Field]:
+    """Quantities of an effect by their names in the tables."""
+    return {**kind.fields, **kind.scalars, **_on_surfaces(kind)}
+
+
+def _on_surfaces(kind: type[Effect]) -> dict[str, Field]:
+    return {f"surface/{name}": field for name, field in kind.surface.items()}
 
 
 def of_case(table: dict[str, Field], case: Case) -> list[str]:

@@ -13,6 +13,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
+MIN_TIP_THICKNESS = 0.2  # of the module: thinner tips chip
+LOAD_RATIO = 2 / 3, 3 / 2  # of given loads to that of the torque: room for dynamic and face load factors
+FITTING_LOAD_RATIO = 0.9, 1.1  # without a note
+FLANK_NAMES = "pinion", "wheel"
 
 
 def involute(angle: float) -> float:
@@ -105,6 +109,32 @@ class GearPair:
         tips = [d - self.transverse_module * z for d, z in zip(self.tip_diameter, self.teeth, strict=True)]
         difference = 0.5 * (tips[0] - tips[1]) / self.module
         return 0.5 * (both + difference), 0.5 * (both - difference)
+
+    @property
+    def tip_thicknesses(self) -> tuple[float, ...]:
+        r"""Transverse thickness of the tips [m].
+
+        :math:`s_a=d_a[(\frac\pi2+2x\tan\alpha_n)/z+inv\,\alpha_t-inv\,\alpha_a]`,
+        :math:`\cos\alpha_a=2r_b/d_a`; below 0 both flanks meet within the tooth.
+        """
+        tangent, found = math.tan(math.radians(self.pressure_angle)), []
+        for z, x, d, r in zip(self.teeth, self.shifts, self.tip_diameter, self.base_radii, strict=True):
+            half_turn = (0.5 * math.pi + 2.0 * x * tangent) / z
+            at_tip = involute(math.acos(2.0 * r / d))
+            found.append(d * (half_turn + involute(self.transverse_angle) - at_tip))
+        return tuple(found)
+
+    @property
+    def undercut_shifts(self) -> tuple[float, ...]:
+        r"""Profile shifts below which a rack undercuts, addendum - :math:`z\sin^2\alpha_t/(2\cos\beta)`."""
+        per_tooth = 0.5 * math.sin(self.transverse_angle) ** 2 / math.cos(math.radians(self.helix_angle))
+        return tuple(self.addendum - per_tooth * z for z in self.teeth)
+
+    @property
+    def load_ratio(self) -> float:
+        """Given load of all pairs in contact, mean over the path, over that of the torque."""
+        load, path = np.asarray(self.load), np.asarray(self.path)
+        return float(0.5 * (load[1:] + load[:-1]) @ np.diff(path) / self.base_pitch / self.normal_load)
 
     @property
     def rule(self) -> str:
@@ -249,14 +279,64 @@ class GearPair:
                 f"centre_distance = {self.centre_distance:g}: the base circles overlap; allowed: above "
                 f"{sum(r_b):.5g} m, the sum of their radii"
             )
-        for name, d, r in zip(("pinion", "wheel"), self.tip_diameter, r_b, strict=True):
+        for name, d, r in zip(FLANK_NAMES, self.tip_diameter, r_b, strict=True):
             if not d > 2.0 * r:
                 faults.append(
                     f"tip_diameter = {d:g} of the {name}: no involute flank below its base circle; allowed: "
                     f"above {2.0 * r:.5g} m"
                 )
         faults = faults or self._faults_of_the_path() or self._faults_of_the_shift()
+        faults = faults or self._faults_of_the_tips() or self._faults_of_the_load()
         return [f"gears.{fault}" for fault in faults]
+
+    def notes(self) -> list[str]:
+        """Warnings of thin tips, of undercut and of loads that differ from the torque's, with the key."""
+        notes = []
+        for name, thickness in zip(FLANK_NAMES, self.tip_thicknesses, strict=True):
+            if thickness < MIN_TIP_THICKNESS * self.module:
+                notes.append(
+                    f"gears.tip_diameter: the tips of the {name} are {1e3 * thickness:.3g} mm thick, below "
+                    f"{MIN_TIP_THICKNESS:g} modules; a smaller profile_shift or tip diameter thickens them"
+                )
+        for name, x, least in zip(FLANK_NAMES, self.shifts, self.undercut_shifts, strict=True):
+            if x < least:
+                notes.append(
+                    f"gears.profile_shift = {x:.3g} of the {name}: a rack undercuts its teeth below "
+                    f"{least:.3g}; the flank is computed as if it were an involute to the base circle"
+                )
+        low, high = FITTING_LOAD_RATIO
+        if self.load is not None and not low <= self.load_ratio <= high:
+            notes.append(
+                f"gears.load: of all pairs, in the mean, {self.load_ratio:.3g} of the load of gears.torque, "
+                "by which losses are computed"
+            )
+        return notes
+
+    def _faults_of_the_tips(self) -> list[str]:
+        """Tips at which both flanks meet below the tip diameter."""
+        return [
+            f"tip_diameter = {d:.5g} of the {name}: its teeth are pointed below it, the thickness of the tip "
+            f"is {1e3 * thickness:.3g} mm; allowed: above 0 mm, by a smaller profile_shift or tip diameter"
+            for name, d, thickness in zip(FLANK_NAMES, self.tip_diameter, self.tip_thicknesses, strict=True)
+            if thickness <= 0.0
+        ]
+
+    def _faults_of_the_load(self) -> list[str]:
+        """Given loads at positions off the line of action, or that do not fit the torque."""
+        if self.load is None:
+            return []
+        if max(map(abs, self.path)) > self.line_of_action:
+            return [
+                f"path = {self.path[0]:g} to {self.path[-1]:g} m from the pitch point; allowed: within "
+                f"{self.line_of_action:.3g} m, the line of action; a unit, path [mm], is read"
+            ]
+        (low, high), ratio = LOAD_RATIO, self.load_ratio
+        if not low <= ratio <= high:
+            return [
+                f"load: of all pairs, in the mean, {ratio:.3g} of the {1e-3 * self.normal_load:.4g} kN/m of "
+                f"torque = {self.torque:g}; allowed: {low:.2g} to {high:.2g}; a unit, load [N/mm], is read"
+            ]
+        return []
 
     def _faults_of_the_shift(self) -> list[str]:
         """The first given length that is not that of the profile shift."""

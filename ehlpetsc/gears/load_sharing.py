@@ -12,7 +12,7 @@ line of action, approach each other by :math:`\delta` and carry :math:`k\max(\de
     :math:`\kappa=c'C_a/w'<1`, a load :math:`\frac12(1-\kappa)` is left at A.
 ``thirds``
     From a third at A to two thirds at B, linear, for teeth without relief (ISO/TR 13989-1); beyond A and E
-    the third falls to zero as the load of an edge does with c'.
+    the third falls to zero as the load of an edge does with c', as much less the others.
 
 A helical pair is cut into slices across the face, each a spur pair ahead of or behind the one in the middle,
 which is the pair of the path; all slices approach by the same :math:`\delta`.
@@ -32,6 +32,7 @@ RULES = ("thirds", "tip-relief", "stiffness")
 SLICES = 41  # of a helical pair
 EDGE_SAMPLES = 2001
 NEVER = 1.0  # m: gap of flanks that do not touch
+ROUNDING = 1e-9  # of the base pitch: a pair that near to A to E is not beyond them
 END_STIFFNESS = 0.55  # of a pair at A and E, over that in the middle
 
 
@@ -124,18 +125,20 @@ def pair_loads(pair: GearPair, rho: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _thirds(pair: GearPair, rho: np.ndarray) -> np.ndarray:
-    rho = np.asarray(rho, dtype=float)
-    points = pair.points
+    rho, points, rounding = np.asarray(rho, dtype=float), pair.points, ROUNDING * pair.base_pitch
+
+    def is_beyond(at: np.ndarray) -> np.ndarray:
+        return (at < points["A"] - rounding) | (at > points["E"] + rounding)
 
     def beyond(at: np.ndarray) -> np.ndarray:
         loaded = 1.0 - corner_gap(pair, at) * single_stiffness(pair) / pair.normal_load
-        return np.where((at < points["A"]) | (at > points["E"]), np.maximum(loaded, 0.0) / 3.0, 0.0)
+        return np.where(is_beyond(at), np.maximum(loaded, 0.0) / 3.0, 0.0)
 
-    alone = (rho > points["B"]) & (rho < points["D"])
-    both = (1.0 + np.minimum(*_inwards(pair, rho))) / 3.0
-    others = beyond(rho - pair.base_pitch) + beyond(rho + pair.base_pitch)
-    inside = np.where(alone, 1.0 - others, both)
-    return np.where((rho < points["A"]) | (rho > points["E"]), beyond(rho), inside)
+    alone = (rho > points["B"] + rounding) & (rho < points["D"] - rounding)
+    inwards = np.minimum(*_inwards(pair, rho))  # 1 of a pair alone, in sum 1 of two
+    edges = sum(beyond(rho + k * pair.base_pitch) for k in (-2, -1, 1, 2))
+    inside = np.where(alone, 1.0, (1.0 + inwards) / 3.0) - inwards * edges
+    return np.where(is_beyond(rho), beyond(rho), inside)
 
 
 def edge_contact(pair: GearPair) -> dict[str, tuple[float, float]]:

@@ -111,6 +111,7 @@ def describe(path: Path) -> list[str]:
         f"a pinion tooth meets {pair.partners} of {pair.teeth[1]} wheel teeth; "
         f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
     ]
+    lines += [f"warning: {note}" for note in pair.notes()]
     if pair.tip_relief > 0.0:
         kappa = single_stiffness(pair) * pair.tip_relief / pair.normal_load
         lines.append(f"tip relief {1e6 * pair.tip_relief:.1f} µm, c' C_a/w' = {kappa:.2f}")

@@ -29,6 +29,8 @@ class Rating:
     `roughness`: Ra, mean of both flanks [m]; 0: smooth.
     `viscosity`, `pressure_viscosity`: of the oil at ambient pressure [Pa s], [1/Pa], functions of temperature
         [K].
+    `film_friction`: coefficient of friction along the path of smooth flanks, shape (n,); None: rough ones.
+    `oil_factor`: X_L of ISO/TR 14179-2.
     `bulk`, `oil`: temperatures of the gears, mean of both, and of the oil that is supplied [K].
     """
 
@@ -37,17 +39,19 @@ class Rating:
     roughness: float
     viscosity: Callable[[np.ndarray], np.ndarray]
     pressure_viscosity: Callable[[np.ndarray], np.ndarray]
+    film_friction: np.ndarray | None
     bulk: float
     oil: float
     effusivities: tuple[float, float] = (STEEL.effusivity, STEEL.effusivity)
+    oil_factor: float = 1.0
 
 
 def friction(rating: Rating) -> float:
     """Mean coefficient of friction along the path, by load, speed and radius at the pitch point."""
     path, at = rating.path, rating.path.index("C")
     speeds = 2.0 * path.entrainment[at]
-    oil = rating.viscosity(rating.oil)
-    return float(hoehn_michaelis(path.pair.normal_load, speeds, path.radius[at], oil, rating.roughness))
+    of_oil = rating.viscosity(rating.oil), rating.roughness, rating.oil_factor
+    return float(hoehn_michaelis(path.pair.normal_load, speeds, path.radius[at], *of_oil))
 
 
 def flash(rating: Rating, coefficient: float | np.ndarray | None = None) -> np.ndarray:
@@ -105,10 +109,12 @@ def bulk_temperatures(
     coefficients of heat transfer h [W/(m^2 K)], :math:`T_{oil}+\frac12P_{loss}/(hA)`: half of the losses to
     each gear, A its two sides and the cylinder of its tips.
 
-    `coefficient`: coefficient of friction, also along the path; None: of ISO/TR 14179-2.
+    `coefficient`: coefficient of friction, also along the path; None: of ISO/TR 14179-2 or, where that of
+    smooth flanks is none, of the oil film.
     """
     path, pair = rating.path, rating.path.pair
-    coefficient = friction(rating) if coefficient is None else coefficient
+    if coefficient is None:
+        coefficient = friction(rating) if rating.film_friction is None else rating.film_friction
     if heat_transfer is None:
         flashes = flash(rating, coefficient)
         mean = 0.5 * (flashes[1:] + flashes[:-1]) @ np.diff(path.rho) / np.ptp(path.rho)

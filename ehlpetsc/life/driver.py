@@ -14,6 +14,7 @@ from ehlpetsc.base.errors import CaseError, NotConverged
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.life.band import band, lines_of, passes_to_failure
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
 from ehlpetsc.life.history import LifeFile, LifeHistory
@@ -83,7 +84,7 @@ def run_life(
     on_root(comm, lock.acquire)
     try:
         history = on_root(comm, stored_or_new, case, path, overwrite)
-        life = _Life(case, path, comm, history, show or (lambda text: None), unresolved)
+        life = _Life(case, path, comm, history, show, unresolved)
         return life.run(stop, most)
     finally:
         lock.release()
@@ -91,9 +92,16 @@ def run_life(
 
 class _Life:
     def __init__(
-        self, case: Case, path: Path, comm: MPI.Comm, history: LifeHistory, show: Callable, unresolved: bool
+        self,
+        case: Case,
+        path: Path,
+        comm: MPI.Comm,
+        history: LifeHistory,
+        show: Callable | None,
+        unresolved: bool,
     ) -> None:
-        self.case, self.path, self.comm, self.history, self.show = case, path, comm, history, show
+        self.case, self.path, self.comm, self.history = case, path, comm, history
+        self.reports, self.show = show is not None, show or (lambda text: None)
         self.scales = Scales.of(case)
         self.positions = Positions(case, self.scales)
         self.jumps = Jumps(case.life, self.positions.rq)
@@ -132,9 +140,17 @@ class _Life:
                 bodies = self.history.bodies[-1]
             else:
                 bodies = tuple(map(self.positions.new_body, solved_round.passes[0].bodies, range(2)))
+            if self.reports and not self.history.rows:
+                for line in on_root(self.comm, self._band):
+                    self.show(line)
             self._jump(solved_round, bodies)
             self.show(line_of(self.history, clock.monotonic() - begun))
             rounds += 1
+
+    def _band(self) -> list[str]:
+        """Lines on the criteria, from the pass solved last."""
+        file = pass_file(self.path, 0, self.positions.count)
+        return list(lines_of(band(file), passes_to_failure(file)))
 
     @property
     def _is_over(self) -> bool:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
+    from ehlpetsc.physics.geometry import Geometry
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
 
@@ -83,18 +84,25 @@ def smooth_films(scales: Scales, fluid: Any, conditions: Conditions) -> tuple[fl
 
     The inlet entrains the mass of an incompressible oil, which passes the contact with its density at p0;
     the pressure of the exit constriction is lower. Both are within 4 % of computed films, compressible
-    and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_exact_solutions.py`), where
+    and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_scales.py`), where
     :math:`h_{Moes}` alone exceeds the central film by 22 to 27 %.
 
     In a point contact the minimum over the central film is that of Hamrock and Dowson (1977).
     """
+    return contact_films(scales.geometry, scales.E, scales.radius_ratio, fluid, conditions)
+
+
+def contact_films(
+    geometry: Geometry, modulus: float, radius_ratio: float, fluid: Any, conditions: Conditions
+) -> tuple[float, float]:
+    """Films of :func:`smooth_films` of a kind of contact; E' [Pa] and the ratio of its radii."""
     from ehlpetsc.physics.laws import density
 
     load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)
     if speed == 0.0:
         return 0.0, 0.0
-    groups = fluid.viscosity, speed, fluid.pressure_viscosity, load, radius, scales.E
-    incompressible, lowest, p0 = scales.geometry.smooth_films(*groups, scales.radius_ratio)
+    groups = fluid.viscosity, speed, fluid.pressure_viscosity, load, radius, modulus
+    incompressible, lowest, p0 = geometry.smooth_films(*groups, radius_ratio)
     ratio = 1.0 / float(density(np.array([p0]), fluid)[0][0])
     return incompressible * ratio, lowest * incompressible * ratio**0.25
 

@@ -79,19 +79,19 @@ def blok_flash_temperature(
     return 1.11 * friction * load * abs(sliding) / (np.maximum(carried, TINY) * (2.0 * a) ** 0.5)
 
 
-def expected_friction(fluid: Any, boundary_friction: float, scales: Scales, film: float) -> float:
-    """Coefficient of friction of a smooth contact at its mean Hertz pressure; dry: of the boundary.
+def expected_friction(fluid: Any, load: float, a: float, sliding: float, film: float) -> float:
+    """Coefficient of friction of a smooth, flooded contact at its mean Hertz pressure.
 
     Parameters
     ----------
+    load, a, sliding
+        w' [N/m], Hertz half-width [m], u1 - u2 [m/s].
     film
         Expected film [m].
     """
-    if fluid is None:
-        return boundary_friction
-    p = np.array([scales.load / (2.0 * scales.a)])
+    p = np.array([load / (2.0 * a)])
     with np.errstate(over="ignore"):
-        stress, _ = wall_shear(np.array([film]), 0.0, viscosity(p, fluid)[0], fluid, scales.u1 - scales.u2, p)
+        stress, _ = wall_shear(np.array([film]), 0.0, viscosity(p, fluid)[0], fluid, sliding, p)
     return float(min(abs(stress[0]) / p[0], MAX_FRICTION))
 
 

@@ -25,7 +25,8 @@ def hoehn_michaelis(
     the load in N/mm, :math:`v_\Sigma` in m/s, :math:`\rho` in mm, :math:`\eta` in mPa s, :math:`R_a` in um:
     Schlenk 1994, as in ISO/TR 14179-2 (with its limits of load and speed) and in Hoehn, Michaelis &
     Hinterstoisser, Goriva i maziva 48 (2009) 441. Fitted to FZG tests of mineral oils, :math:`X_L=1`; the
-    other :math:`X_L` and both limits are from memory, not checked against the report.
+    other :math:`X_L` and both limits are from memory, not checked against the report. Fernandes and Seabra
+    fit lower ones to their FZG tests: 0.846 for mineral oil, 0.65 for PAO and ester, 0.585 for polyglycol.
 
     Parameters
     ----------

@@ -97,8 +97,8 @@ class Grid:
         return np.sqrt(sum(squares))
 
     def inside(self, radius: float) -> np.ndarray:
-        """Mask of the nodes within a multiple of the dry smooth contact, flat."""
-        return self.distance <= radius
+        """Mask of the nodes within a multiple of the dry contact, at least of those in its middle, flat."""
+        return self.distance <= max(radius, self.distance.min())
 
     def edges(self) -> dict[str, np.ndarray]:
         """Nodes at each end of the domain, flat indices by the key that moves it."""

@@ -1,136 +1,45 @@
 r"""Laws of the oil in tables: viscosity of pressure and temperature, density and conductivity of pressure.
 
-A law is one function of numbers or arrays in SI units, which carries complex arguments through, with its
-constants and the keys of `[fluid]` that it reads. A law is added by an entry in one of the tables, whose
-functions the compiled loops call by their position, or, of a user's viscosity law, by its address.
+A law is added by an entry in one of the tables, :class:`ehlpetsc.physics.law.Law`. Shear laws are in
+:mod:`ehlpetsc.physics.rheology`.
 """
 
 from __future__ import annotations
 
-import inspect
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 from functools import cache
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ehlpetsc.base.compiled import address_of, call_at, inlined
 from ehlpetsc.base.declarations import Key, Refused
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives, Law, OilLaw, padded, switched
+from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.physics.viscosity_laws import (
     DOOLITTLE,
     EXPONENTIAL,
     ISOTHERMAL,
+    MIN_ABOVE_POLE,
+    MIN_MODULUS,
+    MODULUS,
     ROELANDS,
     ROELANDS_WALTHER,
-    STANDARD_TEMPERATURE,
     WALTHER,
     YASUTOMI,
-    Derivatives,
     doolittle,
+    modulus,
     power_law,
     walther_constants,
     yasutomi,
 )
 
-SLOTS = 10  # constants that compiled loops get of any law
 BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05
 ROELANDS_S0 = 1.1  # where a case with his law of pressure gives none: mineral oils have 1 to 1.5
 ROELANDS_PRESSURE = 1.96e8  # Pa
 ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
-
-
-@dataclass(frozen=True)
-class Law:
-    """A law of the oil.
-
-    Attributes
-    ----------
-    function
-        Value and derivatives of the state (p, T) or (p,) and of the constants.
-    constants
-        Of the function, from the tables `[fluid]` and `[heat]` of a case (None: isothermal); the first one
-        of a viscosity law is a factor of the logarithm.
-    keys
-        Of `[fluid]` that belong to this law.
-    complete
-        Values of keys that are left out; raises `Refused` where one is missing or impossible.
-    of_temperature
-        Whether it has a temperature of its own in isothermal cases too.
-    """
-
-    function: Callable[..., Derivatives]
-    constants: Callable[[Any, Any], tuple[float, ...]]
-    equation: str
-    keys: Mapping[str, Key] = field(default_factory=dict)
-    complete: Callable[[Any], Mapping[str, Any]] = lambda fluid: {}
-    of_temperature: bool = False
-
-    def __call__(self, *arguments: Any) -> Derivatives:
-        """Value and derivatives of the state, by its constants, which may be padded."""
-        *state, constants = arguments
-        return self.function(*state, *constants[: n_constants(self.function, len(state))])
-
-
-class OilLaw(NamedTuple):
-    """A viscosity or density law, by its position or address, with its constants, for compiled loops."""
-
-    kind: int
-    constants: tuple[float, ...]
-    temperature: float = STANDARD_TEMPERATURE  # at which `fluid.viscosity` holds [K]
-
-
-@cache
-def n_constants(function: Callable[..., Derivatives], state: int) -> int:
-    """Number of constants of a law of `state` variables."""
-    return len(inspect.signature(function).parameters) - state
-
-
-def switched(laws: Mapping[str, Law], state: int, pair: bool = False) -> Callable[..., Derivatives]:
-    """Compiled function of (kind, (p,) or (p, T), constants) over a table of laws; pair: (p, T, T)."""
-    functions = [law.function for law in laws.values()]
-    call: Callable[..., Derivatives] | None = None
-    for kind in reversed(range(len(functions))):
-        call = _or_else(functions[kind], kind, call, state, pair)
-    return call
-
-
-def _or_else(
-    function: Callable[..., Derivatives],
-    kind: int,
-    other: Callable[..., Derivatives] | None,
-    state: int,
-    pair: bool,
-) -> Callable[..., Derivatives]:
-    count, law = n_constants(function, state), inlined(function, cache=False)
-    if pair:  # in one branch: what depends on p alone is computed once
-
-        def here(at: tuple, c: tuple[float, ...]) -> Derivatives:
-            return law(at[0], at[1], *c[:count]), law(at[0], at[2], *c[:count])
-
-    else:
-
-        def here(at: tuple, c: tuple[float, ...]) -> Derivatives:
-            return law(*(at + c[:count]))
-
-    here = inlined(here, cache=False)
-    if other is None:
-
-        def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
-            return here(at, c)
-
-    else:
-
-        def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
-            return here(at, c) if k == kind else other(k, at, c)
-
-    return inlined(call, cache=False)
-
-
-def padded(constants: tuple[float, ...]) -> tuple[float, ...]:
-    return (*map(float, constants), *[0.0] * (SLOTS - len(constants)))
 
 
 def reference_temperature(fluid: Any, heat: Any = None) -> float:
@@ -209,6 +118,22 @@ def _yasutomi(fluid: Any, heat: Any) -> tuple[float, ...]:
     return c1, c2, glass, *others, above / (c2 + above)
 
 
+def _modulus(fluid: Any, heat: Any) -> tuple[float, ...]:
+    c, d, *others = (getattr(fluid, name) for name in MODULUS)
+    return 1.0, c, d, *others, c / (d + reference_temperature(fluid, heat))
+
+
+def _complete_modulus(fluid: Any) -> dict[str, float]:
+    """As :func:`_complete_with_slope`; D + T and the modulus are positive by constants of T in K."""
+    values = _complete_with_slope(fluid)
+    T = reference_temperature(fluid)
+    if fluid.modulus_d + T < MIN_ABOVE_POLE:
+        raise Refused(f"at {T:g} K is D + T = {fluid.modulus_d + T:.3g} K; allowed: D of T in K", "modulus_d")
+    if (m := fluid.modulus_a1 + fluid.modulus_a2 * T) < MIN_MODULUS:
+        raise Refused(f"a1 + a2 T = {m:.3g} Pa at {T:g} K; allowed: {MIN_MODULUS:g} Pa", "modulus_a1")
+    return values
+
+
 def _complete_with_slope(fluid: Any) -> dict[str, float]:
     """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure."""
     law = LAWS[fluid.law]
@@ -255,9 +180,17 @@ LAWS = {
         _complete_with_slope,
         of_temperature=True,
     ),
+    "modulus": Law(
+        modulus,
+        _modulus,
+        "`ln(eta/eta0) = C/(D + T) - C/(D + T0) + p/(a1 + a2 T + (b1 + b2 T) p)`",
+        MODULUS,
+        _complete_modulus,
+        of_temperature=True,
+    ),
 }
 BUILT_IN = tuple(LAWS.values())
-N_BUILT_IN = len(BUILT_IN)
+N_BUILT_IN = len(BUILT_IN)  # positions; larger numbers are addresses
 _ln_viscosity, _ln_viscosities = switched(LAWS, 2), switched(LAWS, 2, pair=True)
 
 
@@ -282,7 +215,7 @@ def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
     law = LAWS[fluid.law]
     first, *others = law.constants(fluid, heat)
     first *= getattr(fluid, "exponent_factor", 1.0)
-    kind = BUILT_IN.index(law) if law in BUILT_IN else address_of(law.function, 1 + len(others))
+    kind = BUILT_IN.index(law) if law in BUILT_IN else address_of(law.function, 1 + len(others), 2)
     return OilLaw(kind, padded((first, *others)), float(reference_temperature(fluid, heat)))
 
 
@@ -355,24 +288,43 @@ DENSITY_LAWS = {
     ),
     "incompressible": Law(incompressible, lambda fluid, heat: (), "`rho = rho0`"),
 }
+DENSITY_BUILT_IN = tuple(DENSITY_LAWS.values())
+N_DENSITY_BUILT_IN = len(DENSITY_BUILT_IN)
 _relative_density = switched(DENSITY_LAWS, 1)
 
 
 @inlined
 def relative_density(law: tuple, p: float) -> Derivatives:
     """Density over its ambient value at one pressure, and its derivative [1/Pa]; law as of `density_law`."""
+    if law[0] >= N_DENSITY_BUILT_IN:
+        value, slope, _ = call_at(law[0], p, 0.0, law[1])
+        return value, slope
     return _relative_density(law[0], (p,), law[1])
 
 
 def density_law(fluid: Any) -> OilLaw:
     """Density law of a case."""
-    constants = DENSITY_LAWS[fluid.density].constants(fluid, None)
-    return OilLaw(list(DENSITY_LAWS).index(fluid.density), padded(constants))
+    law = DENSITY_LAWS[fluid.density]
+    constants = law.constants(fluid, None)
+    built_in = law in DENSITY_BUILT_IN
+    kind = DENSITY_BUILT_IN.index(law) if built_in else address_of(law.function, len(constants), 1)
+    return OilLaw(kind, padded(constants))
 
 
 def density(p: np.ndarray, fluid: Any) -> tuple[np.ndarray, np.ndarray]:
     """Density over its ambient value under pressures [Pa], and its derivative [1/Pa]."""
     return DENSITY_LAWS[fluid.density](p, density_law(fluid).constants)
+
+
+# ---- all tables ----
+
+
+TABLES: tuple[Mapping[str, Law], ...] = (LAWS, DENSITY_LAWS, SHEAR_LAWS)
+
+
+def names_in_use(fluid: Any) -> tuple[str, ...]:
+    """Name of the law that a case has of each of `TABLES`."""
+    return fluid.law, fluid.density, shear_law(fluid)
 
 
 def completed(fluid: Mapping[str, Any]) -> dict[str, Any]:
@@ -384,8 +336,6 @@ def completed(fluid: Mapping[str, Any]) -> dict[str, Any]:
             "needs fluid.grade or oil; the temperature of a given viscosity is heat.reference_temperature",
             "temperature",
         )
-    if values.get("carreau_stress") and values["carreau_exponent"] is None:
-        raise Refused("", "carreau_exponent")
-    for laws, name in ((LAWS, "law"), (DENSITY_LAWS, "density")):
-        values |= laws[values[name]].complete(SimpleNamespace(**values))
+    for laws, name in zip(TABLES, names_in_use(SimpleNamespace(**values)), strict=True):
+        values |= laws[name].complete(SimpleNamespace(**values))
     return values

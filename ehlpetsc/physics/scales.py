@@ -115,6 +115,11 @@ class Scales:
         """Operating conditions of the reference state."""
         return Conditions(self.load, self.R, self.u1, self.u2)
 
+    def size(self, conditions: Conditions) -> float:
+        """Size of the dry contact of the conditions at an instant over that of the scales, at most 1."""
+        ratio = conditions.load / self.load * (conditions.radius / self.R)
+        return ratio ** (0.5 * self.grid.growth)
+
     @classmethod
     def of(cls, case: Any) -> Self:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""

@@ -66,7 +66,7 @@ def wall_shear(
     Eyring: :math:`\tau_m=\tau_0\,\mathrm{asinh}(\zeta\Sigma/\sinh\Sigma)`,
     :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)` (Conry, Wang & Cusano 1987); Newtonian:
     :math:`\tau_m=\eta(u_1-u_2)/h`. With a limiting shear stress :math:`\tau_m` is limited to
-    :math:`\Lambda p`, see :func:`limited_shear`.
+    :math:`\Lambda p`, see :func:`.rheology.flow_stress`.
 
     Returns
     -------

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 MIN_SAMPLES = 4096  # points at which a table is evaluated for time steps and extremes
 END_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
 MIN_ENTRAINMENT_RATIO = 1e-3  # of the faster surface's speed: smaller entrainment speeds are no scale
+SPEED_ROUNDING = 1e-12  # of the maximum speed: less is rest or rolling, where solids have no friction
 MAX_SPEED_CHANGE = 0.04  # in a time step, of the maximum speed, for a Courant number of 1
 MIN_STEPS = 25  # of a table in which nothing moves for some time, for a Courant number of 1
 
@@ -169,6 +170,11 @@ class VariableOperation:
     def _integrals(self) -> list:
         return self.table.integrals()
 
+    @cached_property
+    def _fastest(self) -> float:
+        """Maximum speed of either surface [m/s]."""
+        return float(self.table.speed.max())
+
     @property
     def period(self) -> float:
         """Length of the table [s]."""
@@ -194,7 +200,10 @@ class VariableOperation:
     def at(self, time: float) -> Conditions:
         """Conditions at a time [s]; before time 0 the conditions at time 0."""
         local = self._local(time)[1]
-        return Conditions(*(float(cubic(local)) for cubic in self._cubics))
+        load, radius, u1, u2 = (float(cubic(local)) for cubic in self._cubics)
+        rounding = SPEED_ROUNDING * self._fastest
+        u1, u2 = (0.0 if abs(u) < rounding else u for u in (u1, u2))
+        return Conditions(load, radius, u1, u1 if abs(u1 - u2) < rounding else u2)
 
     def _position(self, time: float) -> tuple[float, ...]:
         """Distances that both surfaces have travelled since time 0 [m]; before it at the speeds of time 0."""

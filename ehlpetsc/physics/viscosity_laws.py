@@ -14,16 +14,17 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.declarations import Key
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives
 
 KELVIN = 273.15  # K at 0 degrees Celsius
-STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
 GLASSY = -0.5  # x/(C2 + x) of Yasutomi's law below which the logarithm continues linearly, towards a solid
 # temperature dependence of a power law
 ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER, ROELANDS_WALTHER = 0.0, 1.0, 2.0, 3.0, 4.0
 ROELANDS_ZERO = 138.0  # K
+MIN_ABOVE_POLE = 10.0  # K of T + D in the modulus law, below which the logarithm continues linearly
+MIN_MODULUS = 1e7  # Pa: lower bound of its modulus, below that of any fit in its range
 GOLD_PRESSURE = 2e8  # Pa: that of the secant of Gold's coefficients
 WALTHER_SHIFT = 0.7  # mm^2/s
-Derivatives = tuple[Any, ...]
 
 
 def power_law(
@@ -197,10 +198,60 @@ def yasutomi(
 
 YASUTOMI = {
     "yasutomi_c1": Key("`C1` of Yasutomi's law", gt=0, le=100),
-    "yasutomi_c2": Key("`C2`", unit="K", gt=0, le=1000),
+    "yasutomi_c2": Key("`C2`", unit="K", gt=0, le=1000, is_difference=True),
     "yasutomi_glass": Key("`T_g0`, glass transition at ambient pressure", unit="K", ge=50, le=700),
-    "yasutomi_a1": Key("`A1` of the glass transition `T_g0 + A1 ln(1 + A2 p)`", unit="K", ge=0, le=2000),
+    "yasutomi_a1": Key(
+        "`A1` of the glass transition `T_g0 + A1 ln(1 + A2 p)`", unit="K", ge=0, le=2000, is_difference=True
+    ),
     "yasutomi_a2": Key("`A2`", unit="1/Pa", ge=0, le=1e-6),
     "yasutomi_b1": Key("`b1` of the factor `(1 + b1 p)^b2`", unit="1/Pa", ge=0, le=1e-6),
     "yasutomi_b2": Key("`b2`", ge=-5, le=0),
+}
+
+
+def modulus(
+    p: Any,
+    T: Any,
+    factor: float,
+    c: float,
+    d: float,
+    a1: float,
+    a2: float,
+    b1: float,
+    b2: float,
+    offset: float,
+) -> Derivatives:
+    r"""Modulus law :math:`\ln(\eta/\eta_0)=f\,[C/(D+T)+p/m-\ldots_0]` with a modulus linear in p and T.
+
+    :math:`m=a_1+a_2T+(b_1+b_2T)p`, T in K (Bode 1989; Dicke; Gold et al. 2001; as printed by Wingertszahn et
+    al., Lubricants 11 (2023) 369, and Arana et al., Proc. IMechE J 233 (2019) 303). Constants of sources with
+    T in degrees Celsius: :math:`D-273.15`, :math:`a_1-273.15\,a_2`, :math:`b_1-273.15\,b_2`.
+
+    Parameters
+    ----------
+    factor, offset
+        f = 1, less during a continuation; :math:`C/(D+T)` where :math:`\eta=\eta_0`.
+    """
+    above = np.maximum(T + d, MIN_ABOVE_POLE)
+    rise = b1 + b2 * T
+    full = a1 + a2 * T + rise * p
+    m = np.maximum(full, MIN_MODULUS)
+    by_t, by_m = -c / (above * above), -p / (m * m) * (full.real >= MIN_MODULUS)
+    ln_eta = c / above + by_t * (T + d - above) + p / m - offset
+    return factor * ln_eta, factor * (1.0 / m + by_m * rise), factor * (by_t + by_m * (a2 + b2 * p))
+
+
+MODULUS = {
+    "modulus_c": Key("`C` of the modulus law", unit="K", gt=0, le=1e4, is_difference=True),
+    "modulus_d": Key(
+        "`D`, T in K: of sources with T in degrees C less 273.15",
+        unit="K",
+        ge=-300,
+        le=300,
+        is_difference=True,
+    ),
+    "modulus_a1": Key("`a1`, T in K: of T in degrees C less `273.15 a2`", unit="Pa", ge=-1e10, le=1e10),
+    "modulus_a2": Key("`a2`", unit="Pa/K", ge=0, le=1e8),
+    "modulus_b1": Key("`b1`, T in K: of T in degrees C less `273.15 b2`", ge=-10, le=10),
+    "modulus_b2": Key("`b2`", unit="1/K", ge=-0.1, le=0.1),
 }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,13 +14,23 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.pictures import style
-from ehlpetsc.post.fatigue.statistics import exceedance, fitted_exceedance
+from ehlpetsc.pictures.damage_maps import map_picture
+from ehlpetsc.pictures.weibull import weibull_picture
+from ehlpetsc.post.fatigue.statistics import (
+    MIN_ASPERITIES,
+    exceedance,
+    fitted_asperities,
+    fitted_exceedance,
+)
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.stresses.half_plane import stress, von_mises
+from ehlpetsc.post.stresses.half_plane import stress, von_mises, von_mises_squared
+from ehlpetsc.post.stresses.half_space import StressTensor, stress_plane
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 
 FORMATS = ("png", "svg")
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
+EXCEEDANCE_DECADES = 12  # of damage below the maximum in distributions
+GOOD_FIT = 0.9  # r^2 of a Weibull line that needs no word
 SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, as in the paper
 FIELD_DEPTH = 1.5  # half-widths
 STRESSES = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$", r"$\sigma_{vM}$")
@@ -36,17 +47,23 @@ class Map(NamedTuple):
     is_damage: bool = True
 
 
-def draw(inputs: Sequence[str], outputs: Sequence[str], folder: str) -> list[str]:
-    """Draw all pictures of result files and their post-processing results; returns the names of the files.
+def draw(
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    folder: str,
+    kinds: Callable[[str, PostResult], Iterator[tuple[str, Figure]]] | None = None,
+) -> list[str]:
+    """Draw pictures of result files and their post-processing results; returns the names of the files.
 
-    `folder` is "" for that of each result.
+    `folder` is "" for that of each result. `kinds` yields names and pictures, by default all of
+    :func:`pictures`.
     """
     names = []
     if folder:
         Path(folder).mkdir(parents=True, exist_ok=True)
     for path, output in zip(inputs, outputs, strict=True):
         stem = Path(folder or Path(output).parent) / Path(path).stem
-        for kind, figure in pictures(path, PostResult(output)):
+        for kind, figure in (kinds or pictures)(path, PostResult(output)):
             files = [f"{stem}.{kind}.{ending}" for ending in FORMATS]
             style.save(figure, *files)
             names += files
@@ -56,20 +73,33 @@ def draw(inputs: Sequence[str], outputs: Sequence[str], folder: str) -> list[str
 def pictures(path: str, result: PostResult) -> Iterator[tuple[str, Figure]]:
     """Names and pictures of a result file and its post-processing result."""
     for surface in result.surfaces:
-        if result.complete[surface].any() and result.z.size > 1:
-            yield f"damage_{surface}", damage_picture(result, surface)
+        if not result.complete[surface].any():
+            continue
+        section = result
+        if result.y is not None:
+            place = partial(along_body, result, surface)
+            yield f"damage_map_{surface}", map_picture(result, surface, place, _conditions(result, surface))
+            section = result.section(result.worst_row(surface))
+        if result.z.size > 1:
+            yield f"damage_{surface}", damage_picture(section, surface)
             if result.criteria:
-                yield f"criteria_{surface}", criteria_picture(result, surface)
+                yield f"criteria_{surface}", criteria_picture(section, surface)
     if result.height.size:
         yield "exceedance", depth_picture(result)
     yield "stress", field_picture(path, result)
+
+
+def weibull_pictures(path: str, result: PostResult) -> Iterator[tuple[str, Figure]]:
+    """Name and picture of the Weibull distributions, if there are enough asperities."""
+    if any(fit.beta > 0 for fit in result.fits):
+        yield "weibull", weibull_picture(result)
 
 
 def damage_picture(result: PostResult, surface: str) -> Figure:
     """Damage under the whole profile (figure 8 of Holmes et al. 2005), with [heat] the temperatures."""
     (s, z), damage = result.worst_point(surface), result.damage[surface]
     place = f"{along_body(result, surface, s):.4g} mm, z/a = {z:g} (s/a = {s / result.a:.5g})"
-    title = f"surface {surface}, {_ratio(result)}, {rule_name(result)}"
+    title = _conditions(result, surface)
     worst = f"maximum damage {np.nanmax(damage):.2g} at {place}"
     return draw_maps([Map("", result, damage)], surface, [title, worst])
 
@@ -80,7 +110,7 @@ def criteria_picture(result: PostResult, surface: str) -> Figure:
     for name, label in CRITERIA.items():
         if name in result.criteria:
             maps.append(Map(label, result, result.criteria[name][surface], name != "dang-van"))
-    return draw_maps(maps, surface, [f"surface {surface}, {_ratio(result)}"], SECTION_LENGTH)
+    return draw_maps(maps, surface, [_conditions(result, surface)], SECTION_LENGTH)
 
 
 def draw_maps(
@@ -186,15 +216,14 @@ def field_picture(path: str, result: PostResult) -> Figure:
     surface = result.main
     with Loads(path, result.attrs["settings"].splitlines()) as loads:
         frame = loads.time.size // 2
-        p, q = (row[0] for row in loads.read(surface, frame, frame + 1))
-        nu = loads.case.contact.poisson_ratio[int(surface) - 1]
-        z = FIELD_DEPTH * np.linspace(0.0, 1.0, 121) ** 2
-        stresses = stress(loads.x, z * loads.a, p, q, nu)
+        z = FIELD_DEPTH * np.linspace(0.0, 1.0, 31 if loads.rows else 121) ** 2
+        p, shown = _stresses_below(loads, surface, frame, z * loads.a)
         x, time, a = loads.x / loads.a, loads.time[frame], loads.a
+        middle = None if loads.y is None else loads.y[loads.y.size // 2]
     figure, (top, *rows) = style.new_figure(5, 1, (8.0, 9.0), sharex=True, height_ratios=(0.7, 1, 1, 1, 1))
     top.plot(x, 1e-9 * p, color=style.SINGLE, lw=0.9)
     top.set_ylabel("p [GPa]")
-    for row, name, values in zip(rows, STRESSES, (*stresses, von_mises(*stresses, nu)), strict=True):
+    for row, name, values in zip(rows, STRESSES, shown, strict=True):
         limit = 1e-9 * np.quantile(np.abs(values), 0.999)
         clipped, colours = np.clip(1e-9 * values, -limit, limit), dict(cmap="RdBu_r", vmin=-limit, vmax=limit)
         figure.colorbar(row.contourf(x, z, clipped, 25, **colours), ax=row, label="GPa", pad=0.01)
@@ -205,8 +234,25 @@ def field_picture(path: str, result: PostResult) -> Figure:
     depth = f"z/a = {z[k]:.3g}, {1e6 * z[k] * a:.3g} µm deep"
     row.set_title(f"{name}, maximum {1e-9 * values[k, j]:.3g} GPa at {depth}", fontsize="small", loc="left")
     row.set_xlabel(style.ACROSS)
-    style.set_title(figure, f"solid of surface {surface}, {1e6 * time:.4g} µs")
+    across = "" if middle is None else f", y = {1e3 * middle:.4g} mm"
+    style.set_title(figure, f"solid of surface {surface}{across}, {1e6 * time:.4g} µs")
     return figure
+
+
+def _stresses_below(
+    loads: Loads, surface: str, frame: int, z: np.ndarray
+) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Pressure (nx,) and the `STRESSES` (nz, nx) below it in a frame, of a plane in its middle row [Pa]."""
+    p, q = (values[0] for values in loads.read(surface, frame, frame + 1))
+    nu = loads.case.contact.poisson_ratio[int(surface) - 1]
+    if loads.y is None:
+        stresses = stress(loads.x, z, p, q, nu)
+        return p, [*stresses, von_mises(*stresses, nu)]
+    middle = loads.y.size // 2
+    whole = stress_plane(loads.x, loads.y, z, p, q, nu, loads.is_periodic)
+    at = StressTensor(*(field[:, middle] for field in whole))
+    squared = von_mises_squared(at.sx, at.sy, at.sz, at.txz) + 3 * (at.txy**2 + at.tyz**2)
+    return p[middle], [at.sx, at.sz, at.txz, np.sqrt(squared)]
 
 
 def depth_picture(result: PostResult) -> Figure:
@@ -217,15 +263,29 @@ def depth_picture(result: PostResult) -> Figure:
 
 
 def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: str) -> Figure:
-    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit."""
+    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit.
+
+    Damage less than `EXCEEDANCE_DECADES` below the maximum; a poor fit is dashed, its r^2 in the legend.
+    """
     figure, axes = style.new_figure(1, 1, (7.0, 4.0))
+    highest = max((under.max(initial=0.0) for _, under, _ in curves), default=0.0)
+    least = highest * 10.0**-EXCEEDANCE_DECADES
     for (label, under, fit), colour in zip(curves, style.shades(len(curves)), strict=True):
         falling, fraction = exceedance(under)
-        damaged = falling[falling > 0.0]
-        axes.plot(damaged, fraction[falling > 0.0], ".", ms=3, color=colour)
+        shown = falling > least
+        damaged, count = falling[shown], fitted_asperities(under)
+        axes.plot(damaged, fraction[shown], ".", ms=3, color=colour)
         values = np.geomspace(damaged[-1] / 3.0, 3.0 * damaged[0], 300) if damaged.size else damaged
-        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), color=colour, lw=1.2, label=label)
+        is_fitted, dashes = np.isfinite(fit.alpha) and count >= MIN_ASPERITIES, "-"
+        if not is_fitted:
+            values, label = values[:0], f"{label}, {count} with damage: no fit"
+        elif fit.r_squared < GOOD_FIT:
+            dashes, label = "--", f"{label}, $r^2$ = {fit.r_squared:.2f}"
+        line = dict(color=colour, lw=1.2, ls=dashes, label=label)
+        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), **line)
     axes.set(xscale="log", ylim=(0.0, 1.0))
+    if highest > 0.0:
+        axes.set_xlim(left=max(axes.get_xlim()[0], least))
     axes.set(xlabel="damage D of one pass", ylabel="share of asperities above D")
     axes.grid(color="0.92")
     style.legend_beside(axes, title="dots: asperities\nlines: Weibull fit")
@@ -233,8 +293,18 @@ def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: 
     return figure
 
 
+def _conditions(result: PostResult, surface: str) -> str:
+    """Surface, section of a plane, slide/roll ratio and rule in the title."""
+    across = "" if result.section_y is None else f", y = {1e3 * result.section_y:.4g} mm"
+    return f"surface {surface}{across}, {_ratio(result)}, {rule_name(result)}"
+
+
 def _ratio(result: PostResult) -> str:
-    return f"slide/roll ratio {result.ratio:.3g}"
+    """Slide/roll ratio, of conditions over time its range."""
+    low, high = result.attrs.get("slide_roll_ratios", (result.ratio, result.ratio))
+    if not np.isfinite(high - low):
+        return "entrainment that reverses"
+    return f"slide/roll ratio {low:.3g}" + ("" if low == high else f" to {high:.3g}")
 
 
 def rule_name(result: PostResult) -> str:

@@ -123,7 +123,7 @@ def fill_frame(
     single, across, highest, thickest = len(results) == 1, np.linspace(*window, 801), 1e-3, 0.0
     for number, (result, index, colour) in enumerate(zip(results, indices, colours, strict=True)):
         line = dict(color=colour, lw=1.1, ls="--" if number == 1 and len(results) == 2 else "-")
-        x, shown, inside = shown_nodes(result, window)
+        x, shown, inside = shown_nodes(result, index, window)
         pressure, film = 1e-9 * result.frame("pressure", index), 1e6 * result.frame("film_thickness", index)
         if single:
             draw_solids(axes, result, index, shown)
@@ -148,11 +148,13 @@ def fill_frame(
     mark_flow(upper, results, indices)
 
 
-def shown_nodes(result: Result, window: Sequence[float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x/a, whether nodes are in view, and whether also inside the contact, if any is; shape (nx,)."""
+def shown_nodes(
+    result: Result, index: int, window: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x/a, whether nodes are in view, and also inside the contact of a frame, if any is; shape (nx,)."""
     x = result.x / result.attrs["a"]
     shown = (x >= window[0]) & (x <= window[1])
-    inside = shown & (np.abs(x) <= 1.0)
+    inside = shown & (np.abs(result.x) <= style.hertz_at(result, index)[0])
     return x, shown, inside if inside.any() else shown
 
 
@@ -196,7 +198,7 @@ def deformed_heights(result: Result, index: int) -> tuple[np.ndarray, np.ndarray
 
 def deformed_surfaces(axes: Axes, result: Result, index: int, window: Sequence[float]) -> None:
     """Draw both deformed surfaces at an instant, solids in grey."""
-    x, _, inside = shown_nodes(result, window)
+    x, _, inside = shown_nodes(result, index, window)
     lower, upper = (1e6 * height for height in deformed_heights(result, index))
     bottom, top = lower[inside].min(), upper[inside].max()
     room = 0.15 * (top - bottom)

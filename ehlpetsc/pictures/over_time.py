@@ -162,8 +162,8 @@ def _limits(results: list[Result], chosen: np.ndarray) -> tuple[float, float]:
     """Upper limits of the axes [GPa, µm] for all pressures and for the film inside the contact."""
     film = 1e-9
     for result in results:
-        inside = np.abs(result.x) <= result.attrs["a"]
-        shown = [index for index in chosen if index < len(result.time)]
-        film = max(film, *(result.frame("film_thickness", index)[inside].max() for index in shown))
+        for index in (index for index in chosen if index < len(result.time)):
+            inside = np.abs(result.x) <= style.hertz_at(result, index)[0]
+            film = max(film, result.frame("film_thickness", index)[inside].max(initial=0.0))
     pressure = max(np.nanmax(result.steps("p_max")) for result in results)
     return 1.05e-9 * pressure, 1.15e6 * film

@@ -42,7 +42,9 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
         draw_heights(panel, rough.side(side), case, scales, style.SURFACES[side])
         panel.set_ylabel(f"surface {side} [µm]")
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
-    if case.motion:
+    if case.conditions is not None:
+        texts.append("of the widest contact; conditions over time")
+    elif case.motion:
         texts.append(f"u = {scales.u:g} m/s, slide/roll ratio {scales.xi:g}")
     style.set_title(figure, case.title, ", ".join(texts))
     return figure

@@ -161,6 +161,10 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
         u = 0.5 * (u1 + u2)
         ratio = f"slide/roll ratio {(u1 - u2) / u + 0.0:.4g}" if u else "no entrainment"
         texts += [f"u = {u:.4g} m/s", ratio]
-    a, p0 = (result.attrs["a"], result.attrs["p0"]) if frame is None else hertz_at(result, frame)
-    texts += [f"a = {1e3 * a:.3g} mm", f"p0 = {1e-9 * p0:.3g} GPa"]
+    a, p0 = result.attrs["a"], result.attrs["p0"]
+    texts.append(f"a = {1e3 * a:.3g} mm")
+    if "load_given" in result.scalars and frame is not None:  # a, of the widest contact, is the unit of x
+        width, p0 = hertz_at(result, frame)
+        texts.append(f"half-width {width / a:.3g} a")
+    texts.append(f"p0 = {1e-9 * p0:.3g} GPa")
     return [*texts, f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry"]

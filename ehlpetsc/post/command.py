@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -14,7 +14,7 @@ import numpy as np
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import MEAN_STRESSES
+from ehlpetsc.post.fatigue.mean_stress import MEAN_STRESSES
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import check_output_path
@@ -37,11 +37,12 @@ def _parser() -> CommandParser:
     add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
     key = "a key of [post], or contact.material, instead of that of the case; may be repeated"
     add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
-    morrow = "morrow: with a floor to compression"
-    add("--mean-stress", choices=MEAN_STRESSES, default="none", help=morrow)
+    add("--mean-stress", choices=MEAN_STRESSES, help="instead of post.mean_stress")
     also = "also compute, beside the paper's damage: " + ", ".join(CRITERIA)
     add("--criterion", nargs="+", choices=CRITERIA, default=(), metavar="NAME", help=also)
     add("--jobs", type=int, default=1, metavar="N", help="threads (default 1)")
+    weibull = "draw the Weibull distributions of the damage at asperities with their confidence bounds"
+    add("--weibull", action="store_true", help=weibull)
     pictures = "also draw PNG and SVG, in FOLDER or beside the result"
     add("--pictures", nargs="?", const="", metavar="FOLDER", help=pictures)
     return parser
@@ -60,8 +61,8 @@ def _run(chosen: argparse.Namespace) -> int:
     work = [partial(_process, job, files, chosen.overwrite) for job in jobs]
     statuses = [exit_status("post", one, output=job.output) for one, job in zip(work, jobs, strict=True)]
     done = [job for job, status in zip(jobs, statuses, strict=True) if status == ExitStatus.DONE]
-    if chosen.pictures is not None and done:
-        statuses.append(exit_status("post", partial(_draw, done, chosen.pictures), output="pictures"))
+    if done and (chosen.weibull or chosen.pictures is not None):
+        statuses.append(exit_status("post", partial(_draw, done, chosen), output="pictures"))
     return max(statuses)
 
 
@@ -85,11 +86,18 @@ def _job(path: str, chosen: argparse.Namespace) -> Job:
         path,
         chosen.output or str(post_path(path)),
         SURFACES if chosen.surface == "both" else (chosen.surface,),
-        chosen.mean_stress,
         jobs=chosen.jobs,
         criteria=tuple(sorted(chosen.criterion)),
-        settings=(*chosen.set, *([f"post.depths={chosen.depths}"] if chosen.depths else ())),
+        settings=(*chosen.set, *_settings(chosen)),
     )
+
+
+def _settings(chosen: argparse.Namespace) -> Iterator[str]:
+    """Settings that have an option of their own."""
+    if chosen.depths:
+        yield f"post.depths={chosen.depths}"
+    if chosen.mean_stress:
+        yield f"post.mean_stress={chosen.mean_stress}"
 
 
 def _process(job: Job, inputs: Sequence[str], overwrite: bool) -> None:
@@ -123,7 +131,8 @@ def _summary(output: str, wall: float) -> None:
             words.append(f"{surface}: D_max={result.passed(surface)[k].max():.3e}")
             words += [f"{name}={result.passed(surface, name)[k].max():.3g}" for name in result.criteria]
         if (fit := result.fits[k]).beta > 0:
-            words.append(f"weibull alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
+            words.append(f"weibull of surface {result.main}:")
+            words.append(f"alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
         print(" ".join(words))
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():
@@ -140,8 +149,12 @@ def _summary(output: str, wall: float) -> None:
     )
 
 
-def _draw(jobs: Sequence[Job], folder: str) -> None:
-    from ehlpetsc.pictures.damage import draw
+def _draw(jobs: Sequence[Job], chosen: argparse.Namespace) -> None:
+    from ehlpetsc.pictures.damage import draw, pictures, weibull_pictures
 
-    for name in draw([job.path for job in jobs], [job.output for job in jobs], folder):
-        print(name)
+    kinds = [pictures] if chosen.pictures is not None else []
+    for kind in kinds + [weibull_pictures] * chosen.weibull:
+        for name in draw(
+            [job.path for job in jobs], [job.output for job in jobs], chosen.pictures or "", kind
+        ):
+            print(name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,7 +41,8 @@ def materials_of(case: Case) -> dict[str, Material]:
     contact, given = case.contact, case.post.as_dict()
     bodies = zip(contact.youngs_modulus, contact.poisson_ratio, named_steels(contact.material), strict=True)
     one, two = (Material(*elastic, **fatigue_constants(steel, given)) for *elastic, steel in bodies)
-    return {"1": one, "2": two}
+    mean = {"tensile_strength": case.post.tensile_strength, "walker_exponent": case.post.walker_exponent}
+    return {"1": replace(one, **mean), "2": replace(two, **mean)}
 
 
 def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]) -> Prepared:

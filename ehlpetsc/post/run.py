@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,9 @@ from ehlpetsc.post.prepare import Prepared, prepare
 from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, histories, runs_of_points
 from ehlpetsc.results.post_result import SURFACES, PostResult
 
+if TYPE_CHECKING:
+    from ehlpetsc.post.stresses.block_stress import BlockStress
+
 MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
 DEPTHS_AT_ONCE = 4  # with common reading and transforms of the loads
 
@@ -37,7 +41,6 @@ class Job(NamedTuple):
     path: str
     output: str
     surfaces: tuple[str, ...] = SURFACES
-    mean_stress: str = "none"
     jobs: int = 1
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
@@ -70,11 +73,13 @@ def run(job: Job, report: Callable[[str], None] = lambda text: None) -> None:
         for note in _notes(job, loads):
             report(note)
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.depths}
+        if loads.y is not None:
+            datasets["damage/y"] = loads.y
         for surface in prepared.motions:
             datasets |= solve(prepared, surface, job)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
         provenance = {"settings": "\n".join(job.settings), "fingerprint": identity}
-        attributes = attributes_of(prepared) | {"mean_stress": job.mean_stress} | provenance
+        attributes = attributes_of(prepared) | provenance
         write_result(job.output, datasets, attributes)
 
 
@@ -93,8 +98,8 @@ def _notes(job: Job, loads: Loads) -> Iterator[str]:
             names = ", ".join(f'"temperature_{surface}"' for surface in cold)
             yield f"note: no surface temperatures in it: list {names} in output.fields of the case for them"
         yield "note: thermal stresses are not computed: damage is that of pressure and shear stress alone"
-    if case.post.residual_stress and job.mean_stress == "none" and not _criteria(job, case):
-        yield "note: residual_stress changes nothing without --mean-stress morrow or --criterion"
+    if case.post.residual_stress and case.post.mean_stress == "none" and not _criteria(job, case):
+        yield "note: residual_stress changes nothing without --mean-stress or --criterion"
 
 
 def _criteria(job: Job, case: Case) -> set[str]:
@@ -103,7 +108,7 @@ def _criteria(job: Job, case: Case) -> set[str]:
 
 
 def solve(prepared: Prepared, surface: str, job: Job) -> dict[str, np.ndarray]:
-    """Damage, cycles, peak range and criteria of a surface (depths, points) by name in the file.
+    """Damage, cycles, peak range and criteria of a surface (depths, *rows, points) by name in the file.
 
     nan for incomplete points.
     """
@@ -118,34 +123,43 @@ def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray
     loads, motion, table = prepared.loads, prepared.motions[surface], prepared.loads.case.post.residual_stress
     counts = _counts(prepared, surface, job)
     names = [name for columns, _ in counts for name in columns]
-    out = {name: np.full((len(depths), prepared.s.size), np.nan) for name in names}
+    shape = len(depths), *loads.rows, prepared.s.size
+    out = {name: np.full(shape, np.nan) for name in names}
     lengths = motion.leave - motion.enter + 3
-    stress = BodyStress(loads.x.size, depths * loads.a / loads.dx)
-    for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, len(depths)):
+    stress = _stresses(loads, depths * loads.a / loads.dx, prepared.materials[surface].poisson_ratio)
+    for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, stress.bytes_per_sample):
+        of_rows = np.repeat(lengths[points], math.prod(loads.rows))
         for k, stresses in enumerate(histories(loads, surface, motion, stress, points, QUANTUM * loads.p0)):
             residual = float(np.interp(depths[k], *np.transpose(table))) if table else 0.0
             for columns, count in counts:
-                values = count(stresses, lengths[points], residual)
+                values = count(stresses.reshape(-1, *stresses.shape[-2:]), of_rows, residual)
                 for name, column in zip(columns, values.T, strict=True):
-                    out[name][k, points] = column
+                    out[name][k][..., points] = column.reshape(points.size, *loads.rows).T
     return out
+
+
+def _stresses(loads: Loads, depths: np.ndarray, poisson_ratio: float) -> BodyStress | BlockStress:
+    """Stresses of the half plane or of the half-space at depths in elements."""
+    if not loads.rows:
+        return BodyStress(loads.x.size, depths)
+    from ehlpetsc.post.stresses.block_stress import BlockStress
+
+    (ny,), width = loads.rows, loads.dy / loads.dx
+    return BlockStress(ny, loads.x.size, width, depths, poisson_ratio, loads.is_periodic)
 
 
 def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str], Callable]]:
     """Names of results and function of histories of the paper's damage and of each criterion."""
-    material, constants, case = (
-        prepared.materials[surface],
-        prepared.criteria,
-        prepared.loads.case,
-    )
+    material, constants, case = prepared.materials[surface], prepared.criteria, prepared.loads.case
+    common = {"material": material, "strain": case.post.strain, "cycle_residual": case.post.residual}
     names = [f"damage/{surface}", f"damage/{surface}_cycles", f"damage/{surface}_peak_range"]
-    count = partial(count_damage, material=material, mean_stress=job.mean_stress, strain=case.post.strain)
+    count = partial(count_damage, mean_stress=case.post.mean_stress, **common)
     counts: list[tuple[list[str], Callable]] = [(names, count)]
     if "fatemi-socie" in _criteria(job, case):  # slow to compile: only if requested
         from ehlpetsc.post.criteria.critical_plane import PlaneDamage, count_on_planes
 
         names = [f"criteria/fatemi_socie/{surface}_{column}" for column in PlaneDamage._fields]
-        count = partial(count_on_planes, material=material, constants=constants, strain=case.post.strain)
+        count = partial(count_on_planes, constants=constants, **common)
         counts.append((names, count))
     if "dang-van" in _criteria(job, case):
         from ehlpetsc.post.criteria.dang_van import count_utilisation

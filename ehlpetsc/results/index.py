@@ -45,7 +45,7 @@ class Index(Lock):
         super().__init__(path)
 
     def acquire(self, overwrite: bool = False) -> None:
-        """Lock the index until :meth:`release`; OutputError if another file would be replaced."""
+        """Lock the index until it is released; OutputError if another file would be replaced."""
         check_output_path(self.path, inputs_of(self.case))
         if self.path.exists() and not overwrite and self.kind not in read_index(self.path):
             raise OutputError(f"{self.path}: exists and is not an index of ehlpetsc; {OVERWRITE_ADVICE}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -27,16 +28,23 @@ class Dataset(NamedTuple):
     text: str
     axes: str
 
+    def axes_of(self, count: int) -> list[str]:
+        """Axes of an array with `count` of them: one more, y across, in a plane."""
+        axes = self.axes.split()
+        return axes if count == len(axes) else [*axes[:-1], "y", axes[-1]]
+
 
 NOT_PASSED = "nan where a point did not pass the whole contact"
 DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "damage/s": Dataset("m", "body coordinate, x = s + distance travelled", "s"),
+    "damage/y": Dataset("m", "position across the contact", "y"),
     "damage/z_over_a": Dataset("1", "depth over half-width", "z"),
     "damage/{n}": Dataset("1", f"fatigue damage of one pass; {NOT_PASSED}", "z s"),
     "damage/{n}_cycles": Dataset("1", "counted cycles of a pass", "z s"),
     "damage/{n}_peak_range": Dataset("Pa", "largest equivalent stress range", "z s"),
     "damage/{n}_complete": Dataset("1", "1 where a point entered and left the domain", "s"),
     "asperities/{n}_s": Dataset("m", "body coordinate of asperity peaks", "peak"),
+    "asperities/{n}_y": Dataset("m", "position of asperity peaks across the contact", "peak"),
     "asperities/{n}_height": Dataset("m", "height of asperity peaks", "peak"),
     "asperities/{n}_damage": Dataset("1", "damage under asperity peaks, at the nearest body point", "z peak"),
     "criteria/{criterion}/{n}_damage": Dataset("1", "damage of one pass on the worst plane", "z s"),
@@ -46,6 +54,10 @@ DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "weibull/{n}_alpha": Dataset("1", "Weibull scale of -log10 of the damage under asperities", "z"),
     "weibull/{n}_beta": Dataset("1", "Weibull shape", "z"),
     "weibull/{n}_r_squared": Dataset("1", "squared correlation of the median rank regression", "z"),
+    "weibull/{n}_likely_alpha": Dataset("1", "Weibull scale by maximum likelihood", "z"),
+    "weibull/{n}_likely_beta": Dataset("1", "Weibull shape by maximum likelihood", "z"),
+    "weibull/{n}_alpha_bounds": Dataset("1", "90 % confidence bounds of the scale", "z bound"),
+    "weibull/{n}_beta_bounds": Dataset("1", "90 % confidence bounds of the shape", "z bound"),
     "weibull/{n}_at_least_one": Dataset("1", "asperities with damage of 1 or more", "z"),
     "weibull/{n}_undamaged": Dataset("1", "asperities without damage, censored in the fit", "z"),
     "temperature/{n}_highest": Dataset("K", f"highest surface temperature in one pass; {NOT_PASSED}", "s"),
@@ -98,6 +110,11 @@ class PostResult:
         Surface whose asperities are evaluated; their heights [m], the damage under them, shape (nz, peaks).
     s, z
         Body points [m]; depths z/a.
+    y
+        Positions across the contact [m]; None for a line contact. Arrays over s then have the shape
+        (..., ny, ns).
+    section_y
+        Position of a section of a plane [m], otherwise None.
     surfaces
         Surfaces with damage.
     damage, complete
@@ -123,6 +140,8 @@ class PostResult:
         asperities = (f"asperities/{self.main}_{name}" for name in ("height", "damage"))
         self.height, self.under = map(self._arrays.get, asperities)
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
+        self.y = self._arrays.get("damage/y")
+        self.section_y: float | None = None
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
         passed = self._of_surfaces("damage/{n}_complete")
@@ -150,16 +169,41 @@ class PostResult:
         columns = [self._arrays[f"weibull/{self.main}_{name}"] for name in WeibullFit._fields]
         return [WeibullFit(*map(float, row)) for row in zip(*columns, strict=True)]
 
+    def section(self, y: float) -> PostResult:
+        """Result along x in the row of a plane nearest to y [m], as that of a line contact."""
+        if self.y is None:
+            raise OutputError(f"{self.path}: a line contact has no sections")
+        row, one = int(np.argmin(np.abs(self.y - y))), copy.copy(self)
+        one.y, one.section_y = None, float(self.y[row])
+        one.damage = {side: values[:, row] for side, values in self.damage.items()}
+        one.criteria = {
+            name: {side: values[:, row] for side, values in found.items()}
+            for name, found in self.criteria.items()
+        }
+        one.profiles = {side: (s, z[row]) for side, (s, z) in self.profiles.items()}
+        one.temperatures = {
+            side: PointTemperatures(*(values[row] for values in found))
+            for side, found in self.temperatures.items()
+        }
+        return one
+
     def passed(self, surface: str, criterion: str | None = None) -> np.ndarray:
         """Damage (nz, points), or that of a criterion, of the points that passed the whole contact."""
-        values = self.criteria[criterion] if criterion else self.damage
-        return values[surface][:, self.complete[surface]]
+        values = (self.criteria[criterion] if criterion else self.damage)[surface]
+        return values[..., self.complete[surface]].reshape(len(self.z), -1)
 
     def worst_point(self, surface: str) -> tuple[float, float]:
         """(s, z/a) of the largest damage."""
-        values = np.nan_to_num(self.damage[surface], nan=-1.0)
-        k, j = np.unravel_index(values.argmax(), values.shape)
+        k, *_, j = self._worst(surface)
         return self.s[j], self.z[k]
+
+    def worst_row(self, surface: str) -> float:
+        """y [m] of the largest damage of a plane."""
+        return self.y[self._worst(surface)[1]]
+
+    def _worst(self, surface: str) -> tuple:
+        values = np.nan_to_num(self.damage[surface], nan=-1.0)
+        return np.unravel_index(values.argmax(), values.shape)
 
 
 def damage_beside(result: Result) -> PostResult | None:

@@ -89,8 +89,8 @@ class Result:
     ----------
     attrs : dict
         Root attributes: case text, provenance, a, p0, speeds, status.
-    x : ndarray, shape (nx,)
-        Nodes [m].
+    x, y : ndarray, shapes (nx,), (ny,)
+        Nodes [m]; y is None for a line contact.
     time, step : ndarray, shape (nt,)
         Times [s] and step numbers of the stored frames.
     fields, scalars : list of str
@@ -109,8 +109,10 @@ class Result:
         self.step = file["step"][: self._frames]
         self.steps = Steps(file["steps"], path)
         self.scalars = self.steps.names
-        self.fields = [n for n, d in file.items() if isinstance(d, h5py.Dataset) and d.ndim == 2]
+        datasets = {name: item for name, item in file.items() if isinstance(item, h5py.Dataset)}
+        self.fields = [n for n, d in datasets.items() if d.ndim > 1 and n != "contact_count"]
         self.x, self.contact_count = file["x"][:], file["contact_count"][:]
+        self.y = file["y"][:] if "y" in file else None
 
     def __enter__(self) -> Result:
         return self

@@ -13,6 +13,7 @@ from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
 from ehlpetsc.physics.film_formulas import smooth_films
+from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
 from ehlpetsc.run.outputs.progress import duration
@@ -34,7 +35,7 @@ def main(words: list[str]) -> int:
 def explain(case: Case) -> str:
     """Text summary of a case: conditions, surfaces, mesh, run time.
 
-    Raises `profiles.ProfileError`.
+    Raises :class:`ehlpetsc.base.errors.ProfileError`.
     """
     scales = Scales.of(case)
     rough = Roughness.of(case, scales)
@@ -47,6 +48,7 @@ def explain(case: Case) -> str:
             f"Hertz: half-width a = {scales.a * 1e3:.6f} mm, maximum pressure p0 = {scales.p0 / 1e9:.6f} GPa",
         ],
         _layer(case.contact, scales),
+        _default_friction(case),
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
@@ -69,11 +71,21 @@ def _layer(contact: Any, s: Scales) -> list[str]:
     ]
 
 
+def _default_friction(case: Case) -> list[str]:
+    """Coefficient of friction of the solids that a case leaves out; [] if it gives one."""
+    if case.default_friction is None:
+        return []
+    default = f"{case.default_friction:g}, the default of contact.boundary_friction"
+    return [f"Solids: coefficient of friction {default}, where they touch"]
+
+
 def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
+    oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
+        *oil,
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
         f"Expected smooth film (Moes, and the density under p0): central {central * 1e6:.3g} um, "

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehlpetsc.case.checking import attribute
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
@@ -19,7 +20,7 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
 )
 from ehlpetsc.physics.flash_temperature import expected_friction
-from ehlpetsc.physics.laws import LAWS, viscosity
+from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
 from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.roughness import Roughness
 
@@ -41,6 +42,7 @@ ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
+MIN_SHARE_OF_SOLIDS = 0.01  # of the load: with more their coefficient of friction matters
 FLATTENED = 0.01  # film over the rms height of the layer: below it the mesh does not resolve the film
 MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
 
@@ -117,6 +119,8 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
             f"contact.yield_pressure = {1e-9 * min(case.contact.yield_pressure):g} GPa is below a quarter of "
             f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
         )
+    if case.gears:
+        yield from case.gears.pair.notes()
     rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
     if rough and case.time is None and case.motion is not None:
         yield (
@@ -140,18 +144,23 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
 
 def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
-    film, friction = expected_film(case, scales) * scales.h, case.contact.boundary_friction
-    friction = expected_friction(case.fluid, friction, scales, film) if case.motion else None
+    friction = case.contact.boundary_friction if case.motion else None
+    if case.motion and case.fluid:
+        film = expected_film(case, scales) * scales.h
+        friction = expected_friction(case.fluid, scales.load, scales.a, scales.u1 - scales.u2, film)
     return list(isothermal(case, scales, friction))
 
 
 def _oil_warnings(fluid: Any) -> Iterator[str]:
-    """Oil constants that the viscosity law does not use."""
-    others = {name for law in LAWS.values() for name in law.keys}
-    others -= set(LAWS[fluid.law].keys) if fluid else others
-    keys = sorted(f"fluid.{name}" for name in others if getattr(fluid, name) is not None)
-    if keys:
-        yield f'{", ".join(keys)}: not used by law = "{fluid.law}"'
+    """Oil constants that none of the case's laws uses."""
+    if fluid is None:
+        return
+    of_laws = {name: key for laws in TABLES for law in laws.values() for name, key in law.keys.items()}
+    given = {name for name, key in of_laws.items() if getattr(fluid, attribute(name)) != key.default}
+    in_use = [laws[name] for laws, name in zip(TABLES, names_in_use(fluid), strict=True)]
+    unused = sorted(f"fluid.{name}" for name in given.difference(*(law.keys for law in in_use)))
+    if unused:
+        yield f'{", ".join(unused)}: not used by law = "{fluid.law}", density = "{fluid.density}"'
 
 
 def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
@@ -171,21 +180,35 @@ def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
             )
 
 
-def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str, float]) -> list[str]:
+def limits(
+    case: Case,
+    scales: Scales,
+    rough: Roughness | None,
+    totals: dict[str, float],
+    boundary_friction: float | None = None,
+) -> list[str]:
     """Messages on results outside the validity of the model.
 
     `totals`: scalars over the run, see `ehlpetsc.results.means.Totals`.
+    `boundary_friction`: maximum over the run, of effects too; None: that of the case.
     """
     if "p_max" not in totals:  # no step was taken
         return []
-    of_oil = _of_oil(case, totals) if case.fluid else []
+    friction = case.contact.boundary_friction if boundary_friction is None else boundary_friction
+    of_oil = _of_oil(case, totals, friction) if case.fluid else []
     heat = (f"heat: {note}" for note in isothermal(case, scales, totals.get("friction_coefficient")))
     mesh = []
     if rough:
         from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
         mesh = [f"mesh: {note}" for note in mesh_warnings(rough, scales)]
-    return [*_of_solids(case.contact, totals), *mesh, *heat, *of_oil]
+    return [
+        *_of_solids(case.contact, totals),
+        *_of_default_friction(case, scales, totals),
+        *mesh,
+        *heat,
+        *of_oil,
+    ]
 
 
 def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
@@ -204,6 +227,19 @@ def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
         )
 
 
+def _of_default_friction(case: Case, scales: Scales, totals: dict[str, float]) -> Iterator[str]:
+    """Note on solids that carry load with a coefficient of friction that the case does not give."""
+    share, of = totals.get("contact_share", 1.0), "load"
+    if case.fluid and not case.contact.has_contact_pressure:
+        nodes = scales.grid.inside(1.0).sum() * (totals.get("step", 0) + 1)
+        share, of = totals.get("contacts", 0) / nodes, "Hertz contact, in the mean"
+    if case.default_friction is not None and share >= MIN_SHARE_OF_SOLIDS:
+        yield (
+            f"friction: the solids carry up to {100 * share:.3g} % of the {of}, with a coefficient of "
+            f"friction of {case.default_friction:g}, the default; contact.boundary_friction sets theirs"
+        )
+
+
 def isothermal(case: Case, scales: Scales, friction: float | None) -> Iterator[str]:
     """Note on an isothermal case with a high flash temperature by its coefficient of friction, if known."""
     if friction is None or case.heat is not None or case.motion is None:
@@ -218,9 +254,9 @@ def isothermal(case: Case, scales: Scales, friction: float | None) -> Iterator[s
         )
 
 
-def _of_oil(case: Case, totals: dict[str, float]) -> Iterator[str]:
+def _of_oil(case: Case, totals: dict[str, float], boundary_friction: float) -> Iterator[str]:
     coefficient = abs(totals.get("friction_coefficient", 0.0))
-    if coefficient > max(MAX_OIL_FRICTION, case.contact.boundary_friction):
+    if coefficient > max(MAX_OIL_FRICTION, boundary_friction):
         yield (
             f"friction: a coefficient of {coefficient:.3g}, but oils bear a shear stress of about 0.1 of "
             "their pressure; eyring_stress, carreau_stress or limiting_shear in [fluid] bounds it"

@@ -32,7 +32,8 @@ def diagnostics(
             shear = effect.film_shear(state.records[effect.name], solution, shear)
     fields, contact_mask = _fields(scene, conditions, solution, shear), loads.contact_mask
     pressure, thickness = fields["pressure"], fields["film_thickness"]
-    load, film = s.grid.cell_size * pressure.sum(), mean_film(s, solution.nodes.film)
+    size = s.size(conditions)
+    load, film = s.grid.cell_size * pressure.sum(), mean_film(s, solution.nodes.film, size)
     friction_1, friction_2 = (s.grid.cell_size * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
     smooth_film = smooth_films(s, case.fluid, conditions)[1] if case.fluid else np.nan
     scalars = {
@@ -44,7 +45,7 @@ def diagnostics(
         "contacts": int(contact_mask.sum()),
         "load": load,
         "load_error": abs(load / conditions.load - 1.0),
-        "mass_error": mass_error(problem, solution),
+        "mass_error": mass_error(problem, solution, size),
         "approach": solution.unknowns.h00 * s.h,
         "friction": friction_2,
         "friction_1": friction_1,
@@ -96,24 +97,28 @@ def _of_oil(loads: SurfaceLoads, s: Scales) -> dict:
     return {"oil_pressure": oil.max(), "nodes_below_1nm": int(thin.sum())}
 
 
-def mean_film(scales: Scales, h: np.ndarray) -> float:
-    """Mean film [m] of the middle half of the Hertz contact; h in a^2/R."""
-    middle = scales.grid.inside(0.5)
+def mean_film(scales: Scales, h: np.ndarray, size: float) -> float:
+    """Mean film [m] of the middle half of the Hertz contact of the instant.
+
+    `h`: film in a^2/R. `size`: of the contact of the instant over that of the widest contact of the run.
+    """
+    middle = scales.grid.inside(0.5 * size)
     return float(h[middle].mean() * scales.h)
 
 
-def mass_error(problem: EHLProblem, solution: Solution) -> float:
+def mass_error(problem: EHLProblem, solution: Solution, size: float) -> float:
     r"""Mass defect of a step over the mass that the contact carries.
 
-    :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` on :math:`|x|\le a`, both times u: 0
-    where mass is conserved at every node. At contact nodes of direct contact, F is the mass that is not
-    conserved; at other nodes, and at all nodes in mixed contact, it is the residual of Newton's method.
-    (The mass flow at the inlet is no reference: nearly all of the thick film there flows back.) The inlet
-    node has no balance: its pressure or its oil film is prescribed.
+    :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` in the Hertz contact, `size` its
+    size at the instant over that of the scales, both times u: 0 where mass is conserved at every node. At
+    contact nodes of direct contact, F is the mass that is not conserved; at other nodes, and at all nodes in
+    mixed contact, it is the residual of Newton's method. (The mass flow at the inlet is no reference: nearly
+    all of the thick film there flows back.) The inlet node has no balance: its pressure or its oil film is
+    prescribed.
     """
     if problem.fluid is None:
         return 0.0
     grid = problem.grid
     defect = problem.film_scale * np.abs(grid.rows(solution.residual)[:, 1:]).sum()
-    carried = solution.mass[grid.inside(1.0)].mean()
+    carried = solution.mass[grid.inside(size)].mean()
     return float(defect / (max(carried, MIN_BALANCE_FILM / problem.scales.h) * grid.breadth))

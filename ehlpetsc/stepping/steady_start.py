@@ -28,7 +28,7 @@ from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.physics.rheology import SHEAR_LAWS
+from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
 
@@ -167,7 +167,7 @@ def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
     fluid, oil = inputs.fluid, inputs.oil
     if fluid and fraction < 1.0:
         change = {"exponent_factor": fraction}
-        stresses = {key: getattr(fluid, key) for key in SHEAR_LAWS}
-        change |= {key: stress / fraction**4 for key, stress in stresses.items() if stress is not None}
+        stress = list(SHEAR_LAWS[shear_law(fluid)].keys)[:1]
+        change |= {key: getattr(fluid, key) / fraction**4 for key in stress}
         oil = IsothermalOil(fluid.copy(update=change), oil.scales)
     return replace(inputs, oil=oil, phi=roughness * inputs.phi)

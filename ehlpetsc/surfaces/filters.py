@@ -1,6 +1,9 @@
-"""Levelling and filtering of measured profiles."""
+"""Levelling and filtering of measured profiles and maps."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
 
 import numpy as np
 
@@ -14,6 +17,28 @@ def levelled(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Heights minus their least-squares line."""
     x = x - x.mean()
     return z - z.mean() - x * (x @ z / (x @ x))
+
+
+def without_form(axes: Sequence[np.ndarray], z: np.ndarray, degree: int) -> np.ndarray:
+    """Heights minus their least-squares polynomial of a total degree; 1: minus a line or plane.
+
+    On a grid the products of polynomials that are orthonormal on the points of each axis are orthonormal too,
+    so that the fit is a projection.
+
+    `axes`: abscissas along each axis of z.
+    `z`: shape (nx,) or (ny, nx).
+    """
+    bases = [_orthonormal_polynomials(x, degree) for x in axes]
+    # each product moves one axis from the first place to the last: after all of them they are in order again
+    coefficients = reduce(lambda values, basis: np.tensordot(values, basis, (0, 0)), bases, z)
+    coefficients[sum(np.indices(coefficients.shape)) > degree] = 0.0
+    return z - reduce(lambda values, basis: np.tensordot(values, basis, (0, 1)), bases, coefficients)
+
+
+def _orthonormal_polynomials(x: np.ndarray, degree: int) -> np.ndarray:
+    """Values of polynomials up to a degree, shape (n, degree + 1), orthonormal on the points x."""
+    centred = (x - 0.5 * (x[0] + x[-1])) / (0.5 * (x[-1] - x[0]))
+    return np.linalg.qr(np.polynomial.legendre.legvander(centred, degree))[0]
 
 
 def high_pass(x: np.ndarray, z: np.ndarray, cutoff: float) -> np.ndarray:
@@ -35,7 +60,7 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
     mirrored, as in a run; a cosine transform then gives the convolution exactly, however short the cut-off.
     (ISO drops half a cut-off at either end, where a slope makes a kink of what is mirrored.)
 
-    `x`, `z`: m; x equally spaced, shape (n,).
+    `x`, `z`: m; x equally spaced, shape (n,), z with this as its last axis.
     `cutoff`: wavelength [m].
     `key`: key of the cut-off in the case.
     """
@@ -53,5 +78,17 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
             'where its x is not in m, write unit = "mm", "um" or "nm"'
         )
     spectrum = dct(z, type=1)
-    exponent = np.arange(z.size) * (cutoff / (2.0 * length))
+    exponent = np.arange(x.size) * (cutoff / (2.0 * length))
     return idct(spectrum * np.exp2(-np.square(exponent)), type=1)
+
+
+def mean_surface(x: np.ndarray, y: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarray:
+    r"""Mean surface of the areal Gaussian filter of ISO 16610-61.
+
+    Its weight :math:`\exp[-\pi(x^2+y^2)/(\alpha\lambda_c)^2]` is the product of two weights of `mean_line`:
+    of a wave of length :math:`\lambda` in any direction it passes :math:`2^{-(\lambda_c/\lambda)^2}`.
+
+    `z`: m, shape (ny, nx).
+    """
+    along = mean_line(x, z, cutoff, key)
+    return mean_line(y, along.T, cutoff, key).T

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
     from ehlpetsc.surfaces.samples import Samples
+    from ehlpetsc.surfaces.topography import Topography
 
 MAX_SPACING = 0.25  # half-widths between two points: wider than asperities
 MAX_RQ = 0.1  # half-widths
@@ -21,14 +22,14 @@ MAX_RQ_RATIO = 30.0  # Rq over the elastic approach a^2/R, or over the film
 MAX_SLOPE = 1.0  # root mean square
 
 
-def absurd(samples: Samples, a: float, dx: float, approach: float, film: float) -> str | None:
-    """Message on a profile that is implausible for a contact, mostly by a wrong unit; None: plausible.
+def absurd(samples: Samples | Topography, a: float, dx: float, approach: float, film: float) -> str | None:
+    """Message on a profile or map that is implausible for a contact, mostly by a wrong unit; None: plausible.
 
     `a`, `dx`: half-width and spacing of the mesh [m].
     `approach`, `film`: a^2/R and expected film [m].
     """
     rq = float(samples.z.std())
-    slope = float(np.sqrt(np.mean((np.diff(samples.z) / np.diff(samples.X)) ** 2)))
+    slope = samples.rms_slope
     highest = min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film))
     if samples.spacing > MAX_SPACING * a:
         fault = f"points {_um(samples.spacing)} apart beside a half-width of {_um(a)}"

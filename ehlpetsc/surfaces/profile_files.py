@@ -1,4 +1,4 @@
-"""Measured profiles: text files in many layouts, and the formats of the package SurfaceTopography."""
+"""Measured profiles: text in many layouts, softgauges, and the formats of the package SurfaceTopography."""
 
 from __future__ import annotations
 
@@ -10,14 +10,18 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.surfaces.outliers import groups, held, no_data_value, spikes
+from ehlpetsc.surfaces.softgauges import read_softgauge
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
 SPACING_VARIATION = 0.02  # relative, of equally spaced points
+MIN_MATRIX_COLUMNS = 8  # of heights alike: a map, which a line contact does not read
 MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
 MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
-UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
+UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
+UNITS |= {"inch": 0.0254, "microinch": 0.0254e-6, "mil": 0.0254e-3}
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,7 @@ class Layout:
     `decimal`: "." or ",".
     `header_lines`: lines before the numbers.
     `fill_gaps`: longest gap of missing heights [m] that the spline bridges.
+    `bridge_spikes`: whether the spline bridges the spikes of optical instruments.
     """
 
     unit: str | None = None
@@ -39,9 +44,11 @@ class Layout:
     decimal: str | None = None
     header_lines: int | None = None
     fill_gaps: float | None = None
+    bridge_spikes: bool = False
 
 
 KEYS = tuple(Layout.__dataclass_fields__)
+KEYS_OF_TEXT = KEYS[: KEYS.index("fill_gaps")]
 
 
 def read_profile(
@@ -50,8 +57,9 @@ def read_profile(
     """Abscissas, from 0 on, and heights of a profile file.
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
-    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
-    format through the package SurfaceTopography if it is installed.
+    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. SMD, PRF and
+    ASCII SDF, see :mod:`.softgauges`. Any other format through the package SurfaceTopography if it is
+    installed.
 
     Returns X and z [m], X increasing, heights positive out of the metal, shape (n,), and notes on the
     processing of the numbers.
@@ -70,8 +78,12 @@ def read_profile(
 def _read(
     path: Path, layout: Layout, _modified: int, _size: int
 ) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
-    text = path.suffix.lower() in TEXT
-    x, z, notes = checked(*(_from_text if text else _from_surface_topography)(path, layout), layout)
+    from_softgauge, text_keys = read_softgauge(path), [key for key in KEYS_OF_TEXT if getattr(layout, key)]
+    is_text = from_softgauge is None and path.suffix.lower() in TEXT
+    if text_keys and not is_text:
+        raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
+    read = from_softgauge or (_from_text(path, layout) if is_text else _from_surface_topography(path))
+    x, z, notes = checked(*read, layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, notes
 
@@ -85,10 +97,17 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
             f'columns; write unit = "{named[-1]}" for the heights'
             + (f' and x_unit = "{named[0]}"' if named[0] != named[-1] else "")
         )
-    count = len(columns)
-    chosen = layout.columns or tuple(range(1, count + 1))
+    if columns.shape[1] <= 2 and len(columns) >= MIN_MEASURED_POINTS:  # one line of heights, or of x and of z
+        columns = columns.T
+    count, numeric = len(columns), [k for k, c in enumerate(columns, 1) if not np.isnan(c).all()]
+    chosen = layout.columns or tuple(numeric)
     if max(chosen) > count:
         raise ProfileError(f"columns = {list(chosen)}: the file has {count}")
+    if empty := set(chosen) - set(numeric):
+        raise ProfileError(
+            f"columns = {list(chosen)}: no numbers in column {min(empty)}; allowed: {numeric}, from 1"
+        )
+    _check_matrix(columns, chosen)
     if len(chosen) > 2:
         raise ProfileError(
             f"{count} columns; write columns = [1, 2] for x and z, counted from 1, or columns = [2] and "
@@ -105,10 +124,24 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     return UNITS[layout.x_unit or layout.unit or "m"] * columns[chosen[0] - 1], z
 
 
-def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
-    text_keys = [key for key in KEYS if key != "fill_gaps" and getattr(layout, key) is not None]
-    if text_keys:
-        raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
+def _check_matrix(columns: np.ndarray, chosen: tuple[int, ...]) -> None:
+    """Refuse the columns of a map of heights as a profile: none of them is x, a trace across is short."""
+    count, lines = columns.shape
+    if count < MIN_MATRIX_COLUMNS:
+        return
+    if len(chosen) == 1:
+        is_map = lines < min(count, MIN_MEASURED_POINTS)
+    else:
+        step = np.abs(np.diff(columns[chosen[0] - 1]))
+        is_map = not (np.abs(step - np.median(step)) <= SPACING_VARIATION * np.median(step)).mean() > 0.5
+    if is_map:
+        raise ProfileError(
+            f"{count} columns in {lines} lines without an equally spaced x: a map of heights, not a profile; "
+            "write one line of it to a file, with spacing = distance of its points [m]"
+        )
+
+
+def _from_surface_topography(path: Path) -> tuple[np.ndarray, np.ndarray]:
     try:
         from SurfaceTopography import read_topography
     except ModuleNotFoundError:
@@ -130,7 +163,11 @@ def _from_surface_topography(path: Path, layout: Layout) -> tuple[np.ndarray, np
 def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Profile from x = 0 on with increasing x and filled gaps; ProfileError for a faulty one."""
     x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
-    notes = []
+    notes, no_data = [], ""
+    while (value := no_data_value(z)) is not None:
+        shown = f"{value / UNITS[layout.unit or 'm']:.6g}"
+        no_data += f", {np.count_nonzero(z == value)} of them the value {shown} far from all others"
+        z[z == value] = np.nan
     bad = ~(np.abs(x) < MAX_ABSCISSA) | (np.abs(z) >= MAX_ABSCISSA)
     if bad.any():
         raise ProfileError(
@@ -149,8 +186,16 @@ def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, n
             "or spacing and columns for the heights alone"
         )
     x, z = _with_missing_lines(x, z)
-    if np.isnan(z).any():
-        x, z = _filled(x, z, layout.fill_gaps, notes)
+    is_missing, is_spike = np.isnan(z), spikes(z)
+    if is_missing.any():
+        notes.append(_note_of_gaps(x, is_missing, layout.fill_gaps, no_data))
+    if (is_held := held(z)).any():
+        notes.append(_note_of_held_heights(x, is_held))
+    if is_spike.any():
+        notes.append(_note_of_spikes(x, is_spike, layout.bridge_spikes))
+        is_missing |= is_spike & layout.bridge_spikes
+    if is_missing.any():
+        x, z = _bridged(x, z, is_missing)
     return x - x[0], z, tuple(notes)
 
 
@@ -176,27 +221,48 @@ def _with_missing_lines(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.nd
     return np.interp(number, places, x), heights
 
 
-def _filled(
-    x: np.ndarray, z: np.ndarray, longest: float | None, notes: list[str]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Profile with missing heights filled by the spline, and cut off at its ends."""
-    from scipy.interpolate import CubicSpline
+def _note_of_gaps(x: np.ndarray, is_missing: np.ndarray, longest: float | None, no_data: str) -> str:
+    """Note on missing heights; ProfileError if a gap is longer than `longest` [m].
 
-    present = np.flatnonzero(~np.isnan(z))
-    missing = z.size - present.size
+    `no_data`: which of them have a no-data value.
+    """
+    present = np.flatnonzero(~is_missing)
+    missing = x.size - present.size
     if present.size < 4:
-        raise ProfileError(f"{present.size} heights are not missing; allowed: at least 4")
+        raise ProfileError(f"{present.size} heights are not missing{no_data}; allowed: at least 4")
     gaps = np.diff(x[present]) * (np.diff(present) > 1)
     ends = max(x[present[0]] - x[0], x[-1] - x[present[-1]])
     widest = max(gaps.max(), ends)
     if longest is None or widest > longest:
         worst = x[present[gaps.argmax()]] if gaps.max() >= ends else x[0] if present[0] else x[present[-1]]
         raise ProfileError(
-            f"{missing} heights missing, the longest gap {widest:.3g} m behind x = {worst:g}; "
+            f"{missing} heights missing{no_data}, the longest gap {widest:.3g} m behind x = {worst:g}; "
             f"write fill_gaps = {widest * 1.01:.2g} or more to have the spline bridge gaps of that length [m]"
         )
-    inside = slice(present[0], present[-1] + 1)
-    notes.append(
-        f"{missing} missing heights filled or, at the ends, cut off; longest gap {1e6 * widest:.3g} um"
+    return (
+        f"{missing} missing heights filled or, at the ends, cut off{no_data}; "
+        f"longest gap {1e6 * widest:.3g} um"
     )
+
+
+def _note_of_held_heights(x: np.ndarray, is_held: np.ndarray) -> str:
+    count, place = np.count_nonzero(is_held), 1e6 * (x[is_held.argmax()] - x[0])
+    return (
+        f"equal heights in a row: {count}, from x = {place:.4g} um on, of drop-outs or the end of the range; "
+        "nan in their place and fill_gaps bridge them"
+    )
+
+
+def _note_of_spikes(x: np.ndarray, is_spike: np.ndarray, are_bridged: bool) -> str:
+    place, action = 1e6 * (x[is_spike.argmax()] - x[0]), "; bridge_spikes = true bridges them"
+    found = f"spikes: {groups(is_spike)} with {np.count_nonzero(is_spike)} points in all"
+    return f"{found}, the first at x = {place:.4g} um{', bridged' if are_bridged else action}"
+
+
+def _bridged(x: np.ndarray, z: np.ndarray, is_missing: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Profile with missing heights filled by the spline, and cut off at its ends."""
+    from scipy.interpolate import CubicSpline
+
+    present = np.flatnonzero(~is_missing)
+    inside = slice(present[0], present[-1] + 1)
     return x[inside], CubicSpline(x[present], z[present])(x[inside])

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.surfaces.moving_surface import Passage
 from ehlpetsc.surfaces.profile import Profile
 
 if TYPE_CHECKING:
-    from ehlpetsc.base.declarations import Values
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
 
@@ -69,11 +69,15 @@ class Roughness:
 
         `positions`: by default both profiles begin to enter with their first point.
         """
+        from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
+
         sides, positions = {}, positions or SurfacePositions()
         speeds = directed_speeds(case, scales)
         for k, side in enumerate(("1", "2")):
             spec = case.surface.side(side)
-            sides[side] = spec and _profile(case, scales, spec, speeds[k], k, positions)
+            sides[side] = spec and Profile(
+                samples(case.path.parent, spec), passage(case, scales, speeds[k], k, positions)
+            )
         return cls(sides["1"], sides["2"]) if any(sides.values()) else None
 
     def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
@@ -97,11 +101,8 @@ class Roughness:
         return float(np.linalg.norm([profile.rq for profile in self.sides.values()]))
 
 
-def _profile(
-    case: Case, scales: Scales, spec: Values, speed: float, side: int, positions: SurfacePositions
-) -> Profile:
-    from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
-
+def passage(case: Case, scales: Scales, speed: float, side: int, positions: SurfacePositions) -> Passage:
+    """Passage of surface `side`, 0 or 1, through the domain; `speed`: see :func:`directed_speeds`."""
     inlet, outlet = scales.x[0] * scales.a, scales.x[-1] * scales.a
     swept_length, table, reach = 0.0, case.conditions, None
     if table is not None and table.varies:
@@ -110,8 +111,7 @@ def _profile(
     elif case.time is not None:
         swept_length = scales.duration * abs(speed)
     starts_rough = case.time is not None and case.time.start == "rough"
-    return Profile(
-        samples(case.path.parent, spec),
+    return Passage(
         speed,
         case.time is not None,
         inlet,

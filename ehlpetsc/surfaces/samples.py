@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.surfaces import synthetic
-from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass, without_form
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 if TYPE_CHECKING:
@@ -44,6 +44,11 @@ class Samples:
         """Mean distance of the samples [m]."""
         return self.length / (self.X.size - 1)
 
+    @property
+    def rms_slope(self) -> float:
+        """Root mean square slope between neighbouring samples."""
+        return float(np.sqrt(np.mean((np.diff(self.z) / np.diff(self.X)) ** 2)))
+
 
 def samples(folder: Path, spec: Values) -> Samples:
     """Samples of one surface: read or generated, levelled, filtered, centred, flipped, scaled.
@@ -59,7 +64,9 @@ def samples(folder: Path, spec: Values) -> Samples:
         X, z, notes = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
         X, z, notes = read_profile(folder / spec.file, layout_of(spec))
-    if spec.level:
+    if spec.form is not None:
+        z = without_form([X], z, spec.form)
+    elif spec.level:
         z = levelled(X, z)
     if spec.cutoff is not None:
         z = high_pass(X, z, spec.cutoff)

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
+SHORTEST_WAVE_POINTS = 10  # of a self-affine profile, per short_cutoff
+ROLL_OFFS = 200  # length of a self-affine profile, in roll_off
+MAX_POINTS = 4_000_000  # of self-affine profiles, which are shorter beyond it
 FLANK_WIDTH = 0.1  # of a square wave, in units of the cosine over which the flank rises
 SINGLE_FEATURES = ("ridge", "dent")  # do not repeat
 
@@ -23,6 +26,8 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     """
     if spec.kind == "ground":
         return *ground(spec.ra, spec.correlation, spec.skewness, spec.seed), True
+    if spec.kind == "self-affine":
+        return *self_affine(spec), True
     if spec.kind in SINGLE_FEATURES:
         return *bump(spec), False
     is_square = spec.kind == "square"
@@ -33,6 +38,16 @@ def sampled(spec: Values) -> tuple[np.ndarray, np.ndarray, bool]:
     if is_square:
         wave = np.tanh(wave / FLANK_WIDTH) / np.tanh(1 / FLANK_WIDTH)
     return x, spec.amplitude * wave, True
+
+
+def self_affine(spec: Values) -> tuple[np.ndarray, np.ndarray]:
+    """Random profile with a self-affine spectrum, see :class:`.self_affine.Spectrum`: X, z [m]."""
+    from ehlpetsc.surfaces.self_affine import Spectrum, heights
+
+    spacing = spec.short_cutoff / SHORTEST_WAVE_POINTS
+    n = int(min(ROLL_OFFS * spec.roll_off / spacing, MAX_POINTS))
+    spectrum = Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff)
+    return spacing * np.arange(n), heights((n,), (spacing,), spectrum, spec.seed)
 
 
 def bump(spec: Values) -> tuple[np.ndarray, np.ndarray]:
@@ -60,15 +75,20 @@ def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[n
     Returns abscissas and heights [m] of mean 0.
     """
     from scipy.ndimage import gaussian_filter1d
-    from scipy.optimize import brentq
 
     n = GROUND_LENGTH * GROUND_POINTS
     noise = np.random.default_rng(seed).standard_normal(n)
-    normal = gaussian_filter1d(noise, GROUND_POINTS / 2, mode="mirror", truncate=6.0)
-    normal = (normal - normal.mean()) / normal.std()
-    z = _pearson3(normal, brentq(lambda s: _skewness(_pearson3(normal, s)) - skewness, -8.0, 8.0, xtol=1e-10))
-    z -= z.mean()
+    z = with_skewness(gaussian_filter1d(noise, GROUND_POINTS / 2, mode="mirror", truncate=6.0), skewness)
     return np.arange(n) * (correlation / GROUND_POINTS), z * (ra / np.abs(z).mean())
+
+
+def with_skewness(heights: np.ndarray, skewness: float) -> np.ndarray:
+    """Normal heights mapped by their rank to Pearson III ones with this skewness exactly, of mean 0."""
+    from scipy.optimize import brentq
+
+    normal = (heights - heights.mean()) / heights.std()
+    z = _pearson3(normal, brentq(lambda s: _skewness(_pearson3(normal, s)) - skewness, -8.0, 8.0, xtol=1e-10))
+    return z - z.mean()
 
 
 def _pearson3(normal: np.ndarray, skewness: float) -> np.ndarray:

@@ -6,52 +6,73 @@ Separator and decimal sign are detected; ambiguous files are refused with the ke
 from __future__ import annotations
 
 import codecs
+import csv
 import io
 import re
+import unicodedata
 from pathlib import Path
 
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 
-DATA = re.compile(  # a line of numbers, some of which may be missing
-    r"(?=.*\d)[\s,;]*(([+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?|-?nan(\(ind\))?|n/?a|bad|\*+|-+)([\s,;]+|$))+(#.*)?",
-    re.IGNORECASE,
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[ed][+-]?\d+)?"
+MISSING = r"(?:-?nan(?:\(ind\))?|-?1\.#\w+|#?n/?a|bad|\*+|-+)"  # markers, besides empty cells
+CELL = re.compile(f"(?:({NUMBER})|({MISSING})?)", re.IGNORECASE)
+WITH_UNIT = re.compile(rf"(?>{NUMBER})\s*[^\W\d_/:.-]", re.IGNORECASE)  # as 0.12 um, unlike a date or a name
+COMMENT = re.compile(r"(?:^|(?<=[\s,;|]))#(?!n/?a).*", re.IGNORECASE | re.MULTILINE)
+SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})  # minus and dash of word processors
+UNIT_NAMES = {
+    "m": ("m",),
+    "mm": ("mm",),
+    "um": ("um", "\u00b5m", "\u03bcm", "micron", "microns", "micrometer", "micrometre"),
+    "nm": ("nm",),
+    "angstrom": ("\u00c5", "ang", "angstrom", "angstroms", "\u00e5ngstr\u00f6m"),
+    "inch": ("in", "in.", "inch", "inches"),
+    "microinch": ("uin", "\u00b5in", "\u03bcin", "microin", "microinch", "microinches"),
+    "mil": ("mil", "mils", "thou"),
+}
+UNIT_OF_NAME = {name.lower(): unit for unit, names in UNIT_NAMES.items() for name in names}
+UNIT_IN_HEADER = re.compile(
+    rf"[\[(/]\s*({'|'.join(map(re.escape, UNIT_OF_NAME))})\s*(?:[\])]|[\s;,|\"]|$)",
+    re.MULTILINE | re.IGNORECASE,
 )
-UNIT_IN_HEADER = re.compile(r"[\[(/]\s*(mm|um|µm|μm|nm|m)\s*(?:[\])]|$)", re.MULTILINE)
 
 
 def text_columns(
     path: Path, decimal: str | None = None, header_lines: int | None = None
 ) -> tuple[np.ndarray, str]:
-    """Numbers of a text file, shape (columns, rows), nan for missing ones, and the lines above them.
+    """Numbers of a text file, shape (columns, rows), and the lines above them.
+
+    nan for missing numbers: empty cells and the markers `MISSING`. A column of words is nan throughout. Any
+    other word is refused with its line.
 
     `decimal`: "." or ","; default: detected.
     `header_lines`: lines before the numbers; default: all lines before the first line of numbers.
     """
-    text, begin, above = _decoded(path), 0, 0
-    while begin < len(text):
-        end = text.find("\n", begin) + 1 or len(text)
-        if DATA.fullmatch(text[begin:end].strip()) if header_lines is None else above == header_lines:
-            break
-        begin, above = end, above + 1
-    header, body = text[:begin], re.sub("#.*", "", text[begin:])
-    body, separator = _with_points(body, decimal)
+    lines = _decoded(path).translate(SIGNS).split("\n")
+    above = _first_line(lines) if header_lines is None else min(header_lines, len(lines))
+    header, body = "\n".join(lines[:above]), COMMENT.sub("", "\n".join(lines[above:]))
+    body, separator = _with_points(_unquoted(body), decimal)
     columns = np.empty((0, 0))
     if re.search(r"\d", body):
         try:
-            columns = np.loadtxt(io.StringIO(body), delimiter=separator, ndmin=2).T
+            columns = np.loadtxt(io.StringIO(body), delimiter=separator, comments=None, ndmin=2).T
         except ValueError:
-            columns = _with_missing(body, separator, above).T
-        columns = columns[~np.isnan(columns).all(axis=1)]
+            columns = _cell_by_cell(body, separator, above).T
+        while len(columns) and np.isnan(columns[-1]).all():  # behind separators at the ends of the lines
+            columns = columns[:-1]
     if not columns.size:
         raise ProfileError("0 points; allowed: lines of numbers, x and z")
+    if header_lines is None and above:
+        _check_last_heading(lines[above - 1], above, separator, len(columns))
     return columns, header
 
 
 def units_in(header: str) -> list[str]:
     """Units of length in brackets, or after a slash, in a header, in their order."""
-    return [unit.replace("µ", "u").replace("μ", "u") for unit in UNIT_IN_HEADER.findall(header)]
+    header = unicodedata.normalize("NFC", header)  # an A and a ring above to one letter
+    return [UNIT_OF_NAME[name.lower()] for name in UNIT_IN_HEADER.findall(header)]
 
 
 def _decoded(path: Path) -> str:
@@ -68,27 +89,80 @@ def _decoded(path: Path) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
+def _first_line(lines: list[str]) -> int:
+    """Index of the first line of numbers; with a column of words, of the first line like the last one."""
+    numbers = (k for k, line in enumerate(lines) if "1" in (kinds := _kinds(line)) and "w" not in kinds)
+    first = next(numbers, None)
+    if first is None:
+        last = next(filter(None, map(_kinds, reversed(lines))), "")
+        first = next((k for k, line in enumerate(lines) if "1" in last == _kinds(line)), len(lines))
+    return first
+
+
+def _kinds(line: str) -> str:
+    """Kinds of the words in a line: 1 for a number, 0 for a marker of a missing one, w for another word."""
+    words = re.split(r"[\s,;|]+", COMMENT.sub("", line).strip(" \t,;|"))
+    found = [CELL.fullmatch(word.strip("\"'")) for word in words if word]
+    return "".join("w" if match is None else "1" if match[1] else "0" for match in found)
+
+
+def _unquoted(text: str) -> str:
+    """Text with quoted cells as bare ones, then separated by tabs, as a comma in quotes is decimal."""
+    if '"' not in text:
+        return text
+    outside = re.sub(r'"[^"\n]*"', "", text)
+    separator = next((sign for sign in ";\t|," if sign in outside), " ")
+    return "\n".join("\t".join(row) for row in csv.reader(text.split("\n"), delimiter=separator))
+
+
 def _with_points(text: str, decimal: str | None) -> tuple[str, str | None]:
     """Numbers with decimal points, and their separator; None: blanks."""
-    separator = next((sign for sign in ";\t" if sign in text), None)
+    separator = next((sign for sign in ";\t|" if sign in text), None)
     if separator is None and "," in text and decimal != ",":
-        in_numbers = re.search(r"\S +\S", text) and not re.search(r"(?<!\d),|,(?!\d)", text)
+        in_numbers = re.search(r"\d +[-+.]?\d", text) and not re.search(r"(?<!\d),|,(?!\d)", text)
         if decimal or not in_numbers:
             return text, ","
-    if decimal is None and "," in text and "." in text:
+    if decimal is None and re.search(r"\d,\d", text) and re.search(r"\d\.|\.\d", text):
         raise ProfileError('its numbers contain both "," and "."; write decimal = "," or decimal = "."')
     return text.replace({",": ".", ".": ","}.get(decimal or "", ""), "").replace(",", "."), separator
 
 
-def _with_missing(text: str, separator: str | None, above: int) -> np.ndarray:
-    """Numbers of lines read one by one; nan for words."""
+def _cell_by_cell(text: str, separator: str | None, above: int) -> np.ndarray:
+    """Numbers of lines read one by one; nan for missing ones and for columns of words."""
     lines = enumerate(text.split("\n"), above + 1)
-    rows = {n: line.strip() for n, line in lines if line.strip(",; \t")}
-    *_, width = (len(row.split(separator)) for row in rows.values())
+    rows = {n: line.strip().split(separator) for n, line in lines if line.strip(",;| \t")}
+    *_, width = map(len, rows.values())
     for n, row in rows.items():
-        if len(words := row.split(separator)) != width:
+        if len(row) != width:
             raise ProfileError(
-                f"line {n}: {len(words)} numbers, the last line has {width}; allowed: as many in every line, "
+                f"line {n}: {len(row)} numbers, the last line has {width}; allowed: as many in every line, "
                 f"numbers alone below the header, or header_lines = {n} if that one belongs to it"
             )
-    return np.genfromtxt(rows.values(), delimiter=separator, comments=None, ndmin=2)
+    columns = zip(*rows.values(), strict=True)
+    return np.array([_column([cell.strip(" '") for cell in cells], list(rows)) for cells in columns]).T
+
+
+def _column(cells: list[str], lines: list[int]) -> list[float]:
+    """Numbers of the cells of one column, in lines with these numbers."""
+    found = [CELL.fullmatch(cell) for cell in cells]
+    are_words = not any(match and match[1] for match in found)
+    for cell, match, line in zip(cells, found, lines, strict=True):
+        if match is None and (not are_words or WITH_UNIT.match(cell)):
+            raise ProfileError(_no_number(cell, line))
+    numbers = (match[1] if match else None for match in found)
+    return [float(re.sub("[dD]", "e", number)) if number else np.nan for number in numbers]
+
+
+def _check_last_heading(line: str, number: int, separator: str | None, width: int) -> None:
+    """Refuse a line above the numbers that is one of them with a word in a cell."""
+    cells = [cell.strip(" \"'") for cell in line.strip().split(separator)]
+    if separator and len(cells) == width > 1 and any(re.fullmatch(NUMBER, cell) for cell in cells):
+        if word := next((cell for cell in cells if WITH_UNIT.match(cell)), None):
+            raise ProfileError(f"{_no_number(word, number)}, or header_lines = {number}")
+
+
+def _no_number(cell: str, line: int) -> str:
+    return (
+        f'line {line}: "{cell[:40]}" is not a number; allowed in a cell: a number without its unit, nothing, '
+        "nan, N/A, BAD, --- or ***"
+    )

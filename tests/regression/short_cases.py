@@ -28,7 +28,9 @@ QUICK = ("mesh.inlet=-1.4", "mesh.outlet=1.3", "mesh.points_per_half_width=50", 
 VISCOSITIES = "series.values=[0.010, 0.006]"
 MESHES = "series.values=[40, 60]"
 SHORT = {
+    "cmod": ("mesh.points_per_half_width=25", "time.travel=1.0"),
     "compliant_mixed": (*QUICK, "fluid.viscosity=0.001"),
+    "discs": ("series.values=[0.01, 0.1]",),
     "dry_hertz": (),
     "dry_rough": ("mesh.points_per_half_width=100",),
     "fig1": (*QUICK, VISCOSITIES),

@@ -16,6 +16,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.gears.command import main as gears
 from ehlpetsc.life.command import main as life
 from ehlpetsc.pictures.command import main as plot
+from ehlpetsc.pictures.surface import main as surface
 from ehlpetsc.post.command import main as post
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.restart_file import save_restart
@@ -104,7 +105,7 @@ NO_INPUTS = "", "sub", "a.png", "a.restart.h5", "none.h5", "/dev/zero"
 @pytest.mark.parametrize(
     "command, name",
     [
-        *((command, name) for command in (gears, life, summary) for name in NO_INPUTS),
+        *((command, name) for command in (gears, life, summary, surface) for name in NO_INPUTS),
         *((post, name) for name in NO_INPUTS[1:]),
     ],
 )

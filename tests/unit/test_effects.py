@@ -20,7 +20,7 @@ PAGE = CASES / "own_laws.md"
 def folder(tmp_path):
     """Folder with the code of the page and its case."""
     codes = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    for name, text in zip(("my_oil", "my_supply", "script"), codes, strict=True):
+    for name, text in zip(("my_oil", "my_density", "my_supply", "script"), codes, strict=True):
         (tmp_path / f"{name}.py").write_text(text)
     shutil.copy(CASES / "table1_smooth.toml", tmp_path)
     return tmp_path
@@ -59,6 +59,53 @@ print(abs(films[1] / films[0] - 1.0).max())
 def test_law_of_the_page_that_saturates_far_above_p0_is_that_of_barus(folder):
     """In a process of its own, as laws stay in the tables."""
     assert 0.0 < float(call(folder, "-c", SATURATING)) < 0.01
+
+
+STIFF = """
+import ehlpetsc, my_density
+coarse = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0, "fluid.gamma": None, "fluid.lambda": None}
+bulk, films = {"fluid.density": "bulk"}, []
+for law in ({"fluid.density": "incompressible"}, bulk | {"fluid.bulk_modulus": 1e12}, bulk):
+    case = ehlpetsc.load("table1_smooth.toml", coarse | law, density_laws=my_density.DENSITY_LAWS)
+    films.append(ehlpetsc.solve(case).film_thickness)
+print(*(abs(film / films[0] - 1.0).max() for film in films[1:]))
+"""
+
+
+def test_density_law_of_the_page(folder):
+    """With a stiff oil the films of the incompressible one; by its default the law compresses them."""
+    stiff, other = map(float, call(folder, "-c", STIFF).split())
+    assert stiff == pytest.approx(1e-3, rel=0.2)  # p0 over the bulk modulus
+    assert other > 0.05
+
+
+BAD = {
+    "LAWS": "from my_oil import LAWS\nLAWS = {'barus': LAWS['saturating']}",
+    "DENSITY_LAWS": "from my_oil import LAWS\nDENSITY_LAWS = {'incompressible': LAWS['saturating']}",
+    "key": "from my_oil import Key, LAWS\nLAWS['saturating'].keys['gamma'] = Key('of mine')",
+    "EFFECTS": "from my_supply import Starving\nStarving.name = 'wear'\nEFFECTS = [Starving]",
+    "table": "from my_supply import Starving, replace\n"
+    "Starving.table = replace(Starving.table, name='contact')\nEFFECTS = [Starving]",
+    "quantity": "from my_supply import Starving\n"
+    "Starving.scalars = {'h_min': Starving.scalars['supply']}\nEFFECTS = [Starving]",
+}
+REPLACED = {
+    "LAWS": '"barus": a viscosity law',
+    "DENSITY_LAWS": '"incompressible": a density law',
+    "key": '"gamma": a key of [fluid]',
+    "EFFECTS": '"wear": an effect',
+    "table": '"contact": a table or key',
+    "quantity": '"h_min": a quantity',
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_built_in_names_are_refused(folder, kind):
+    """A law named "barus" replaced the program's for the process, without a word."""
+    (folder / "bad.py").write_text(BAD[kind])
+    done = called([PYTHON, "-m", "ehlpetsc", "keys", "fluid"], folder, SCRIPT | {"EHLPETSC_OWN": "bad"})
+    assert done.returncode == 2
+    assert done.stderr == f"{REPLACED[kind]} of this name is built in; allowed: another name\n"
 
 
 class Additive(Effect):

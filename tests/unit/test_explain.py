@@ -34,6 +34,22 @@ def test_explain_figures_of_the_main_case():
     assert [part for part in parts if part not in text] == []
 
 
+def test_default_friction_of_solids_is_named_where_they_slide():
+    (line,) = starting(lines("table1_smooth.toml"), "Solids: ")
+    assert (
+        line
+        == "Solids: coefficient of friction 0.1, the default of contact.boundary_friction, where they touch"
+    )
+    for name, keys in (("table1_rough.toml", ()), ("table1_smooth.toml", ["motion.slide_roll_ratio=0.0"])):
+        assert starting(lines(name, *keys), "Solids: ") == []
+
+
+def test_source_of_a_named_oil_is_printed():
+    """Of T9 with a remark that no article was read for its constants."""
+    (line,) = starting(lines("traction.toml"), "Oil t9: ")
+    assert line.endswith("Tribol. Int. 66 (2013) 19; constants from memory")
+
+
 def test_rough_start_is_named():
     begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
     assert begun == ["Start: rough, after a ramp before time 0"]
@@ -100,6 +116,7 @@ def test_predicted_iterations_within_a_factor_of_one_and_a_half(name, overrides,
         (["contact.radius=12"], r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12"),
         (["fluid.viscosity=15"], r"film, 49\.5 um, .* 336 um: viscosity = 15 Pa s"),
         (["fluid.law='barus'"], r'^fluid\.reference_viscosity, fluid\.roelands_pressure: .* law = "barus"'),
+        (["fluid.density='incompressible'"], r'^fluid\.gamma, fluid\.lambda: .* density = "incompressible"$'),
     ],
 )
 def test_implausible_magnitudes_and_unused_constants_are_warnings(overrides, words):

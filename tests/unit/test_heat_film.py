@@ -173,6 +173,18 @@ def test_heat_of_a_film_that_closes():
     assert solved(h=0.0)[5] == 0.0
 
 
+@pytest.mark.parametrize("sliding", [1e-17, 1e-9, 12.5])
+def test_stress_of_a_film_at_rest_but_for_rounding(sliding):
+    """The heat of shear is then rounding of the balance, which exceeds the heat itself."""
+    law = LAWS["newtonian"]._replace(sliding=sliding)
+    node, balance, last = (0.8e9, 3e-7, 0.9), (A, B, G), (SPREAD, MIDDLE, REFERENCE)
+    film, oil = film_temperature((370.0, 0.0), node, balance, last, WALLS, law)
+    rate = np.sinh(film.profile) / film.profile if film.profile > 1e-6 else 1.0
+    ln_eta = oil.ln_eta - oil.beta * (film.base - REFERENCE)
+    viscous = law.eta0 * np.exp(ln_eta - SPREAD) * sliding / 3e-7
+    assert film.stress == pytest.approx(viscous / rate, rel=1e-6)
+
+
 @pytest.mark.parametrize("guess", [150.0, 363.0, 5000.0])
 def test_the_temperature_does_not_depend_on_the_guess(guess):
     for law in LAWS.values():
@@ -312,7 +324,7 @@ def carried(profile, nodes, way=1.0, moving=False):
         walls = [INLET * full] * 2 + [1e12 * full] * 2
         of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
         _, _, new = state = np.array((b / a, zero, b / a))
-        q1, q2, _, beyond = out = np.empty((4, nodes))
+        q1, q2, _, beyond, _ = out = np.empty((5, nodes))
         assert transport(state, film, flow, (INLET, INLET), tuple(STILL), of_nodes, out) == 1
         taken = heat_taken(t, stored, kept, flow, INLET, new, beyond)
         worst = max(worst, abs(taken + q1.sum() + q2.sum()))

@@ -159,3 +159,40 @@ def test_heat_is_an_effect_that_the_solver_does_not_know(name):
 def test_imported_names_exist():
     unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
     assert unknown == set()
+
+
+ROLE = re.compile(r":(?:mod|func|class|meth|attr|data):`~?([^`]+)`")
+
+
+def defines(source, name):
+    """Whether a source text has a class, function, attribute or import of this name."""
+    pattern = (
+        rf"\b(def|class) {name}\b|^ *(self\.)?{name}(: [^=\n]*)?( =|,|$)|^ *{name}: |import [^`\n]*\b{name}\b"
+    )
+    return re.search(pattern, source, re.M)
+
+
+def exists(target, module):
+    """Whether a reference in a docstring of a module names a module of the package, or what is in one."""
+    parts, is_whole = target.strip(".").split("."), target.startswith("ehlpetsc.")
+    rest = {} if is_whole or target.startswith(".") else {module: parts}
+    for name in FILES if not rest else ():
+        place = name.split(".")
+        for k in range(1, len(parts) + 1):
+            if parts[:k] == (place if is_whole else place[-k:]):
+                rest[name] = parts[k:]
+    sources = {name: FILES[name].read_text(encoding="utf-8") for name in rest}
+    return any(not names or defines(sources[name], names[0]) for name, names in rest.items())
+
+
+def test_references_in_docstrings_exist():
+    texts = {module: path.read_text(encoding="utf-8") for module, path in FILES.items()}
+    gone = [
+        f"{m}: {target}"
+        for m, text in texts.items()
+        for target in ROLE.findall(text)
+        if not exists(target, m)
+    ]
+    assert gone == []
+    assert not exists(".band.BandEntries", "ehlpetsc.discretisation.contact.model")
+    assert not exists("ehlpetsc.effects.heat.half_space_conduction", "ehlpetsc.effects.heat.effect")

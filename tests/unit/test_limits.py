@@ -11,10 +11,10 @@ from ehlpetsc.surfaces.roughness import Roughness
 WITHIN = {"p_max": 1.2e9, "oil_pressure": 1.2e9, "mass_error": 1e-7, "nodes_below_1nm": 0}
 
 
-def limit_lines(name="table1_smooth", overrides=(), **changed):
+def limit_lines(name="table1_smooth", overrides=(), boundary_friction=None, **changed):
     case = load(CASES / f"{name}.toml", overrides)
     scales = Scales.of(case)
-    return limits(case, scales, Roughness.of(case, scales), WITHIN | changed)
+    return limits(case, scales, Roughness.of(case, scales), WITHIN | changed, boundary_friction)
 
 
 def test_no_limit_line_within_the_limits():
@@ -43,6 +43,37 @@ def test_friction_beyond_that_of_oils_has_a_limit_line():
     assert limit_lines(overrides=heat, friction_coefficient=0.12) == []
     rubbing = [*heat, "contact.model=mixed", "contact.boundary_film=10e-9", "contact.boundary_friction=0.2"]
     assert limit_lines(overrides=rubbing, friction_coefficient=0.19) == []
+
+
+def test_friction_of_solids_that_an_effect_changes_is_not_blamed_on_the_oil():
+    heat = ["heat.bulk_temperature=363.0"]
+    assert limit_lines(overrides=heat, boundary_friction=0.3, friction_coefficient=0.25) == []
+    (line,) = limit_lines(overrides=heat, boundary_friction=0.1, friction_coefficient=0.25)
+    assert line.startswith("friction: a coefficient of 0.25")
+
+
+SLIDES = "motion={entrainment_speed=1.0,slide_roll_ratio=0.5}"
+MIXED = ["contact.model=mixed", "contact.boundary_film=10e-9"]
+
+
+@pytest.mark.parametrize(
+    "name, keys, totals, share",
+    [
+        ("table1_smooth", MIXED, {"contact_share": 0.031}, "3.1 % of the load"),
+        ("table1_smooth", [], {"contacts": 8000, "step": 9}, "%.3g %% of the Hertz contact"),
+        ("dry_hertz", [SLIDES], {}, "100 % of the load"),
+    ],
+)
+def test_friction_of_solids_that_is_left_out_has_a_limit_line(name, keys, totals, share):
+    heat = [*keys, "heat.bulk_temperature=363.0"]
+    points = 2 * load(CASES / f"{name}.toml").mesh.points_per_half_width
+    share = share % (8e5 / points / 10) if "%%" in share else share
+    (line,) = limit_lines(name, heat, **totals)
+    assert line.startswith(f"friction: the solids carry up to {share}") and " of 0.1, the default" in line
+    assert limit_lines(name, [*heat, "contact.boundary_friction=0.0"], **totals) == []
+    assert limit_lines("table1_smooth", MIXED + heat[-1:], contact_share=0.009) == []
+    if name != "dry_hertz":  # nothing slides
+        assert limit_lines(name, [*heat, "motion.slide_roll_ratio=0.0"], **totals) == []
 
 
 def test_unresolved_asperities_are_given_with_their_height_fraction():

@@ -77,7 +77,8 @@ def test_units_of_a_heading_are_read(with_table):
         (TABLE.replace("0.018", "-1"), "row 3: radius = -1 m: "),
         ("time, speed 1, speed 2\n0, 0, 0\n1e-3, 0, 0\n", "both speeds"),
         (TABLE.replace("4.0, 4.5", "4.0"), "line 2: 5 numbers"),
-        (TABLE.replace("527e3", "lots"), "row 2: load = nan N/m: "),
+        (TABLE.replace("527e3", "nan"), "row 2: load = nan N/m: "),
+        (TABLE.replace("527e3", "lots"), 'line 3: "lots" is not a number; '),
         (TABLE.replace("speed 1", "velocity"), "column 'velocity'"),
         (TABLE.replace("radius [m]", "load"), "column 'load': allowed: one each"),
         (TABLE.replace("radius [m]", "radius [s]"), r"column 'radius \[s\]': .* one of m$"),
@@ -167,6 +168,16 @@ def test_distances_are_integrals_of_speeds():
     np.testing.assert_allclose(
         operation.extent(), np.stack([places.min(0), places.max(0)], axis=1), atol=1e-8
     )
+
+
+@pytest.mark.parametrize("last", [0.0, 1.2])
+def test_speeds_that_are_rounding_of_rest_or_rolling_are_zero(last):
+    """Else the friction of solids, mu p with the sign of u1 - u2, is that of a rounding error."""
+    fast = [2.384353324024164, 1.192176662012082, 0.7, last]
+    operation = make(u1=fast, u2=np.array(fast) / 3.0 * [1.0, 1.0, 1.0, 3.0] * (1.0 + 2e-16))
+    assert operation.at(3e-3).sliding == 0.0
+    assert operation.at(3e-3).u1 == pytest.approx(last, rel=1e-14, abs=0.0)
+    assert operation.at(2.9e-3).sliding > 1e-3
 
 
 def test_interpolation_does_not_overshoot():

@@ -130,9 +130,21 @@ def test_hertz_contact_and_flow_are_those_of_the_instant(tmp_path, drawn):
     x, pressure = next(line for line in upper.lines if line.get_linestyle() == ":").get_data()
     assert pressure.max() == pytest.approx(1e-9 * p0, rel=1e-3)
     assert np.abs(x[pressure > 0.0]).max() == pytest.approx(a / A, abs=0.01)
-    assert f"u = -0.2 m/s, slide/roll ratio 0, a = {1e3 * a:.3g} mm" in figure._suptitle.get_text()
+    named = f"u = -0.2 m/s, slide/roll ratio 0, a = {1e3 * A:.3g} mm, half-width {a / A:.3g} a, p0 = "
+    assert named in figure._suptitle.get_text()  # a is the unit of x/a
     assert [text.get_text() for text in upper.texts] == ["← flow"]
     assert upper.get_ylim()[1] >= pressure.max()
+
+
+def test_film_axis_ends_above_the_film_in_the_contact_of_the_instant(tmp_path, drawn):
+    """Under a ninetieth of the load the contact is a tenth as wide, the film beside it much thicker."""
+    path = reversing(tmp_path / "v.h5", np.linspace(527e3, 6e3, 41))
+    assert draw(path, "--step", 40) == 0
+    with read_result(path) as r:
+        inside = np.abs(r.x) <= (6 / 527) ** 0.5 * A
+        thickest = 1e6 * r.frame("film_thickness", 40)[inside].max()
+        assert over_time._limits([r], np.array([40]))[1] == pytest.approx(1.15 * thickest)
+    assert drawn[0].axes[1].get_ylim()[1] == pytest.approx(1.15 * thickest)
 
 
 def test_picture_options_and_formats(tmp_path, result, drawn, monkeypatch):
@@ -292,6 +304,11 @@ def test_passing_profile_length_follows_from_travel():
     short = load(CASES / "fig1.toml", ["time.travel=3"])
     scales = Scales.of(short)
     assert np.ptp(passing(Roughness.of(short, scales).surface_1, short, scales)) == 0.0
+
+
+def test_case_picture_of_a_gear_does_not_give_one_slide_roll_ratio():
+    title = draw_case(CASES / "fzg.toml")._suptitle.get_text()
+    assert "slide/roll" not in title and "of the widest contact; conditions over time" in title
 
 
 def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):

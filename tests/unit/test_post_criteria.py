@@ -13,9 +13,9 @@ from ehlpetsc.post.criteria.critical_plane import (
     plane_weights,
     plane_workspace,
     planes_and_directions,
-    turning_samples,
 )
 from ehlpetsc.post.criteria.dang_van import smallest_ball
+from ehlpetsc.post.criteria.turning_samples import turning_samples
 
 STEEL = Material()
 SHEAR = Criteria(normal_sensitivity=0.0)  # shear strain alone

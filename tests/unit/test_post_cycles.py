@@ -50,6 +50,53 @@ def test_astm_example_repeated():
     assert counts(rainflow(ASTM)) == {3: 1, 4: 1, 7: 1, 9: 1}
 
 
+def half_counts(cycles):
+    total = Counter()
+    for size, *_, count in cycles:
+        total[size] += count
+    return dict(total)
+
+
+def test_astm_example_once():
+    """ASTM E1049, 5.4.4: half cycles of the residue."""
+    expected = {3: 0.5, 4: 1.5, 6: 0.5, 8: 1.0, 9: 0.5}
+    assert half_counts(rainflow(ASTM, "half")) == expected == three_point(ASTM)
+
+
+def test_half_cycles_of_random_series_against_the_standard():
+    rng = np.random.default_rng(3)
+    for k in range(400):
+        series = rng.integers(-8, 9, rng.integers(2, 80)) if k % 2 else rng.normal(size=rng.integers(2, 300))
+        assert half_counts(rainflow(series, "half")) == three_point(series.tolist())
+
+
+def test_half_cycles_against_rainflow():
+    """The package of this name on PyPI, where it is installed."""
+    package = pytest.importorskip("rainflow")
+    for seed in range(20):
+        series = np.cumsum(np.random.default_rng(seed).normal(size=400))
+        expected = Counter()
+        for size, _, count, *_ in package.extract_cycles(series):
+            expected[round(size, 9)] += count
+        found = Counter()
+        for size, *_, count in rainflow(series, "half"):
+            found[round(size, 9)] += count
+        assert found == expected
+
+
+def test_half_cycles_against_fatpack():
+    """Full cycles and residue of another package on PyPI, where it is installed."""
+    package = pytest.importorskip("fatpack")
+    series = np.cumsum(np.random.default_rng(7).normal(size=2000))
+    step = np.sign(np.diff(series))
+    turns = series[np.concatenate([[True], step[1:] != step[:-1], [True]])]
+    full, residue = package.find_rainflow_cycles(turns)
+    ranges = np.abs(np.diff(full, axis=1))[:, 0]
+    found = rainflow(series, "half")
+    assert np.sort(found[found[:, 4] == 1.0, 0]) == pytest.approx(np.sort(ranges))
+    assert found[found[:, 4] == 0.5, 0] == pytest.approx(np.abs(np.diff(residue)))
+
+
 def test_largest_range_is_not_dropped():
     series = [0, 100, -50, 80, -100, 0]
     assert counts(rainflow(series)) == {200: 1, 130: 1}

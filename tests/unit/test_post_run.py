@@ -17,6 +17,7 @@ from ehlpetsc.pictures import damage as gallery
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main
+from ehlpetsc.post.fatigue.statistics import log_life, weibull_fit
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_stress import QUANTUM
@@ -247,6 +248,48 @@ def test_few_asperities_have_no_weibull_fit(tmp_path, capsys):
     assert f"note: {found.height.size} asperities " in output.err and "weibull" not in output.out
 
 
+def drawn_lines(under, fit=None):
+    fit = fit or weibull_fit(log_life(under))
+    axes = gallery.draw_distributions([("z/a = 0", under, fit)], "made up").axes[0]
+    dots, line = axes.lines
+    return dots, line, axes
+
+
+def test_exceedance_axis_spans_twelve_decades():
+    """Damage of 1e-37 below the deepest asperities stretched the axis over all others."""
+    dots, _, axes = drawn_lines(np.append(np.geomspace(1e-6, 1e-3, 40), [1e-37, 1e-20]))
+    assert axes.get_xlim()[0] >= 1e-15 and dots.get_xdata().min() == pytest.approx(1e-6)
+
+
+def test_weibull_lines_through_few_points_or_of_poor_fits_say_so():
+    good = 10.0 ** -np.random.default_rng(1).weibull(3.0, 60)
+    _, line, _ = drawn_lines(good)
+    assert line.get_label() == "z/a = 0" and line.get_linestyle() == "-"
+    poor = np.concatenate([np.geomspace(1e-9, 1.01e-9, 20), np.geomspace(1e-2, 1.01e-2, 20)])
+    fit = weibull_fit(log_life(poor))
+    assert fit.r_squared < 0.9
+    _, line, _ = drawn_lines(poor)
+    assert line.get_label() == f"z/a = 0, $r^2$ = {fit.r_squared:.2f}" and line.get_linestyle() == "--"
+    few = np.append(np.geomspace(1e-6, 1e-3, 9), np.zeros(50))
+    _, line, _ = drawn_lines(few)
+    assert line.get_label() == "z/a = 0, 9 with damage: no fit" and len(line.get_xdata()) == 0
+
+
+def test_weibull_line_names_its_surface(result, capsys):
+    assert main([str(result), "--depths", "0"]) == 0
+    assert "weibull of surface 2: alpha=" in capsys.readouterr().out
+
+
+def test_title_has_the_range_of_slide_roll_ratios_over_time(scene, tmp_path):
+    end, (u1, u2) = float(scene.time[-1]), (scene.u1, scene.u2)
+    table = f"[operation]\ntime = [0.0, {end!r}]\nspeed_1 = [{u1}, {u2}]\nspeed_2 = [{u2}, {u1}]\n"
+    path = write(tmp_path / "a.h5", scene, depths=(0.0,), post=table)
+    assert main([str(path)]) == 0
+    ratio = 2.0 * (u1 - u2) / (u1 + u2)
+    title = gallery._ratio(PostResult(tmp_path / "a.post.h5"))
+    assert title == f"slide/roll ratio {-ratio:.3g} to {ratio:.3g}"
+
+
 def test_interrupt_and_write_error_leave_nothing(result, tmp_path, monkeypatch, capsys):
     with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
         patch.setattr(runner, "solve", lambda *_: signal.raise_signal(signal.SIGINT))
@@ -256,3 +299,14 @@ def test_interrupt_and_write_error_leave_nothing(result, tmp_path, monkeypatch, 
     message = refused(capsys, main, result, "--depths", "0.5")
     assert "run.post.h5: not written, No space left" in message
     assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
+
+
+@pytest.mark.parametrize("setting", ["post.residual=half", "post.mean_stress=goodman"])
+def test_counting_keys_change_damage_and_are_recorded(setting, scene, tmp_path):
+    path, key, value = write(tmp_path / "run.h5", scene), *setting.removeprefix("post.").split("=")
+    damages = []
+    for settings in ((), (setting,)):
+        run(Job(str(path), str(tmp_path / "o.h5"), ("2",), settings=("post.depths=[0.05]", *settings)))
+        damages.append(np.nanmax(PostResult(tmp_path / "o.h5").damage["2"]))
+    assert PostResult(tmp_path / "o.h5").attrs[key] == value
+    assert 0.01 * damages[0] < damages[1] < 0.9 * damages[0]

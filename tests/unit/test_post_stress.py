@@ -263,7 +263,7 @@ def test_ripples_omitted_at_depth_are_negligible(monkeypatch, depth, kept):
     weights = offset_weights(np.array([0.0, 0.3]))
     monkeypatch.setattr(body_stress, "kernel_table", body_stress.kernel_table.__wrapped__)  # keeps nothing
     found = []
-    for share in (body_stress.low_pass, lambda nx, depth: np.ones(padded_length(nx) // 2 + 1)):
+    for share in (body_stress.low_pass, lambda wave_number, depth: np.ones(wave_number.size)):
         monkeypatch.setattr(body_stress, "low_pass", share)
         body = BodyStress(x.size, np.array([depth]))
         found.append((body.tables[0].size, body(0, body.transform(p, 0.1 * p), weights)[..., : x.size]))

@@ -74,6 +74,24 @@ def test_highest_mean_and_flash_temperature(scene, result, tmp_path, capsys):
     assert output.err.count("note: thermal stresses") == 1
 
 
+def test_mean_temperature_is_that_in_the_contact_of_the_instant(scene, tmp_path):
+    """A load that falls to a quarter halves the contact."""
+    end = float(scene.time[-1])
+    speeds = f"speed_1 = [{scene.u1}, {scene.u1}]\nspeed_2 = [{scene.u2}, {scene.u2}]"
+    table = f"[operation]\ntime = [0.0, {end!r}]\nload = [527e3, 131.75e3]\n{speeds}\n"
+    path = write(tmp_path / "run.h5", scene, depths=(0.0,), post=HEAT + table, edit=heated(scene))
+    assert main([str(path)]) == 0
+    found = PostResult(tmp_path / "run.post.h5")
+    s, time = found.s[found.complete["1"]], scene.time[:, None]
+    x, width = s + scene.u1 * time, A * np.sqrt(1.0 - 0.75 * time / end)
+    values = BULK[0] + rise(scene, x, time, scene.u1)
+    mean = np.nanmean(np.where(np.abs(x) <= width, values, np.nan), axis=0)
+    assert width[-1] == pytest.approx(0.5 * A) and len(s) > 50
+    np.testing.assert_allclose(found.temperatures["1"].mean[found.complete["1"]], mean, atol=0.3)
+    wide = np.nanmean(np.where(np.abs(x) <= A, values, np.nan), axis=0)
+    assert np.abs(wide - mean).max() > 3.0
+
+
 def test_missing_temperature_is_named(result, tmp_path, capsys):
     assert main([str(result(sides="2"))]) == 0
     assert 'list "temperature_1" in output.fields' in capsys.readouterr().err

@@ -11,7 +11,9 @@ from ehlpetsc.base import docs
 from ehlpetsc.base.environment import missing
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.pictures.surface import main as surface
 from ehlpetsc.run.forecast import banner
+from ehlpetsc.surfaces.profile_files import KEYS, TEXT
 from ehlpetsc.surfaces.roughness import Roughness
 
 PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))
@@ -71,6 +73,19 @@ def test_every_case_is_described_with_its_picture():
 def test_every_committed_picture_is_on_a_page():
     shown = set(re.findall(r"pictures/([\w.]+\.png)\)", "".join(TEXTS.values())))
     assert {path.name for path in (ROOT / "cases" / "pictures").iterdir()} == shown
+
+
+def test_every_key_of_a_profile_file_is_on_its_page():
+    table = TEXTS["cases/surfaces"]
+    assert [key for key in KEYS if f"`{key}" not in table] == []
+    assert [ending for ending in TEXT if f"`{ending}`" not in table] == []
+
+
+def test_parameters_on_the_page_are_current(capsys):
+    file = "cases/profiles/alicona_meander_profile.csv"
+    assert surface([str(ROOT / file), "--no-picture"]) == 0
+    _, *lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 10 and all(line in TEXTS["cases/surfaces"] for line in lines)
 
 
 def test_case_file_on_the_page_is_valid(tmp_path):

@@ -7,13 +7,14 @@ import pytest
 from support import CASES
 
 import ehlpetsc
-from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
+from ehlpetsc.surfaces.moving_surface import Passage
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
@@ -31,9 +32,8 @@ def phi(rough, x, t, cell=None):
 
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
-    return Profile(
-        Samples(X, z, repeats), speed, moving, -2.5 * A, 1.5 * A, RAMP_LENGTH * A, abs(speed) * duration
-    )
+    passage = Passage(speed, moving, -2.5 * A, 1.5 * A, RAMP_LENGTH * A, abs(speed) * duration)
+    return Profile(Samples(X, z, repeats), passage)
 
 
 def rough(name, *overrides):
@@ -311,6 +311,33 @@ def test_ground_heights_depend_on_their_seed_only():
     assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
 
 
+def test_self_affine_profile_has_its_height_and_waves():
+    """A mesh with nodes at a fifth of the shortest wave resolves all of its variance."""
+    spec = "{kind='self-affine', sq='0.2 um', hurst=0.8, roll_off=80e-6, short_cutoff=8e-6, seed=3}"
+    r, _ = rough("table1_smooth.toml", f"surface.2.synthetic={spec}")
+    profile = r.surface_2
+    assert profile.rq == pytest.approx(0.2e-6, rel=1e-9)
+    assert profile.given.length == pytest.approx(200 * 80e-6, rel=1e-3)
+    assert profile.unresolved_variance(1.6e-6) < 0.01 < profile.unresolved_variance(4e-6)
+    falling = (1.0 - 10.0**-1.6) / 1.6  # of the variance, beside 1 of the plateau
+    shorter = (0.5 + falling) / (1.0 + falling)  # than twice roll_off
+    assert profile.unresolved_variance(40e-6) == pytest.approx(shorter, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ("hurst=1.5, roll_off=80e-6, short_cutoff=8e-6", "hurst = 1.5: allowed: a number > 0 and <= 1 "),
+        ("hurst=0.8, roll_off=8e-6, short_cutoff=80e-6", "short_cutoff = 8e-05: allowed: .* below roll_off "),
+        ("hurst=0.8, short_cutoff=80e-6", "roll_off is missing; "),
+    ],
+)
+def test_invalid_self_affine_spectrum_is_refused(keys, message):
+    spec = f"surface.2.synthetic={{kind='self-affine', sq=2e-7, seed=3, {keys}}}"
+    with pytest.raises(CaseError, match=message):
+        rough("table1_smooth.toml", spec)
+
+
 def test_coarse_mesh_note_has_its_figure():
     for points, share in ((200, None), (100, "7.3 %"), (50, "51.1 %")):
         c = case.load(CASES / "table1_rough.toml", [f"mesh.points_per_half_width={points}"])
@@ -348,7 +375,7 @@ def test_travel_to_entry_and_filling():
         inside = np.abs(s.x) <= 1.0
         before, then = (-phi(Roughness(profile, None), x, t * s.a / s.u_max) for t in (reaches, fills))
         assert (before[inside] == 0.0).all() and (before[s.x < -1.05] != 0.0).any()
-        whole = profile._at(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
+        whole = profile._spline(x[0] - x[inside] + profile.speed * fills * s.a / s.u_max)
         np.testing.assert_allclose(then[inside], whole, rtol=1e-9)
     backwards, s = rough("table1_rough.toml", "motion.slide_roll_ratio=-4")  # u -1, 3: enters at the outlet
     reaches, fills = entry_times(backwards.surface_1, s)

@@ -1,13 +1,14 @@
 """Values with a unit: every unit of the keys with what data sheets write for it."""
 
 import math
+import re
 import tomllib
 
 import pytest
 from support import CASES
 
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.base.units import converted
+from ehlpetsc.base.units import UnitFault, converted
 from ehlpetsc.case import keys
 from ehlpetsc.case.loading import load, members
 
@@ -34,6 +35,7 @@ PLAUSIBLE = {
     "m^2/s": {"46 cSt": 46e-6, "46 mm^2/s": 46e-6, "46 mm\u00b2/s": 46e-6, "0.46 St": 46e-6},
     "kg/m^3": {"0.88 g/cm^3": 880.0, "0.88 kg/l": 880.0, "880 kg/m3": 880.0},
     "K": {"90 degC": 363.15, "90 C": 363.15, "90 \u00b0C": 363.15, "194 degF": 363.15, "300 K": 300.0},
+    "Pa/K": {"0.5 MPa/K": 5e5, "500 kPa/degC": 5e5},
     "1/K": {"0.04/K": 0.04, "0.04 1/K": 0.04, "4 %/K": 0.04, "0.04 /degC": 0.04},
     "m/s": {"500 mm/s": 0.5, "36 m/min": 0.6},
     "1/min": {text: 2250.0 for text in ("2250 rpm", "37.5 rps", "37.5 Hz", "2250 1/min", "2250 /min")}
@@ -109,10 +111,20 @@ def test_series_accepts_units():
         ("motion.slide_roll_ratio", "25 mm", 'motion.slide_roll_ratio = "25 mm": not a unit'),
         ("surface.1.synthetic", {"kind": ["sine"], "amplitude": "1 um"}, '"ground" | "sine"'),
         ("contact.load", "-1 N/mm", "contact.load = -1000.0: "),
+        ("contact.radius", "10,5 mm", '"10,5 mm": a comma in a number; allowed: digits .* as "10.5 mm"$'),
+        ("contact.load", "1.000,5 N/mm", 'as "1000.5 N/mm"$'),
+        ("motion.entrainment_speed", "3,0", 'as "3.0"$'),
+        ("fluid.viscosity", "15 cSt", '"15 cSt": kinematic, .* density, at 870 kg/m.3 "13.05 mPa s"$'),
+        ("fluid.viscosity", "0.2 St", '"0.2 St": kinematic, .* "17.4 mPa s"$'),
     ],
 )
 def test_wrong_unit_is_refused_in_one_line(key, value, words):
     with pytest.raises(CaseError) as refused:
         load(SMOOTH, {key: value})
     (line,) = refused.value.faults
-    assert words in line
+    assert words in line or re.search(words, line)
+
+
+def test_dynamic_viscosity_is_refused_where_a_kinematic_one_belongs():
+    with pytest.raises(UnitFault, match='^"87 mPa s": dynamic, .* over the density, .* "100 cSt"$'):
+        converted("87 mPa s", "m^2/s")

@@ -88,8 +88,29 @@ def test_next_to_no_heat_does_not_divide_its_imbalance():
     flux = np.full(5, 1e-6)
     film = Film(zero, zero, zero, inlet, *[zero] * 3, np.full(6, 1e4), zero)
     state = np.array([inlet, zero, inlet])
-    found = Temperatures(state, [inlet] * 2, [flux] * 2, np.full(5, 1e-20), zero, [], [])
+    found = Temperatures(state, [inlet] * 2, [flux] * 2, np.full(5, 1e-20), zero, zero, [], [])
     assert HeatStep.balance(steps, found, film, zero)[1] < 1e-5
+
+
+@pytest.mark.parametrize("end", [0.0, 1e-16])
+def test_friction_vanishes_with_the_sliding_of_a_heated_film(end):
+    """Speeds of a stroke that ends at rest are rounding in its last step."""
+    speed_1 = [2.384353324024164, 1.192176662012082, end]
+    speed_2 = [0.4356466759758361, 0.21782333798791806, 0.0]
+    operation = {"time": [0.0, 5.28147e-05, 7.15735e-05], "speed_1": speed_1, "speed_2": speed_2}
+    contact = {"radius": 0.01, "load": 2e5, "youngs_modulus": 206e9, "poisson_ratio": 0.3, "model": "mixed"}
+    fluid = {"viscosity": 0.01, "law": "barus", "pressure_viscosity": 9e-9, "density": "dowson-higginson"}
+    case = {
+        "title": "to rest",
+        "contact": contact,
+        "fluid": fluid | {"eyring_stress": 3e6},
+        "mesh": {"inlet": -1.5, "outlet": 1.3, "points_per_half_width": 12},
+        "time": {"courant": 1.0},
+        "operation": operation,
+        "heat": {"bulk_temperature": 340.0},
+    }
+    friction = [accepted.scalars["friction_coefficient"] for accepted in Simulation(load(case))]
+    assert friction[0] > 0.01 and friction[-1] < 1e-6
 
 
 def test_oil_and_pressure_flow_of_an_accepted_state(monkeypatch):

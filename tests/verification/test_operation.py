@@ -12,6 +12,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.gears import path_of_contact
 from ehlpetsc.gears.command import main as gears
+from ehlpetsc.physics.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
@@ -125,6 +126,20 @@ def test_load_step_settles_at_the_steady_film():
     for name in ("h_min", "p_max", "film_central", "friction"):
         one, other = (np.asarray(getattr(result.steps, name))[-1] for result in (stepped, steady))
         assert one == pytest.approx(other, rel=1e-3)
+
+
+def test_mean_film_is_of_the_contact_of_the_instant():
+    """Under a twentieth of the load the half-width is 0.22 a; the film at a/2 is that of the inlet."""
+    loads = {"operation.time": [0.0, 1e-4], "operation.load": [527e3, 26.35e3], "time": None}
+    simulation = Simulation(load(CASES / "table1_smooth.toml", COARSE | loads))
+    *_, accepted = simulation
+    s, scalars = simulation.scales, accepted.scalars
+    a, _ = hertz_line(scalars["load_given"], scalars["radius"], s.E)
+    assert a == pytest.approx(s.a / 20.0**0.5, rel=1e-9)
+    film, x = accepted.film_thickness, s.a * np.abs(s.x)
+    middle = film[x <= 0.5 * a].mean()
+    assert scalars["film_central"] == pytest.approx(middle, rel=1e-12)
+    assert middle < 0.9 * film[x <= 0.5 * s.a].mean()
 
 
 @pytest.mark.slow

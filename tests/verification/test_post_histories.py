@@ -171,6 +171,7 @@ def test_counting_settings_change_the_result(loads, tmp_path):
     values = {}
     for name in ("none", "morrow"):
         depths = ("post.depths=[0.05]",)
-        run(Job(str(loads.path), str(tmp_path / "o.h5"), ("2",), mean_stress=name, settings=depths))
+        settings = (*depths, f"post.mean_stress={name}")
+        run(Job(str(loads.path), str(tmp_path / "o.h5"), ("2",), settings=settings))
         values[name] = np.nanmax(PostResult(tmp_path / "o.h5").damage["2"])
     assert values["morrow"] < values["none"]

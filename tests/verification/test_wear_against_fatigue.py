@@ -38,7 +38,10 @@ def test_cells_without_wear_fail_after_one_over_damage_passes(criterion, tmp_pat
     scene = Simulation(case(keys)).scene
     edges = laws.cell_edges(CELL_SIZE * scene.rq, 6 * CELL_SIZE * scene.rq)
     depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]
-    life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", most=3, unresolved=True)
+    lines: list[str] = []
+    options = {"most": 3, "unresolved": True, "show": lines.append}
+    life = run_life(case(keys | {"post.depths": depths}), tmp_path / "a.life.h5", **options)
+    assert [f" {criterion} 1" in line for line in lines if "by criterion" in line] == [True, True]
     post(Job(str(tmp_path / "a.life.pass.h5"), str(tmp_path / "a.post.h5")))
     found = PostResult(tmp_path / "a.post.h5")
     failed, damages = 0, found.damage if criterion == "von-mises" else found.criteria[criterion]

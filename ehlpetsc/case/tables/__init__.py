@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.toml_file import is_plain, toml_text
 from ehlpetsc.case.tables.contact import CONTACT, FLUID
 from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
@@ -20,8 +21,9 @@ from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.quantities import add_quantities
-from ehlpetsc.physics.laws import LAWS, Law
+from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, add_quantities, quantities_of
+from ehlpetsc.physics.law import Law
+from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS
 
 CONDITIONS = (CONTACT, FLUID, MOTION, MESH, SURFACE, TIME, OPERATION, GEARS)
 TABLES = (*CONDITIONS, *(effect.table for effect in EFFECTS if effect.table), OUTPUT, POST, LIFE, SERIES)
@@ -39,6 +41,13 @@ class Case(Values):
         if self._text is None:  # generated when it is needed: members of a long series
             self.__dict__["_text"] = toml_text(self._tables)
         return self._text
+
+    @property
+    def default_friction(self) -> float | None:
+        """Coefficient of friction of sliding solids by default; None: given, or nothing slides."""
+        given = "boundary_friction" in self._tables["contact"]
+        slides = self.motion is not None and (self.conditions is not None or self.motion.slide_roll_ratio)
+        return self.contact.boundary_friction if slides and not given else None
 
     @property
     def path(self) -> Path:
@@ -88,11 +97,42 @@ CASE = KeyTable(
 )
 
 
-def extend(laws: Mapping[str, Law], effects: Iterable[type[Effect]]) -> None:
-    """Add viscosity laws and effects of the user, with their keys and quantities, to this process."""
+BUILT_IN: dict[str, dict[str, object]] = {
+    "a viscosity law": dict(LAWS),
+    "a density law": dict(DENSITY_LAWS),
+    "a key of [fluid]": dict(FLUID.keys),
+    "an effect": {effect.name: effect for effect in EFFECTS},
+    "a table or key": dict(CASE.keys),
+    "a quantity": {**FIELDS, **STEP_SCALARS, **OTHERS},
+}
+
+
+def extend(
+    laws: Mapping[str, Law] | None = None,
+    density_laws: Mapping[str, Law] | None = None,
+    effects: Iterable[type[Effect]] = (),
+) -> None:
+    """Add laws and effects of the user, with their keys and quantities, to this process.
+
+    Raises `CaseError` where a name is that of a built-in one.
+    """
+    laws, density_laws, effects = dict(laws or {}), dict(density_laws or {}), list(effects)
+    keys = {name: key for law in [*laws.values(), *density_laws.values()] for name, key in law.keys.items()}
+    own: dict[str, Mapping[str, object]] = {
+        "a viscosity law": laws,
+        "a density law": density_laws,
+        "a key of [fluid]": keys,
+        "an effect": {effect.name: effect for effect in effects},
+        "a table or key": {effect.table.name: effect.table for effect in effects if effect.table},
+        "a quantity": {name: field for effect in effects for name, field in quantities_of(effect).items()},
+    }
+    for kind, entries in own.items():
+        for name, entry in entries.items():
+            if BUILT_IN[kind].get(name, entry) is not entry:
+                raise CaseError([f'"{name}": {kind} of this name is built in; allowed: another name'])
     LAWS.update(laws)
-    for law in laws.values():
-        FLUID.keys.update(law.keys)
+    DENSITY_LAWS.update(density_laws)
+    FLUID.keys.update(keys)
     for effect in effects:
         EFFECTS[:] = [*(kind for kind in EFFECTS if kind.name != effect.name), effect]
         add_quantities(effect)
@@ -113,4 +153,4 @@ def key_of(name: str) -> Key | None:
 if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
     sys.path.append(os.getcwd())
     own = importlib.import_module(name)
-    extend(getattr(own, "LAWS", {}), getattr(own, "EFFECTS", ()))
+    extend(*(getattr(own, name, {}) for name in ("LAWS", "DENSITY_LAWS", "EFFECTS")))

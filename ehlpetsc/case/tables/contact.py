@@ -6,7 +6,7 @@ from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Required, Values
 from ehlpetsc.base.materials import GRADES, STEELS
-from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, completed
+from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, TABLES, completed
 from ehlpetsc.physics.oils import OILS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
@@ -63,7 +63,7 @@ KEYS = {
         replaced_by=("material",),
     ),
     "poisson_ratio": Required("Poisson's ratio `nu`", "", 0, 0.5, many="both", replaced_by=("material",)),
-    "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.0),
+    "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.1),
     "model": Key(
         "direct: where `h = 0` the Reynolds equation is dropped; mixed: oil and solids share the load",
         choices=("direct", "mixed"),
@@ -137,36 +137,19 @@ KEYS = {
     "viscosity": Required("at ambient pressure", "Pa s", 1e-6, 1e4, replaced_by=("grade", "oil")),
     "grade": GRADE.key,
     "oil": Key(
-        "measured oil: its keys of [fluid] and [heat], which the case overrides",
+        "measured oil, t9 by constants from memory: its keys of [fluid] and [heat], which the case overrides",
         choices=tuple(OILS),
         needs=("fluid.grade left out",),
     ),
     "temperature": Key("at which grade, oil or law gives the viscosity; left out: of [heat]", "K", 200, 700),
     "law": Required("viscosity law", choices=LAWS, equation=VISCOSITY, replaced_by=("oil",)),
     "pressure_viscosity": Key("`alpha`; left out: of grade, or of a law that has it", "1/Pa", 1e-12, 1e-6),
-    "density": Required("density law", choices=tuple(DENSITY_LAWS), equation=DENSITY, replaced_by=("oil",)),
-    **{name: key for laws in (LAWS, DENSITY_LAWS) for law in laws.values() for name, key in law.keys.items()},
-    "eyring_stress": Key("`tau0`, `du/dz = (tau0/eta) sinh(tau/tau0)`; left out: Newtonian", "Pa", 1e3, 1e12),
-    "eyring_stress_pressure": Key(
-        "`b` of `tau0 (1 + b p) (1 + c (T - T0))`", "1/Pa", 0, 1e-7, needs=("fluid.eyring_stress",)
-    ),
-    "eyring_stress_temperature": Key(
-        "`c` of it, `1/T0` by Eyring's theory; the pressure flow has `tau0` at `T0`",
-        *("1/K", -0.02, 0.02),
-        needs=("fluid.eyring_stress",),
-    ),
-    "carreau_stress": Key(
-        "`G` of Carreau's law; left out: Eyring's or Newtonian",
-        *("Pa", 1e3, 1e12),
-        needs=("fluid.eyring_stress left out",),
-        equation="`tau = eta g (1 + (eta g/G)^a)^((n - 1)/a)`, `g` the shear rate",
-    ),
-    "carreau_exponent": Key("`n` of Carreau's law", gt=0.2, lt=1, needs=("fluid.carreau_stress",)),
-    "carreau_width": Key("`a` of it; Carreau: 2, otherwise Yasuda's", ge=0.5, le=10, default=2.0),
+    "density": Required("density law", choices=DENSITY_LAWS, equation=DENSITY, replaced_by=("oil",)),
+    **{name: key for laws in TABLES for law in laws.values() for name, key in law.keys.items()},
     "limiting_shear": Key(
         "limiting shear stress over pressure",
         *("", 1e-4, 1),
-        equation="mean shear stress `(tau^-4 + (limiting_shear p)^-4)^(-1/4)`, `tau` without it",
+        equation="mean shear stress `(tau^-20 + (limiting_shear p)^-20)^(-1/20)`, `tau` without it",
     ),
     "limiting_shear_temperature": Key(
         "`k` of `limiting_shear (1 + k (T - T0))`, with [heat]",

@@ -81,7 +81,7 @@ def _check_geometry(gears: Gears) -> dict[str, Any]:
     return {}
 
 
-NOT_GEOMETRY = ("load_file", "heat_transfer")
+NOT_GEOMETRY = ("load_file", "heat_transfer", "oil_factor")
 PATH_COLUMNS = {"path": ("path", "position"), "load": ("load", "w")}  # of gears.load_file
 GEARS_KEYS = {
     "module": Required("normal module", "m", 1e-5, 1),
@@ -113,6 +113,12 @@ GEARS_KEYS = {
         'of the gears\' sides and tips, for heat.bulk_temperature = "losses"; left out: ISO/TS 6336-20',
         *("W/(m^2 K)", 1e-3, 1e6),
         many="both",
+    ),
+    "oil_factor": Key(
+        "`X_L` of friction by ISO/TR 14179-2: 1 for mineral oils, 0.8 for PAO and esters, 0.75 for PAG "
+        "(from memory); fitted to FZG tests by Fernandes and Seabra: 0.846, 0.65, 0.65, 0.585",
+        *("", 0.1, 2),
+        default=1.0,
     ),
 }
 GEARS = KeyTable(

@@ -12,6 +12,7 @@ from ehlpetsc.effects.quantities import FIELDS, STORED
 DOTTED_KEY = re.compile(r"[A-Za-z_]+(\.[A-Za-z_0-9]+)+")
 MAX_MEMBERS = 10_000  # of a series
 STRENGTH = ("Pa", 1e6, 1e12)
+MEAN_STRESSES = ("none", "morrow", "goodman", "gerber", "swt", "walker")
 MAX_DEPTH, MAX_RESIDUAL = 100.0, 1e10  # z/a, Pa
 
 OUTPUT_KEYS = {
@@ -98,6 +99,14 @@ POST_KEYS = {
         "of the damage of a life; ehlpetsc post computes it beside D, which is von-mises",
         choices=("von-mises", "fatemi-socie"),
         default="von-mises",
+    ),
+    "mean_stress": Key("correction for the mean stress of a cycle", choices=MEAN_STRESSES, default="none"),
+    "tensile_strength": Key("of Goodman and Gerber; left out: by the hardness of `sigma_f'`", *STRENGTH),
+    "walker_exponent": Key("`gamma` of Walker; left out: by the tensile strength", "", 0, 1),
+    "residual": Key(
+        "cycles left open in a pass: closed by the next pass, or half cycles (ASTM E1049)",
+        choices=("repeat", "half"),
+        default="repeat",
     ),
     "residual_stress": Key("[[z/a, Pa], ...] along the surface, depths increasing", kind=object, many="list"),
     "normal_sensitivity": Key(

@@ -6,7 +6,7 @@ from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 
-UNITS = ("m", "mm", "um", "nm")  # of profile files
+UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
@@ -23,20 +23,41 @@ GROUND_KEYS = {
     "correlation": Required("`l` of the autocorrelation `exp(-(lag/l)^2)`", *LENGTH),
     "skewness": Key("negative: plateaus with valleys", "", -3, 3, default=0.0),
     "seed": Required("of the random numbers", "", 0, 2**32 - 1, kind=int),
+    "correlation_across": Key("`l` across, of an areal surface with a lay; left out: ridges", *LENGTH),
+}
+SELF_AFFINE_KEYS = {
+    "sq": Required("root mean square height", "m", 1e-12, 1e-3),
+    "hurst": Required(
+        "`H`: the spectrum `C` falls with `q^(-2 H - 1)`, of a map `q^(-2 H - 2)`", "", gt=0, le=1
+    ),
+    "roll_off": Required("wavelength above which `C` is constant", *LENGTH),
+    "short_cutoff": Required("shortest wavelength", *LENGTH, below="roll_off"),
+    "peklenik": Key("of a map: wavelengths along its rows over those across", "", 0.01, 100, default=1.0),
+    "seed": GROUND_KEYS["seed"],
 }
 WAVE_KEYS = {
     "amplitude": Required("half of the peak to valley height", *HEIGHT),
     "wavelength": Required("crest to crest; sine: `z = amplitude cos(2 pi X/wavelength)`", *LENGTH),
 }
+SINE_KEYS = WAVE_KEYS | {
+    "wavelength_across": Key(
+        "of an areal surface, `z = amplitude cos(2 pi X/wavelength) cos(2 pi y/wavelength_across)`; "
+        "left out: ridges",
+        *LENGTH,
+    )
+}
 BUMP_KEYS = {
     "amplitude": Required("height of the ridge, depth of the dent", *HEIGHT),
     "wavelength": Required("full width at 1/e, `exp(-(2 (X - position)/wavelength)^2)`", *LENGTH),
     "position": Key("abscissa of the centre; left out: 2 wavelengths", "m", 0, 10),
+    "wavelength_across": Key("full width across; left out: endless ridge, round dent", *LENGTH),
 }
 SYNTHETIC = (
     _kinds("ground", text="random profile with prescribed Ra and skewness", keys=GROUND_KEYS)
-    | _kinds("sine", "square", text="wave with a crest at profile abscissa 0", keys=WAVE_KEYS)
+    | _kinds("sine", text="wave with a crest at profile abscissa 0", keys=SINE_KEYS)
+    | _kinds("square", text="wave with a crest at profile abscissa 0", keys=WAVE_KEYS)
     | _kinds("ridge", "dent", text="single ridge or dent of Gaussian shape", keys=BUMP_KEYS)
+    | _kinds("self-affine", text="random profile or map with a self-affine spectrum", keys=SELF_AFFINE_KEYS)
 )
 
 
@@ -50,12 +71,20 @@ def _check_source(profile: Values) -> dict[str, Any]:
         raise Refused("x is for heights z")
     if profile.z is not None and (profile.x is None) == (profile.spacing is None):
         raise Refused("heights z need either x or spacing")
-    if profile.x is not None and len(profile.x) != len(profile.z):
-        raise Refused(f"x has {len(profile.x)} values, z {len(profile.z)}; allowed: as many")
+    is_matrix = profile.z is not None and isinstance(profile.z[0], list)
+    columns = len(profile.z[0]) if is_matrix else len(profile.z or ())
+    if profile.x is not None and len(profile.x) != columns:
+        raise Refused(f"x has {len(profile.x)} values, z {columns}; allowed: as many")
+    if (profile.y is not None) != (is_matrix and profile.x is not None):
+        raise Refused("x and y are both for the rows and columns of a matrix z, y for no other z")
+    if profile.y is not None and len(profile.y) != len(profile.z):
+        raise Refused(f"y has {len(profile.y)} values, z {len(profile.z)} rows; allowed: as many")
+    if profile.level and profile.form:
+        raise Refused("level is the form of degree 1: write one of them")
     of_text = [key for key in ("columns", "decimal", "header_lines") if key in given]
     if profile.z is not None and of_text:
         raise Refused(f"{', '.join(of_text)}: for a file, not for heights z")
-    for_a_file = [key for key in values if key in given and key not in (*SOURCES, "scale")]
+    for_a_file = [key for key in values if key in given and key not in (*SOURCES, "scale", "direction")]
     if profile.synthetic and for_a_file:
         raise Refused(f"{', '.join(for_a_file)}: for a file, not for a synthetic profile")
     return {}
@@ -66,17 +95,30 @@ KEYS = {
     "unit": Key("of the heights in the file; left out: m", choices=UNITS),
     "x_unit": Key("of x in the file; left out: as unit", choices=UNITS),
     "spacing": Key("distance of points without x in the file", *LENGTH),
+    "spacing_across": Key("distance of the rows of a map; left out: as spacing", *LENGTH),
     "columns": Key("of x and z, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2),
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
     "fill_gaps": Key("longest gap of missing heights that the spline bridges", "m", 0, 1),
-    "z": Key("heights in unit, here instead of in a file", "", -1e9, 1e9, many="list", min_items=4),
+    "bridge_spikes": Key("have the spline bridge spikes of at most five points", kind=bool, default=False),
+    "z": Key(
+        "heights in unit, here instead of in a file; of a map: its rows",
+        "",
+        -1e9,
+        1e9,
+        many="list or matrix",
+        min_items=4,
+    ),
     "x": Key("of the heights z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
-    "level": Key("subtract the least-squares line", kind=bool, default=False),
+    "y": Key("of the rows of z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
+    "level": Key("subtract the least-squares line or plane", kind=bool, default=False),
+    "form": Key("degree of the least-squares polynomial subtracted", "", 1, 12, kind=int),
     "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave `L` loses `2^(-(cutoff/L)^2)` of it", *LENGTH),
     "short_cutoff": Key(
         "Gaussian low-pass, ISO 3274: a wave `L` keeps `2^(-(short_cutoff/L)^2)`", *LENGTH, below="cutoff"
     ),
+    "direction": Key("of the rows of a map against x, towards y", "degrees", -360, 360),
+    "position_across": Key("of a map: its Y that runs along y = 0; left out: its middle", "m", 0, 10),
     "flip": Key("run the profile from its other end", kind=bool, default=False),
     "synthetic": Key('{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }', kind=dict, variants=SYNTHETIC),
     "scale": Key("factor on the heights; negative: turned over", "", -1e4, 1e4, default=1.0),
@@ -87,6 +129,19 @@ PROFILE = KeyTable(
     KEYS,
     complete=_check_source,
 )
+
+
+OF_MAPS = ("spacing_across", "direction", "position_across")
+OF_SYNTHETIC_MAPS = ("wavelength_across", "correlation_across", "peklenik")
+
+
+def areal_keys(surface: Values) -> list[str]:
+    """Keys given for a surface that a line contact, of profiles, cannot use."""
+    given = [key for key in OF_MAPS if getattr(surface, key) is not None]
+    if surface.z is not None and isinstance(surface.z[0], list):
+        given.append("z")
+    made = surface.synthetic.as_dict() if surface.synthetic else {}
+    return given + [f"synthetic.{key}" for key in OF_SYNTHETIC_MAPS if made.get(key) not in (None, 1.0)]
 
 
 class Surface(Values):

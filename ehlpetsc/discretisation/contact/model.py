@@ -110,7 +110,7 @@ class ContactModel:
         raise NotImplementedError
 
     def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """:class:`.band.BandEntries` of a state.
+        """:class:`.node_state.BandEntries` of a state.
 
         `state`, `derivatives`: as in `ehl_problem.Evaluation`.
         `stencil`: nodes of each Reynolds row, by their index in the window, shape (local nodes, 4).

@@ -159,7 +159,7 @@ class Heat(Effect):
             base=temperatures.state[0],
             profile=temperatures.state[1],
             solved=temperatures.film if solution.inputs.fluid is None else solved,
-            shear=steps.shear(temperatures, film, step),
+            shear=temperatures.stress,
             source=source,
             rubbing=np.zeros_like(film.rubbing) if steps.thinnest else film.rubbing,
             spread=spread,

@@ -52,6 +52,7 @@ class FilmTemperature(NamedTuple):
 
     `mean`, `by_p`, `by_h`: mean across the film [K] and its derivatives [K/Pa], [K/m].
     `q1`, `q2`, `shear_heat`: heat fluxes into both surfaces and Phi [W/m^2].
+    `stress`: mean shear stress by the flow law [Pa]; where nothing slides, Phi over the speed is rounding.
     `base`, `profile`: :math:`T_s` [K] and y.
     `energy`: :math:`T_e` [K].
     """
@@ -62,6 +63,7 @@ class FilmTemperature(NamedTuple):
     q1: float
     q2: float
     shear_heat: float
+    stress: float
     base: float
     profile: float
     energy: float
@@ -144,7 +146,7 @@ def film_temperature(
     (p, h, left), (spread, middle, reference) = node, last
     oil = oil_at(p, h, left, spread, middle, reference, law)
     t, y = start
-    found = FilmTemperature(t, 0.0, 0.0, 0.0, 0.0, 0.0, t, y, t)
+    found = FilmTemperature(t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t, y, t)
     for kind in KINDS:
         exchange = exchange_of(kind, oil.r, walls)
         if oil.speed == 0.0:
@@ -163,7 +165,7 @@ def _unsheared(balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperat
     t = (b + g + exchange.balanced * exchange.conductance) / (a + exchange.conductance)
     q1, q2, by_r = fluxes(t, exchange)
     t_r = -by_r / (a + exchange.conductance)
-    return FilmTemperature(t, -t_r * oil.r * oil.k_p, t_r * oil.r_h, q1, q2, 0.0, t, 0.0, t)
+    return FilmTemperature(t, -t_r * oil.r * oil.k_p, t_r * oil.r_h, q1, q2, 0.0, 0.0, t, 0.0, t)
 
 
 @inlined
@@ -191,6 +193,7 @@ def _sheared(t: float, y: float, balance: tuple, oil: NodeOil, exchange: Exchang
         if abs(change) < QUADRATIC and abs(change_y) <= QUADRATIC_Y * y:
             if abs(d - split(energy, oil.beta, exchange)) < MAX_SPLIT_CHANGE:
                 break
+    stress = shear.stress - shear.by_x * (oil.beta * change + shear.rate_y * change_y)
     phi = heat.phi + (heat.phi_t * change + heat.phi_y * change_y)
     energy = t + phi * (oil.r * UNIFORM)
     mean = t + heat.mean_phi * phi + (shear.mean + shear.mean_y * change_y) / oil.beta
@@ -198,7 +201,7 @@ def _sheared(t: float, y: float, balance: tuple, oil: NodeOil, exchange: Exchang
     a, b, g = balance
     phi = a * mean - b - g + q1 + q2  # so that the balance of heat closes
     t_p, t_h = _derivatives(t, phi, a, by_r, shear, heat, oil, exchange.conductance)
-    return FilmTemperature(mean, t_p, t_h, q1, q2, phi, t, y, energy)
+    return FilmTemperature(mean, t_p, t_h, q1, q2, phi, stress, t, y, energy)
 
 
 @inlined

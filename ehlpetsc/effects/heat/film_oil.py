@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
+from ehlpetsc.physics.law import SLOTS
 from ehlpetsc.physics.laws import (
-    SLOTS,
     conductivity,
     is_linear_in_temperature,
     ln_viscosities,

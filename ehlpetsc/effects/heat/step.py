@@ -35,13 +35,14 @@ ACCURACY = 1e-11  # of the maximum
 
 class Temperatures(NamedTuple):
     """State of the film, temperatures of the walls [K], heat fluxes, heat of shear and `extrapolated` of
-    :class:`.transport.Film` at its end [W/m^2] at the nodes, and records of both bodies."""
+    :class:`.transport.Film` at its end [W/m^2] and shear stress [Pa] at the nodes, records of both bodies."""
 
     state: np.ndarray
     walls: list
     fluxes: list
     shear: np.ndarray
     extrapolated: np.ndarray
+    stress: np.ndarray
     bodies: list
     responses: list
 
@@ -138,11 +139,6 @@ class HeatStep:
         )
         return temperatures, film, source, spread, heat.guess[MEAN]
 
-    def shear(self, temperatures: Temperatures, film: Film, step: Step) -> np.ndarray:
-        """Mean shear stress of the film [Pa]."""
-        speed = film.left * abs(step.conditions.sliding)
-        return np.divide(temperatures.shear, speed, out=np.zeros_like(speed), where=speed > 0.0)
-
     def _flow(
         self, solution: Solution, heat: FilmHeat
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -189,26 +185,28 @@ class HeatStep:
         walls: Sequence[np.ndarray],
         responses: Sequence[np.ndarray],
         state: np.ndarray,
-    ) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, np.ndarray]:
-        """State of the film, both fluxes, the heat of shear and e."""
+    ) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, np.ndarray, np.ndarray]:
+        """State of the film, both fluxes, the heat of shear, e and the shear stress."""
         rubbed, fractions = _rubbed(walls, responses, film.rubbing)
         heat = heat.with_rows((W1, W2, R1, R2), (*rubbed, *responses))
         state, rows, couette = state.copy(), np.array(film[:-2]), film.couette
-        *fluxes, shear, extrapolated = out = np.empty((4, state.shape[1]))
+        *fluxes, shear, extrapolated, stress = out = np.empty((5, state.shape[1]))
         ambient = self.inlet, self.coldest
         transport(state, rows, couette, ambient, tuple(heat.law), heat.of_nodes, out)
         fluxes = [q + part * film.rubbing for q, part in zip(fluxes, fractions, strict=True)]
-        return state, fluxes, shear, extrapolated
+        return state, fluxes, shear, extrapolated, stress
 
     def _moving(self, heat: FilmHeat, film: Film) -> Temperatures:
         responses = heat.of_nodes[[R1, R2]]
-        state, fluxes, shear, extrapolated = self._nodes(heat, film, heat.walls, responses, heat.guess)
+        state, fluxes, shear, extrapolated, stress = self._nodes(
+            heat, film, heat.walls, responses, heat.guess
+        )
         walls = [w + r * q for w, r, q in zip(heat.walls, responses, fluxes, strict=True)]
         bodies = [
             body.accept(body_step, q)
             for body, body_step, q in zip(self.bodies, heat.bodies, fluxes, strict=True)
         ]
-        return Temperatures(state, walls, fluxes, shear, extrapolated, bodies, responses)
+        return Temperatures(state, walls, fluxes, shear, extrapolated, stress, bodies, responses)
 
     def _steady(self, record: HeatRecord, heat: FilmHeat, film: Film, step: Step) -> Temperatures:
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
@@ -229,13 +227,15 @@ class HeatStep:
             state = np.array((record.base, record.profile, record.film))
             if temperatures is not None:
                 state = temperatures.state
-            state, new_fluxes, shear, extrapolated = self._nodes(
+            state, new_fluxes, shear, extrapolated, stress = self._nodes(
                 heat, film, walls_without_flux, responses, state
             )
             bodies = [
                 body.record(flux, terms) for body, flux, (_, terms) in zip(self.bodies, q, risen, strict=True)
             ]
-            temperatures = Temperatures(state, walls, new_fluxes, shear, extrapolated, bodies, responses)
+            temperatures = Temperatures(
+                state, walls, new_fluxes, shear, extrapolated, stress, bodies, responses
+            )
             return np.concatenate(new_fluxes)
 
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))

@@ -116,8 +116,8 @@ def transport(
     `film`, `flow`: fields `pressure` to `extrapolated` of :class:`Film`, shape (7, nodes); its `couette`.
     `ambient`: temperature of the oil that enters, minimum of it and both bodies [K].
     `law`, `of_nodes`: as of :class:`.film.FilmHeat`, `law` as a tuple; rows `A` and `B` are not used.
-    `out`: filled in: both heat fluxes, heat of shear, e at the end of the step over the step [W/m^2], shape
-        (4, nodes).
+    `out`: filled in: both heat fluxes, heat of shear, e at the end of the step over the step [W/m^2], shear
+        stress [Pa], shape (5, nodes).
 
     Arrays of rows, as numba looks up the types of many arrays in a tuple, and of named tuples, anew in some
     calls, slowly.
@@ -168,7 +168,7 @@ def _solve_node(
         limiters[IN_SPACE, i] = limiters[IN_TIME, i] = 0.0
     state[MEAN, i] = found.mean
     out[0, i], out[1, i], out[2, i] = found.q1, found.q2, found.shear_heat
-    out[3, i] = beyond * (found.mean - old)
+    out[3, i], out[4, i] = beyond * (found.mean - old), found.stress
 
 
 @inlined

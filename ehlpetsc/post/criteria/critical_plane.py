@@ -16,32 +16,24 @@ The cycles of the shear stress are counted; the maximum normal stress of a cycle
 First all planes of a coarse grid are evaluated on the samples at which the path turns, in the order of their
 widest range, until no other plane can reach the maximum damage so far. The best two planes are then improved
 by a pattern search, and the damage of the best plane is counted on all samples.
-
-The stress on a plane is a weighted sum of the three stresses. Samples at which one of 13 such sums reverses
-by more than a tolerance are kept, and between them samples off the straight line; the path between kept
-samples is straight and monotone, so that the stress on any plane has no larger reversal between them than
-about the tolerance.
 """
 
 from __future__ import annotations
 
 from functools import partial
-from itertools import product
-from math import cos, exp, log, pi, sin, sqrt
+from math import cos, exp, log, pi, sin
 from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import ZERO, compiled
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.criteria.laws import Criteria
+from ehlpetsc.post.criteria.turning_samples import turning_samples
 from ehlpetsc.post.fatigue.accumulate import evaluate
-from ehlpetsc.post.fatigue.cycles import equivalent_points, find_cycles, loop_of, workspace
+from ehlpetsc.post.fatigue.cycles import RESIDUALS, equivalent_points, find_cycles, loop_of, workspace
 from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material, interpolate, shear_tables
 
 GRID_STEP = pi / 12  # between the planes and directions of the coarse grid
-TOLERANCE = 0.02  # of the widest of the three axes
-DIRECTIONS = np.array([way for way in product((-1.0, 0.0, 1.0), repeat=3) if way > (0.0, 0.0, 0.0)])
-DIRECTIONS /= np.linalg.norm(DIRECTIONS, axis=1)[:, None]
 
 
 @compiled(error_model="python", nogil=True)
@@ -56,87 +48,31 @@ def plane_weights(theta: float, phi: float, psi: float, nu: float) -> tuple[tupl
     return shear, (x * x + nu * y * y, z * z + nu * y * y, 2 * x * z), x * x + y * y
 
 
-def planes_and_directions(step: float = GRID_STEP) -> np.ndarray:
+@compiled(error_model="python", nogil=True)
+def tensor_weights(theta: float, phi: float, psi: float) -> tuple[tuple, tuple, float]:
+    """Weights (6,) of sx, sz, txz, sy, txy, tyz as those of :func:`plane_weights`."""
+    x, y, z = cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
+    c, s = cos(psi), sin(psi)
+    tx = -c * sin(theta) - s * sin(phi) * cos(theta)
+    ty = s * cos(phi)
+    tz = c * cos(theta) - s * sin(phi) * sin(theta)
+    shear = x * tx, z * tz, x * tz + z * tx, y * ty, x * ty + y * tx, y * tz + z * ty
+    return shear, (x * x, z * z, 2 * x * z, y * y, 2 * x * y, 2 * y * z), x * x + y * y
+
+
+def planes_and_directions(step: float = GRID_STEP, components: int = 3) -> np.ndarray:
     """Angles (count, 3) in radians of planes and directions in them, both about `step` apart.
 
-    Planes without tilt have shear only in the direction of the section; the plane of the section has none.
+    Of three components, planes without tilt have shear only in the direction of the section, the plane of the
+    section has none, and tilts both ways are equivalent.
     """
     degrees, rows = np.degrees(step), []
-    for tilt in np.arange(0.0, 90.0, degrees):
+    in_section = components == 3
+    for tilt in np.arange(0.0 if in_section else degrees - 90.0, 90.0, degrees):
         count = max(1, round(180 / degrees * np.cos(np.radians(tilt))))
-        directions = np.arange(0.0, 180.0, degrees) if tilt else (0.0,)
+        directions = np.arange(0.0, 180.0, degrees) if tilt or not in_section else (0.0,)
         rows += [(theta, tilt, psi) for theta in 180 / count * np.arange(count) for psi in directions]
     return np.radians(rows)
-
-
-@compiled(error_model="python", nogil=True)
-def _mark_reversals(values: np.ndarray, tolerance: float, is_kept: np.ndarray) -> None:
-    """Mark the samples at which a series reverses by more than the tolerance."""
-    top = bottom = sign = 0
-    for k in range(1, values.size):
-        if sign >= 0:
-            if values[k] > values[top]:
-                top = k
-            elif values[top] - values[k] > tolerance:
-                is_kept[top] = True
-                sign, bottom = -1, k
-        if sign <= 0:
-            if values[k] < values[bottom]:
-                bottom = k
-            elif values[k] - values[bottom] > tolerance:
-                is_kept[bottom] = True
-                sign, top = 1, k
-    if sign:
-        is_kept[top if sign > 0 else bottom] = True
-
-
-@compiled(error_model="python", nogil=True)
-def _off_line(points: np.ndarray, first: int, last: int) -> tuple[int, float]:
-    """Sample with the maximum distance from the straight line between two samples, and this distance."""
-    dx, dy = points[0, last] - points[0, first], points[1, last] - points[1, first]
-    dz = points[2, last] - points[2, first]
-    length = dx * dx + dy * dy + dz * dz
-    index, largest = first, 0.0
-    for k in range(first + 1, last):
-        x, y = points[0, k] - points[0, first], points[1, k] - points[1, first]
-        z = points[2, k] - points[2, first]
-        along = min(max((x * dx + y * dy + z * dz) / length, 0.0), 1.0) if length > 0 else 0.0
-        away = (x - along * dx) ** 2 + (y - along * dy) ** 2 + (z - along * dz) ** 2
-        if away > largest:
-            index, largest = k, away
-    return index, sqrt(largest)
-
-
-@compiled(error_model="python", nogil=True)
-def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
-    """Write the indices of the samples of points (3, :size) to keep into `indices`; return their number."""
-    extent = 0.0
-    for k in range(3):
-        extent = max(extent, points[k, :size].max() - points[k, :size].min())
-    tolerance = TOLERANCE * extent
-    is_kept = np.zeros(size, np.bool_)
-    is_kept[0] = is_kept[size - 1] = True
-    for a, b, c in DIRECTIONS:
-        along = a * points[0, :size] + b * points[1, :size] + c * points[2, :size]
-        _mark_reversals(along, tolerance, is_kept)
-    count, first = 0, ZERO
-    ends = np.empty(size, np.int64)
-    for last in range(size):
-        if not is_kept[last]:
-            continue
-        ends[0], open_ends = last, 1
-        while open_ends:  # stack of the ends of the remaining intervals
-            end = ends[open_ends - 1]
-            index, away = _off_line(points, first, end)
-            if away > tolerance:
-                ends[open_ends] = index
-                open_ends += 1
-            else:
-                indices[count] = end
-                count += 1
-                first = end
-                open_ends -= 1
-    return count
 
 
 MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
@@ -147,17 +83,24 @@ NEGLIGIBLE_RANGE = 0.2  # of the widest: smaller cycles, which the search ignore
 def _on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
     """Fill in the shear stress, as an equivalent stress, and the normal stress."""
     size = stress.shape[1]
-    shear, normal, share = plane_weights(angles[0], angles[1], angles[2], law[0])
-    a, b, c = shear
-    work[2][:size] = 3**0.5 * (a * stress[0] + b * stress[1] + c * stress[2])
-    a, b, c = normal
-    work[3][:size] = law[1] * share + (a * stress[0] + b * stress[1] + c * stress[2])
+    if stress.shape[0] == 3:
+        shear, normal, share = plane_weights(angles[0], angles[1], angles[2], law[0])
+        a, b, c = shear
+        work[2][:size] = 3**0.5 * (a * stress[0] + b * stress[1] + c * stress[2])
+        a, b, c = normal
+        work[3][:size] = law[1] * share + (a * stress[0] + b * stress[1] + c * stress[2])
+        return
+    in_shear, across, share = tensor_weights(angles[0], angles[1], angles[2])
+    work[2][:size], work[3][:size] = 0.0, law[1] * share
+    for k in range(6):
+        work[2][:size] += 3**0.5 * in_shear[k] * stress[k]
+        work[3][:size] += across[k] * stress[k]
 
 
 @compiled(error_model="python", nogil=True)
 def _cycle_damage(width: float, normal: float, law: tuple) -> float:
     """1/N of a cycle with a range and a maximum normal stress."""
-    _, _, sensitivity, curve, lives = law
+    _, _, sensitivity, curve, lives, _ = law
     if width <= 0:
         return 0.0
     parameter = interpolate(2 * log(width), curve)
@@ -172,7 +115,7 @@ def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: 
     stack, cycles, series, normal = work
     size = stress.shape[1]
     _on_plane(angles, stress, law, work)
-    n = find_cycles(series[:size], stack, cycles)
+    n, full = find_cycles(series[:size], stack, cycles, law[5])
     min_range = threshold * (series[:size].max() - series[:size].min())
     total = 0.0
     for k in range(n):
@@ -181,10 +124,10 @@ def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: 
         if width <= min_range:
             continue
         highest = 0.0
-        start, count = loop_of(series, size, i, j)
+        start, count = loop_of(series, size, i, j) if k < full else (i, j - i + 1)
         for m in range(start, start + count):
             highest = max(highest, normal[m if m < size else m - size])
-        total += _cycle_damage(width, highest, law)
+        total += (1.0 if k < full else 0.5) * _cycle_damage(width, highest, law)
     return total
 
 
@@ -257,7 +200,8 @@ def _worst_planes(
 
     Planes are sought on the samples at which the path turns.
     """
-    points, indices = np.empty(stress.shape[1:]), np.empty(stress.shape[2], np.int64)
+    axes = 3 if stress.shape[1] == 3 else 5
+    points, indices = np.empty((axes, stress.shape[2])), np.empty(stress.shape[2], np.int64)
     for p in range(stress.shape[0]):
         history = stress[p, :, : lengths[p]].copy()
         equivalent_points(history, law[0], points)
@@ -273,10 +217,12 @@ def _worst_planes(
                 out[p, 0], out[p, 1:] = damage, starts[k, :2]
 
 
-def plane_law(residual: float, material: Material, constants: Criteria, strain: str) -> tuple:
+def plane_law(
+    residual: float, material: Material, constants: Criteria, strain: str, cycle_residual: str = "repeat"
+) -> tuple:
     """Constants of the compiled functions; residual stress [Pa]."""
-    sensitivity = constants.sensitivity(material)
-    return material.poisson_ratio, residual, sensitivity, *shear_tables(material, strain)
+    tables, half = shear_tables(material, strain), RESIDUALS.index(cycle_residual) > 0
+    return material.poisson_ratio, residual, constants.sensitivity(material), *tables, half
 
 
 def plane_workspace(samples: int) -> tuple:
@@ -291,12 +237,14 @@ def count_on_planes(
     material: Material,
     constants: Criteria,
     strain: str,
+    cycle_residual: str = "repeat",
 ) -> np.ndarray:
-    """Results (points, 3) as in PlaneDamage of histories (points, 3, samples) of these lengths."""
+    """Results (points, 3) as in PlaneDamage of histories (points, 3 or 6, samples) of these lengths."""
     stress = stress.astype(float, copy=False)  # one compiled version for files and arrays
-    law, work = plane_law(residual, material, constants, strain), plane_workspace(stress.shape[-1])
+    law = plane_law(residual, material, constants, strain, cycle_residual)
+    work = plane_workspace(stress.shape[-1])
     out = np.empty((len(stress), 3))
-    _worst_planes(planes_and_directions(), stress, lengths, law, work, out)
+    _worst_planes(planes_and_directions(components=stress.shape[1]), stress, lengths, law, work, out)
     damage, theta, phi = out.T
     x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
     inclination = np.degrees(np.arctan2(z, x)) % 180.0

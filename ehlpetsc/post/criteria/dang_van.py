@@ -19,7 +19,7 @@ hydrostatic stress counts as zero, which is conservative.
 from __future__ import annotations
 
 from functools import partial
-from math import sqrt
+from math import asin, cos, sqrt
 
 import numpy as np
 
@@ -34,8 +34,8 @@ BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 
 @compiled(nogil=True)
 def _circumcentre(corners: np.ndarray) -> np.ndarray:
-    """Centre of the smallest sphere through 1 to 4 corners (count, 3); nan or infinite if degenerate."""
-    centre, basis = corners[0].copy(), np.zeros((len(corners), 3))
+    """Centre of the smallest sphere through corners (count, axes); nan or infinite if degenerate."""
+    centre, basis = corners[0].copy(), np.zeros(corners.shape)
     for k in range(1, len(corners)):
         edge, outer, inner = corners[k] - corners[0], corners[k] - centre, corners[0] - centre
         for unit in basis[: k - 1]:
@@ -52,11 +52,11 @@ def _around(support: np.ndarray, new: np.ndarray) -> tuple[float, np.ndarray, np
 
     The new point is on its surface.
     """
-    points = np.concatenate((new.reshape(1, 3), support))
+    points = np.concatenate((new.reshape(1, new.size), support))
     best, best_centre, best_support = np.inf, new, support
     for mask in range(1 << len(support)):
         chosen = np.array([0] + [k + 1 for k in range(len(support)) if mask >> k & 1])
-        if len(chosen) <= 4:
+        if len(chosen) <= new.size + 1:
             centre = _circumcentre(points[chosen])
             radius = np.sqrt(((points - centre) ** 2).sum(axis=1)).max()
             if radius < best:
@@ -66,15 +66,15 @@ def _around(support: np.ndarray, new: np.ndarray) -> tuple[float, np.ndarray, np
 
 @compiled(error_model="python", nogil=True)
 def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
-    """Centre and radius of the smallest ball about points (3, n).
+    """Centre and radius of the smallest ball about points (axes, n).
 
     The farthest point outside is added to the points that define the ball until no point is outside; the
     radius increases in every round, so that no subset occurs twice.
     """
     centre, radius = points[:, 0].copy(), 0.0
-    support = centre.copy().reshape(1, 3)
+    support = centre.copy().reshape(1, centre.size)
     for _ in range(MAX_ROUNDS):
-        away = ((points - centre.reshape(3, 1)) ** 2).sum(axis=0)
+        away = ((points - centre.reshape(centre.size, 1)) ** 2).sum(axis=0)
         farthest = away.argmax()
         if sqrt(away[farthest]) <= radius * (1 + BALL_TOLERANCE):
             break
@@ -86,30 +86,54 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 @compiled(error_model="python", nogil=True)
+def _greatest_shear(points: np.ndarray, centre: np.ndarray, k: int) -> float:
+    """Half the difference of the largest and smallest principal values of the deviator from the centre."""
+    root = sqrt(3.0)
+    if points.shape[0] == 3:
+        u = abs(points[0, k] - centre[0])
+        d, t = (points[1, k] - centre[1]) / root, (points[2, k] - centre[2]) / root
+        inside = sqrt(d * d + t * t)  # the deviator is (u/3 + d, -2u/3, u/3 - d) and t
+        return max(inside, (u + inside) / 2)
+    u, d = points[0, k] - centre[0], (points[1, k] - centre[1]) / root
+    txz, txy, tyz = (points[2:, k] - centre[2:]) / root
+    x, y, z = u / 3 + d, -2 * u / 3, u / 3 - d
+    second = (x * x + y * y + z * z) / 2 + txz * txz + txy * txy + tyz * tyz
+    third = x * (y * z - tyz * tyz) - txy * (txy * z - tyz * txz) + txz * (txy * tyz - y * txz)
+    if second <= 0:
+        return 0.0
+    lode = asin(min(max(-1.5 * root * third / second**1.5, -1.0), 1.0)) / 3
+    return sqrt(second) * cos(lode)
+
+
+@compiled(error_model="python", nogil=True)
+def _hydrostatic(stress: np.ndarray, k: int, nu: float, residual: float) -> float:
+    if stress.shape[0] == 3:
+        return ((1 + nu) * (stress[0, k] + stress[1, k]) + 2 * residual) / 3
+    return (stress[0, k] + stress[1, k] + stress[3, k] + 2 * residual) / 3
+
+
+@compiled(error_model="python", nogil=True)
 def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, out: np.ndarray) -> None:
-    """Set out (points, 1) to U of histories (points, 3, samples) with their lengths; limits a and tau_w."""
+    """Set out (points, 1) to U of histories (points, 3 or 6, samples) with their lengths; limits a, tau_w."""
     stresses, lengths = histories
     slope, limit = limits
-    root = sqrt(3.0)
+    axes = 3 if stresses.shape[1] == 3 else 5
     for p in range(stresses.shape[0]):
         stress = stresses[p, :, : lengths[p]].copy()
-        points = np.empty(stress.shape)
+        points = np.empty((axes, stress.shape[1]))
         equivalent_points(stress, nu, points)
         centre, _ = smallest_ball(points)
         largest = 0.0
         for k in range(stress.shape[1]):
-            u = abs(points[0, k] - centre[0])
-            d, t = (points[1, k] - centre[1]) / root, (points[2, k] - centre[2]) / root
-            inside = sqrt(d * d + t * t)  # the deviator is (u/3 + d, -2u/3, u/3 - d) and t
-            hydrostatic = ((1 + nu) * (stress[0, k] + stress[1, k]) + 2 * residual) / 3
-            largest = max(largest, max(inside, (u + inside) / 2) + slope * max(hydrostatic, 0.0))
+            hydrostatic = _hydrostatic(stress, k, nu, residual)
+            largest = max(largest, _greatest_shear(points, centre, k) + slope * max(hydrostatic, 0.0))
         out[p, 0] = largest / limit
 
 
 def count_utilisation(
     stress: np.ndarray, lengths: np.ndarray, residual: float, poisson_ratio: float, constants: Criteria
 ) -> np.ndarray:
-    """Dang Van's utilisation (points, 1) of histories (points, 3, samples) of these lengths."""
+    """Dang Van's utilisation (points, 1) of histories (points, 3 or 6, samples) of these lengths."""
     out = np.empty((len(stress), 1))
     limits = constants.hydrostatic_slope, constants.torsion_limit
     _utilisations((stress.astype(float, copy=False), lengths), poisson_ratio, residual, limits, out)

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.fatigue.cycles import find_cycles, workspace
+from ehlpetsc.post.fatigue.cycles import RESIDUALS, find_cycles, workspace
+from ehlpetsc.post.fatigue.mean_stress import MEAN_STRESSES, reversed_range
 from ehlpetsc.post.fatigue.strain_life import (
     DEFAULT_STRAIN,
     STRAINS,
@@ -20,8 +21,6 @@ from ehlpetsc.post.fatigue.strain_life import (
     look_up,
 )
 from ehlpetsc.post.stresses.half_plane import von_mises_squared
-
-MEAN_STRESSES = ("none", "morrow")
 
 
 def evaluate(
@@ -53,41 +52,68 @@ _squared = compiled(von_mises_squared, error_model="python", nogil=True)
 
 
 @compiled(error_model="python", nogil=True)
-def _sum_cycles(stress: np.ndarray, nu: float, cycles: np.ndarray, law: tuple) -> tuple[float, float, float]:
-    """Damage, number and maximum squared range of the cycles of one history (3, samples)."""
-    (morrow, rule, residual), constants, table = law
+def _range_and_sum(stress: np.ndarray, i: int, j: int, nu: float) -> tuple[float, float]:
+    """Squared equivalent range between two samples and the sum of their normal stresses."""
+    xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
+    dsx, dsz, dtxz = xj - xi, zj - zi, float(stress[2, j]) - float(stress[2, i])
+    if stress.shape[0] == 3:
+        return _squared(dsx, nu * (dsx + dsz), dsz, dtxz), (1 + nu) * (xi + xj + zi + zj)
+    yi, yj = float(stress[3, i]), float(stress[3, j])
+    dtxy, dtyz = float(stress[4, j]) - float(stress[4, i]), float(stress[5, j]) - float(stress[5, i])
+    squared = _squared(dsx, yj - yi, dsz, dtxz) + 3 * (dtxy * dtxy + dtyz * dtyz)
+    return squared, xi + xj + zi + zj + yi + yj
+
+
+@compiled(error_model="python", nogil=True)
+def _sum_cycles(
+    stress: np.ndarray, nu: float, cycles: np.ndarray, full: int, law: tuple
+) -> tuple[float, float, float]:
+    """Damage, number and maximum squared range of the cycles of one history (components, samples).
+
+    Those from number `full` on are half cycles.
+    """
+    (correction, rule, residual, limits), constants, table = law
     total = number = largest = 0.0
     for k in range(len(cycles)):
-        i, j = cycles[k, 0], cycles[k, 1]
-        xi, xj, zi, zj = float(stress[0, i]), float(stress[0, j]), float(stress[1, i]), float(stress[1, j])
-        dsx, dsz = xj - xi, zj - zi
-        squared = _squared(dsx, nu * (dsx + dsz), dsz, float(stress[2, j]) - float(stress[2, i]))
+        squared, normal = _range_and_sum(stress, cycles[k, 0], cycles[k, 1], nu)
         if squared <= 0:
             continue
-        if morrow:
-            dsv = sqrt(squared)
-            mean = max((1 + nu) * (xi + xj + zi + zj) / 2 + 2 * residual, -dsv / 2)
-            damage = cycle_damage(dsv, mean, rule, constants)
-        else:
+        if correction == 0:
             damage = look_up(squared, table)
-        total += damage
-        number += 1.0
+        else:
+            dsv = sqrt(squared)
+            mean = max(normal / 2 + 2 * residual, -dsv / 2)
+            if correction == 1:
+                damage = cycle_damage(dsv, mean, rule, constants)
+            else:
+                dsv = reversed_range(correction, dsv, mean, limits[0], limits[1])
+                damage = look_up(dsv * dsv, table) if dsv > 0 else 0.0
+        share = 1.0 if k < full else 0.5
+        total += share * damage
+        number += share
         largest = max(largest, squared)
     return total, number, largest
 
 
 @compiled(error_model="python", nogil=True)
-def damage_of_points(histories: tuple, nu: float, law: tuple, work: tuple, out: np.ndarray) -> None:
-    """Set out (points, 3) from histories: stress (points, 3, samples) with lengths[point] samples each."""
+def damage_of_points(
+    histories: tuple, nu: float, half: bool, law: tuple, work: tuple, out: np.ndarray
+) -> None:
+    """Set out (points, 3) from histories: stress (points, components, samples) with lengths[point] samples.
+
+    The counted components are those of a line contact and the two other shear stresses; sy follows them.
+    """
     stress, lengths = histories
     stack, cycles, scalar = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
         worst = -1.0
-        for channel in range(3):
+        for channel in range(stress.shape[1]):
+            if channel == 3:
+                continue
             scalar[: lengths[point]] = history[channel]  # copied: counting is compiled once for all kinds
-            count = find_cycles(scalar[: lengths[point]], stack, cycles)
-            total, number, largest = _sum_cycles(history, nu, cycles[:count], law)
+            count, full = find_cycles(scalar[: lengths[point]], stack, cycles, half)
+            total, number, largest = _sum_cycles(history, nu, cycles[:count], full, law)
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
                 out[point, 0], out[point, 1], out[point, 2] = total, number, sqrt(largest)
@@ -100,16 +126,19 @@ def count_damage(
     material: Material,
     mean_stress: str,
     strain: str,
+    cycle_residual: str,
 ) -> np.ndarray:
-    """Damage, cycles and maximum range (points, 3) of histories (points, 3, samples) of these lengths.
+    """Damage, cycles and maximum range (points, 3) of histories (points, 3 or 6, samples) of these lengths.
 
     The residual stress [Pa] acts in both directions along the surface, in the mean-stress term only.
     """
     samples, out = stress.shape[-1], np.empty((len(stress), 3))
-    options = MEAN_STRESSES.index(mean_stress) > 0, STRAINS.index(strain), residual
+    limits = material.mean_stress_constants()
+    options = MEAN_STRESSES.index(mean_stress), STRAINS.index(strain), residual, limits
     law = options, material.constants(), life_table(material, strain)
     work = *workspace(samples), np.empty(samples)
-    damage_of_points((stress, lengths), material.poisson_ratio, law, work, out)
+    half = RESIDUALS.index(cycle_residual) > 0
+    damage_of_points((stress, lengths), material.poisson_ratio, half, law, work, out)
     return out
 
 
@@ -121,6 +150,7 @@ def damage(
     mean_stress: str = "none",
     strain: str = DEFAULT_STRAIN,
     residual_stress: float = 0.0,
+    residual: str = "repeat",
 ) -> Damage:
     """Damage of one pass of each history, cycles of the scalar with the maximum damage, shape (...).
 
@@ -129,14 +159,18 @@ def damage(
     txz reverses while sz peaks).
 
     `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    `mean_stress`: Morrow subtracts the mean of sigma_x + sigma_y + sigma_z over the two reversals (in
-        uniaxial loading the mean stress) from the fatigue strength. The benefit of compression is limited to
+    `mean_stress`: "none" or a correction (:mod:`ehlpetsc.post.fatigue.mean_stress`) by the mean of
+        sigma_x + sigma_y + sigma_z over the two reversals, in uniaxial loading the mean stress; "morrow"
+        subtracts it from the fatigue strength. The benefit of compression is limited to
         that of a uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this
         limit the contact pressure would increase lives by decades.
     `strain`: use of the elastic range in the cyclic stress-strain curve (13): unchanged, as in the paper, or
         by Neuber's (default) or Glinka's rule (:mod:`ehlpetsc.post.fatigue.strain_life`).
     `residual_stress`: residual stress along the surface, equal in x and y, zero in z [Pa]; enters twice in
-        the mean of Morrow's term, and has no effect without this term.
+        the mean stress, and has no effect without a correction by it.
+    `residual`: see :func:`ehlpetsc.post.rainflow`.
     """
-    count = partial(count_damage, material=material, mean_stress=mean_stress, strain=strain)
+    count = partial(
+        count_damage, material=material, mean_stress=mean_stress, strain=strain, cycle_residual=residual
+    )
     return Damage(*evaluate(sx, sz, txz, count, residual_stress))

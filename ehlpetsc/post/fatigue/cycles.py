@@ -2,7 +2,8 @@ r"""Rainflow counting by the four-point method; the residue is counted as that o
 
 A four-point count alone leaves a residue of the largest ranges, which is not conservative to ignore. The
 history of a point that passes the contact repeatedly is periodic; hence the residue is closed: it
-begins and ends with its largest reversal (ASTM E1049, 5.4.5, repeating histories).
+begins and ends with its largest reversal (ASTM E1049, 5.4.5, repeating histories). Of a history that occurs
+once, the ranges of the residue count as half cycles (5.4.4), on request.
 
 Closed loop of a counted cycle, and a history as points whose distances are von Mises stresses.
 
@@ -16,7 +17,8 @@ In plane strain the von Mises distance of two instants is the Euclidean one of t
 .. math::
     \big((1-2\nu)\tfrac{\sigma_x+\sigma_z}{2},\ \sqrt3\,\tfrac{\sigma_x-\sigma_z}{2},\ \sqrt3\,\tau_{xz}\big)
 
-for which :math:`\sigma_y=\nu(\sigma_x+\sigma_z)`.
+for which :math:`\sigma_y=\nu(\sigma_x+\sigma_z)`; of six components (sx, sz, txz, sy, txy, tyz) the first is
+:math:`(\sigma_x+\sigma_z)/2-\sigma_y`, and root 3 times the other shear stresses are the fourth and fifth.
 """
 
 from math import sqrt
@@ -24,6 +26,8 @@ from math import sqrt
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
+
+RESIDUALS = ("repeat", "half")
 
 
 @compiled(error_model="python", nogil=True)
@@ -62,20 +66,26 @@ def _count(
 
 
 @compiled(error_model="python", nogil=True)
-def find_cycles(series: np.ndarray, stack: np.ndarray, cycles: np.ndarray) -> int:
-    """Write the two reversals of each cycle into `cycles`; return their number.
+def find_cycles(series: np.ndarray, stack: np.ndarray, cycles: np.ndarray, half: bool) -> tuple[int, int]:
+    """Write the two reversals of each cycle into `cycles`; return their number and that of the full ones.
 
     `series` must be finite; the arrays are those of :func:`workspace`. The first sample of a plateau is the
-    reversal.
+    reversal. With `half` the ranges of the residue are half cycles, after the full ones.
     """
     top, n = _count(series, np.arange(series.size), stack, cycles, ZERO)
+    if half:
+        full = n
+        for k in range(top - 1):
+            cycles[n, 0], cycles[n, 1] = stack[k], stack[k + 1]
+            n += 1
+        return n, full
     residue = stack[:top].copy()
     start = series[residue].argmax()
     top, n = _count(series, np.concatenate((residue[start:], residue[: start + 1])), stack, cycles, n)
     if top == 3:  # highest, lowest, highest: one cycle
         cycles[n, 0], cycles[n, 1] = stack[0], stack[1]
         n += 1
-    return n
+    return n, n
 
 
 def workspace(size: int) -> tuple[np.ndarray, np.ndarray]:
@@ -83,19 +93,23 @@ def workspace(size: int) -> tuple[np.ndarray, np.ndarray]:
     return np.empty(size + 2, np.int64), np.empty((size + 2, 2), np.int64)
 
 
-def rainflow(series: np.ndarray) -> np.ndarray:
-    """Rainflow cycles of one history that repeats: range, mean, indices of the two reversals.
+def rainflow(series: np.ndarray, residual: str = "repeat") -> np.ndarray:
+    """Rainflow cycles of one history: range, mean, indices of the two reversals.
 
-    A cycle whose second reversal comes before the first spans the repetition.
+    `residual`: "repeat", the history repeats, and a cycle whose second reversal comes before the first
+        spans the repetition; "half", it occurs once, and a fifth column is the count, 1 or 0.5.
     """
     series = np.ascontiguousarray(series, dtype=float)
     if series.ndim != 1 or not np.isfinite(series).all():
         raise ValueError("a history must be one row of finite values")
+    half = RESIDUALS.index(residual) > 0
     if series.size < 2:
-        return np.empty((0, 4))
+        return np.empty((0, 5 if half else 4))
     stack, cycles = workspace(series.size)
-    i, j = cycles[: find_cycles(series, stack, cycles)].T
-    return np.column_stack([np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, i, j])
+    n, full = find_cycles(series, stack, cycles, half)
+    i, j = cycles[:n].T
+    columns = [np.abs(series[i] - series[j]), (series[i] + series[j]) / 2, i, j]
+    return np.column_stack(columns + [np.where(np.arange(n) < full, 1.0, 0.5)] * half)
 
 
 @compiled(error_model="python", nogil=True)
@@ -120,10 +134,12 @@ def loop_of(series: np.ndarray, size: int, i: int, j: int) -> tuple[int, int]:
 
 @compiled(error_model="python", nogil=True)
 def equivalent_points(stress: np.ndarray, nu: float, points: np.ndarray) -> None:
-    """Set points (3, samples), whose distances are von Mises stresses, from stress (3, samples)."""
-    root = sqrt(3.0)
+    """Set points (3 or 5, samples), whose distances are von Mises stresses, from stress (3 or 6, samples)."""
+    root, plane = sqrt(3.0), stress.shape[0] == 3
     for k in range(stress.shape[1]):
         sx, sz = float(stress[0, k]), float(stress[1, k])
-        points[0, k] = (1 - 2 * nu) * (sx + sz) / 2
+        points[0, k] = (1 - 2 * nu) * (sx + sz) / 2 if plane else (sx + sz) / 2 - float(stress[3, k])
         points[1, k] = root * (sx - sz) / 2
         points[2, k] = root * float(stress[2, k])
+        if not plane:
+            points[3, k], points[4, k] = root * float(stress[4, k]), root * float(stress[5, k])

@@ -7,36 +7,73 @@ import numpy as np
 from ehlpetsc.results.post_result import WeibullFit
 
 MIN_PROMINENCE = 0.1  # of Rq: smaller peaks are noise of the measurement
+MIN_ASPERITIES = 10  # for a distribution
 MIN_SPREAD = 1e-6  # relative: damages are accurate to about 1e-6
 
 
 class Asperities(NamedTuple):
-    """Peaks of a profile (s, height in m) and the nearest body point of each."""
+    """Peaks of a surface (s, height in m), the nearest body point of each and, of a map, its row."""
 
     s: np.ndarray
     height: np.ndarray
     point: np.ndarray
+    row: np.ndarray | None
+
+    @property
+    def at(self) -> tuple[np.ndarray, ...]:
+        """Indices of the peaks in arrays over the body points."""
+        return (self.point,) if self.row is None else (self.row, self.point)
 
 
 def asperities(
-    profile: tuple[np.ndarray, np.ndarray] | None, s: np.ndarray, complete: np.ndarray
+    profile: tuple[np.ndarray, np.ndarray] | None,
+    s: np.ndarray,
+    complete: np.ndarray,
+    rows: np.ndarray | None = None,
+    periodic: bool = False,
 ) -> Asperities:
-    """Peaks of a profile (s, z) among the body points that passed the whole contact; none if it is smooth.
+    """Peaks of a surface (s, z) among the body points that passed the whole contact; none if it is smooth.
 
-    `s` are the uniform body points [m], `complete` is true for those that passed.
+    `s` are the uniform body points [m], `complete` is true for those that passed. Of a map z (ny, n) they are
+    its local maxima, `periodic` across or not, in the `rows` (ny,) that are True; a profile has no rows.
     """
+    none = np.empty(0, int)
     if profile is None or not complete.any():
-        return Asperities(np.empty(0), np.empty(0), np.empty(0, int))
-    from scipy.signal import find_peaks  # a third of what the package takes to import
-
+        return Asperities(np.empty(0), np.empty(0), none, None if rows is None else none)
     abscissae, heights = profile
     passed = s[complete]
     inside = (abscissae >= passed[0]) & (abscissae <= passed[-1])
-    rough = np.std(heights[inside]) if inside.any() else 0.0
-    peaks, _ = find_peaks(heights, prominence=max(MIN_PROMINENCE * rough, np.finfo(float).tiny))
-    peaks = peaks[inside[peaks]]
-    nearest = np.rint((abscissae[peaks] - s[0]) / (s[1] - s[0])).astype(int)
-    return Asperities(abscissae[peaks], heights[peaks], nearest)
+    rough = np.std(heights[..., inside]) if inside.any() else 0.0
+    prominence = max(MIN_PROMINENCE * float(rough), float(np.finfo(float).tiny))
+    at = np.array(_maxima(heights, prominence, periodic))
+    at = at[:, inside[at[-1]] & (True if rows is None else rows[at[0]])]
+    peaks = abscissae[at[-1]]
+    nearest = np.rint((peaks - s[0]) / (s[1] - s[0])).astype(int)
+    return Asperities(peaks, heights[tuple(at)], nearest, None if rows is None else at[0])
+
+
+def _maxima(heights: np.ndarray, prominence: float, periodic: bool) -> tuple[np.ndarray, ...]:
+    """Indices of the local maxima at least `prominence` above the saddle to a higher one.
+
+    The heights of a map are reconstructed from themselves less the prominence (Vincent (1993), IEEE Trans.
+    Image Process. 2): the tops of such maxima remain lower by all of it. Maxima at the edges do not count,
+    but for those across a period.
+    """
+    if heights.ndim == 1:
+        from scipy.signal import find_peaks  # a third of what the package takes to import
+
+        return (find_peaks(heights, prominence=prominence)[0],)
+    from scipy.ndimage import maximum_filter
+
+    modes = ("wrap" if periodic else "nearest"), "nearest"
+    lowered = reached = heights - prominence
+    while ((spread := np.minimum(maximum_filter(reached, 3, mode=modes), heights)) > reached).any():
+        reached = spread
+    tops = (heights == maximum_filter(heights, 3, mode=modes)) & (reached == lowered)
+    tops[:, [0, -1]] = False
+    if not periodic:
+        tops[[0, -1]] = False
+    return np.nonzero(tops)
 
 
 def benard_ranks(n: int) -> np.ndarray:
@@ -74,6 +111,11 @@ def log_life(damage: np.ndarray) -> np.ndarray:
     """-log10 D; infinite without damage."""
     with np.errstate(divide="ignore"):
         return -np.log10(damage)
+
+
+def fitted_asperities(damage: np.ndarray) -> int:
+    """Number of asperities whose damage, between 0 and 1, the line of :func:`weibull_fit` goes through."""
+    return int(np.count_nonzero((damage > 0.0) & (damage < 1.0)))
 
 
 def exceedance(damage: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

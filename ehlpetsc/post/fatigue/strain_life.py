@@ -93,6 +93,7 @@ def log_local_range(
 
 
 MAX_EXPONENT = 700.0  # exp of more overflows
+MIN_HARDNESS = 50.0  # HB, of estimates: the softest steels
 
 
 @dataclass(frozen=True)
@@ -107,11 +108,20 @@ class Material:
     fatigue_strength: float = 2.0e9
     fatigue_ductility: float = 0.48
     cyclic_strength: float | None = None
+    tensile_strength: float | None = None
+    walker_exponent: float | None = None
 
     @property
     def hardening_coefficient(self) -> float:
         """K' in Pa."""
         return self.cyclic_strength or self.fatigue_strength / self.fatigue_ductility**self.cyclic_hardening
+
+    def mean_stress_constants(self) -> tuple[float, float]:
+        """Tensile strength [Pa] and Walker's exponent, estimated unless given (see `mean_stress`)."""
+        hardness = max(self.fatigue_strength / 1e6 - 225, 0.0) / 4.25
+        tensile = self.tensile_strength or 3.45e6 * max(hardness, MIN_HARDNESS)
+        estimate = min(max(0.8818 - 0.0002e-6 * tensile, 0.0), 1.0)
+        return tensile, estimate if self.walker_exponent is None else self.walker_exponent
 
     def constants(self) -> tuple[float, ...]:
         """Constants (E, K', n', sigma_f', eps_f', b, c) of the compiled functions."""

@@ -32,6 +32,7 @@ from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
 
 if TYPE_CHECKING:
     from ehlpetsc.post.loads import Loads
+    from ehlpetsc.post.stresses.block_stress import BlockStress
 
 NEAR_ELEMENTS = 24  # beyond, a kernel is smooth over an element and quadrature is exact
 HATS_PER_ELEMENT = 64  # approximate the cubics of near elements to 2e-4 of a one-node peak
@@ -71,7 +72,7 @@ def limited_slopes(loads: np.ndarray, out: np.ndarray) -> None:
         _slopes_between(loads[row], out[row, 3:])
 
 
-def _shapes(t: np.ndarray) -> np.ndarray:
+def hermite_shapes(t: np.ndarray) -> np.ndarray:
     """Hermite shape functions of value and slope of a node, (2, n), at t in -1 .. 1 elements from it."""
     r = np.abs(t)
     return np.stack([(1 - r) ** 2 * (1 + 2 * r), t * (1 - r) ** 2])
@@ -81,33 +82,36 @@ def _near(u: np.ndarray, z: float) -> np.ndarray:
     t = np.arange(1 - HATS_PER_ELEMENT, HATS_PER_ELEMENT) / HATS_PER_ELEMENT
     distances = HATS_PER_ELEMENT * (u[:, None] - t).ravel()
     kernels = hat(distances, HATS_PER_ELEMENT * z).reshape(4, u.size, t.size)
-    return kernels @ _shapes(t).T
+    return kernels @ hermite_shapes(t).T
 
 
 def _far(u: np.ndarray, z: float) -> np.ndarray:
     half = (GAUSS_NODES + 1) / 2
     t = np.concatenate([-half, half])
-    return point_kernels(u[:, None] - t, z) @ (np.tile(GAUSS_WEIGHTS / 2, 2) * _shapes(t)).T
+    return point_kernels(u[:, None] - t, z) @ (np.tile(GAUSS_WEIGHTS / 2, 2) * hermite_shapes(t)).T
+
+
+def hermite_kernels(nx: int, z: float, offset: float) -> np.ndarray:
+    """Kernels of the shape functions, -2/pi included, `offset` elements right of the nodes.
+
+    z in elements. Shape (2, 4, padded_length): A, B, C, E of :mod:`ehlpetsc.post.stresses.half_plane` under
+    values and under slopes, at distances -nx .. nx - 1, negative ones at the end.
+    """
+    distance = np.arange(-nx, nx)
+    near = np.abs(distance) <= NEAR_ELEMENTS
+    kernels = np.zeros((2, 4, padded_length(nx)))
+    for chosen, integrals in ((distance[near], _near), (distance[~near], _far)):
+        kernels[:, :, chosen] = -2 / np.pi * np.moveaxis(integrals(chosen + offset, z), -1, 0)
+    return kernels
 
 
 def hermite_spectra(nx: int, z: float, offset: float) -> np.ndarray:
-    """Spectra of the kernels of the shape functions, -2/pi included, `offset` elements right of the nodes.
-
-    z in elements. Shape (8, padded_length // 2 + 1): A, B, C, E of :mod:`ehlpetsc.post.stresses.half_plane`
-    under values, then under slopes.
-    """
-    n = padded_length(nx)
-    distance = np.arange(-nx, nx)
-    near = np.abs(distance) <= NEAR_ELEMENTS
-    kernels = np.zeros((2, 4, n))
-    for chosen, integrals in ((distance[near], _near), (distance[~near], _far)):
-        kernels[:, :, chosen] = -2 / np.pi * np.moveaxis(integrals(chosen + offset, z), -1, 0)
-    return fft.rfft(kernels.reshape(8, n))
+    """Spectra (8, padded_length // 2 + 1) of :func:`hermite_kernels`, under values, then under slopes."""
+    return fft.rfft(hermite_kernels(nx, z, offset).reshape(8, -1))
 
 
 FRAMES_PER_READ = 144
-SAMPLE_BYTES = 12  # three stresses in single precision
-FRAMES_PER_BATCH = 8  # transformed at once, so that their spectra fit in the cache
+COMPONENT_BYTES = 4  # single precision
 FREQUENCIES_PER_BLOCK = 32
 # of p0 (60 Pa at 1 GPa): single-precision histories are rounded to multiples, so that the noise of the
 # transforms without load causes no cycles
@@ -123,16 +127,16 @@ def offset_weights(offset: np.ndarray) -> np.ndarray:
     return BarycentricInterpolator(OFFSETS, np.eye(OFFSETS.size))(offset)
 
 
-def low_pass(nx: int, depth: float) -> np.ndarray:
-    """Factor of each frequency (f,): 1, then falling smoothly to 0. Depth in elements.
+def low_pass(wave_number: np.ndarray, depth: float, highest: float = np.pi) -> np.ndarray:
+    """Factor of each wave number up to the highest [1/element]: 1, then falling smoothly to 0.
+
+    `depth` in elements.
 
     Stresses of load ripples decay with the depth as exp(-k z). The spectra of the kernels at larger wave
     numbers come from the ends of their range, where the load is zero. A sharp cut-off would distribute them
     over all nodes: 2e-5 of the load at z = 0.5 a with 400 nodes; the smooth one leaves less than 1e-9.
     """
-    n = padded_length(nx)
-    wave_number = 2 * np.pi / n * np.arange(n // 2 + 1)
-    beyond = wave_number - MAX_KZ / max(depth, MAX_KZ / np.pi)
+    beyond = wave_number - MAX_KZ / max(depth, MAX_KZ / highest)
     t = np.clip(1 - beyond / TAPER_WIDTH, 0, 1)
     return t**5 * (126 - 420 * t + 540 * t**2 - 315 * t**3 + 70 * t**4)  # four flat derivatives
 
@@ -140,9 +144,10 @@ def low_pass(nx: int, depth: float) -> np.ndarray:
 @lru_cache(maxsize=8)  # for both surfaces, and the passes of a life
 def kernel_table(nx: int, depth: float) -> np.ndarray:
     """Kernel spectra (f, 6, 8) at the OFFSETS, up to the last frequency that matters; depth in elements."""
-    factor = low_pass(nx, depth)
+    n = padded_length(nx)
+    factor = low_pass(2 * np.pi / n * np.arange(n // 2 + 1), depth)
     left = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
-    shift = np.exp(2j * np.pi / padded_length(nx) * np.arange(factor.size))  # by an element: mirrored offsets
+    shift = np.exp(2j * np.pi / n * np.arange(factor.size))  # by an element: mirrored offsets
     spectra = np.concatenate([left, PARITY * shift * left[::-1].conj()]) * factor
     return np.ascontiguousarray(np.moveaxis(spectra[..., : np.count_nonzero(factor)], -1, 0))
 
@@ -174,8 +179,11 @@ def _multiply(table: np.ndarray, weights: np.ndarray, loads: np.ndarray, out: np
 class BodyStress:
     """Stresses at body points in a batch of frames, one depth at a time; depths (nz,) in elements."""
 
+    components, rows, frames_at_once = 3, (), 8  # frames whose spectra fit in the cache
+
     def __init__(self, nx: int, depths: np.ndarray) -> None:
         self.n = padded_length(nx)
+        self.bytes_per_sample = len(depths) * self.components * COMPONENT_BYTES
         self.tables = [kernel_table(nx, depth) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
@@ -200,26 +208,29 @@ class BodyStress:
 def _collect(
     stress: np.ndarray, begin: int, first: int, motion: tuple, quantum: float, histories: np.ndarray
 ) -> None:
-    """Copy stresses (frames, 3, n) of frames from `begin` on into histories (points, 3, samples).
+    """Copy stresses (frames, components, ny, n) of frames from `begin` on into histories.
 
-    Point by point from `first` on, rounded to a multiple of the quantum if it is not zero.
+    Histories (points, ny, components, samples), point by point from `first` on, rounded to a multiple of the
+    quantum if it is not zero.
     """
     shift, enter, leave = motion
     inverse, end = 1.0 / quantum if quantum else 0.0, begin + stress.shape[0]
-    for row in range(histories.shape[0]):
-        j = first + row
+    for place in range(histories.shape[0]):
+        j = first + place
         for frame in range(max(begin, enter[j]), min(end, leave[j] + 1)):
             node, sample = j + shift[frame], frame - enter[j] + 1
-            for component in range(3):
-                value = stress[frame - begin, component, node]
-                histories[row, component, sample] = np.rint(value * inverse) * quantum if quantum else value
+            for row in range(stress.shape[2]):
+                for component in range(stress.shape[1]):
+                    value = stress[frame - begin, component, row, node]
+                    rounded = np.rint(value * inverse) * quantum if quantum else value
+                    histories[place, row, component, sample] = rounded
 
 
-def runs_of_points(motion: Passage, memory: float, depths: int) -> list[np.ndarray]:
+def runs_of_points(motion: Passage, memory: float, bytes_per_sample: int) -> list[np.ndarray]:
     """Split the complete points into ranges of consecutive points whose histories fit in `memory` bytes."""
     points = np.flatnonzero(motion.complete)
     samples = (motion.leave - motion.enter + 3)[points].max(initial=1)
-    room = max(1, int(memory / (SAMPLE_BYTES * depths * samples)))
+    room = max(1, int(memory / (bytes_per_sample * samples)))
     runs: list[np.ndarray] = []
     for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
         runs += np.array_split(stretch, -(-stretch.size // room)) if stretch.size else []
@@ -230,27 +241,31 @@ def histories(
     loads: Loads,
     surface: str,
     motion: Passage,
-    stress: BodyStress,
+    stress: BodyStress | BlockStress,
     points: np.ndarray,
     quantum: float,
     dtype: type = np.float32,
 ) -> np.ndarray:
-    """Stress histories (nz, points, 3, samples) of consecutive points, multiples of `quantum` [Pa].
+    """Stress histories of consecutive points, multiples of `quantum` [Pa].
 
-    Of a point the first leave - enter + 3 samples count: it is unstressed before it enters and after it
-    leaves, so that its history begins and ends with zero.
+    Shape (nz, points, 3, samples); of a plane (nz, points, ny, 6, samples). Of a point the first
+    leave - enter + 3 samples count: it is unstressed before it enters and after it leaves, so that its
+    history begins and ends with zero.
     """
     samples = int((motion.leave - motion.enter)[points].max()) + 3
-    found = np.zeros((len(stress.tables), points.size, 3, samples), dtype)
+    shape = len(stress.tables), points.size, *stress.rows, stress.components, samples
+    found: np.ndarray = np.zeros(shape, dtype)
+    by_row = found.reshape(*shape[:2], -1, *shape[-2:])
     weights, places = offset_weights(motion.offset), (motion.shift, motion.enter, motion.leave)
     end = motion.leave[points].max() + 1
     for begin in range(motion.enter[points].min(), end, FRAMES_PER_READ):
         pressure, shear = loads.read(surface, begin, min(begin + FRAMES_PER_READ, end))
-        for at in range(0, len(pressure), FRAMES_PER_BATCH):
-            batch = slice(at, at + FRAMES_PER_BATCH)
+        for at in range(0, len(pressure), stress.frames_at_once):
+            batch = slice(at, at + stress.frames_at_once)
             spectra = stress.transform(pressure[batch], shear[batch])
             of_frames = weights[begin + at : begin + at + len(spectra)]
-            for depth, rows in enumerate(found):
+            for depth, rows in enumerate(by_row):
                 fields = stress(depth, spectra, of_frames)
+                fields = fields.reshape(*fields.shape[:2], -1, fields.shape[-1])
                 _collect(fields, begin + at, points[0], places, quantum, rows)
     return found

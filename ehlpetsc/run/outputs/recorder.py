@@ -47,6 +47,7 @@ class Recorder:
         self.restart = self.output and self.output.with_name(f"{self.output.stem}.restart.h5")
         self.totals = Totals()
         self.limits: list[str] = []
+        self._boundary_friction = 0.0  # maximum so far, which effects may change
         self._lock: Lock | None = None
         self._writer: Any = None  # a ResultWriter, on rank 0
         self._is_open, self._saved = False, clock.monotonic()
@@ -94,6 +95,10 @@ class Recorder:
         with events.OUTPUT:
             on_root(self.comm, self._append, state)
         self.totals.add(state.scalars)
+        solved = self.simulation.solution and self.simulation.solution.solution
+        if solved:
+            friction = float(np.max(solved.inputs.boundary_friction))
+            self._boundary_friction = max(self._boundary_friction, friction)
         due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
         if state.step and self.comm.bcast(due):
             self.checkpoint()
@@ -163,7 +168,8 @@ class Recorder:
                         self._writer.put_depth(side, name, depth)
         self.totals = Totals(self.totals.values, self._writer.means())
         figures = self.totals.values | self.totals.means
-        self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures)
+        friction = max(self._boundary_friction, simulation.case.contact.boundary_friction)
+        self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures, friction)
         self._writer.close(status.words, self.limits)
 
     def _save(self) -> None:

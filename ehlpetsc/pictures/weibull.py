@@ -1,0 +1,64 @@
+"""Weibull plots of the damage at asperities: median ranks, both fits and confidence bounds, by depth."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from ehlpetsc.pictures import style
+from ehlpetsc.post.fatigue.likelihood import CONFIDENCE, weibull_likelihood
+from ehlpetsc.post.fatigue.statistics import benard_ranks, fitted_asperities, log_life
+from ehlpetsc.results.post_result import PostResult, WeibullFit
+
+COLUMNS = 3
+FRACTIONS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 0.95)
+STRETCH = 1.3  # of the lives shown
+
+
+def weibull_picture(result: PostResult) -> Figure:
+    """Fraction of asperities over -log10 D on Weibull's axes, one panel a depth."""
+    rows = -(-result.z.size // COLUMNS)
+    size = (8.0, 0.8 + 2.4 * rows)
+    figure, panels = style.new_figure(rows, COLUMNS, size, sharex=True, sharey=True, squeeze=False)
+    for axes, z, under, fit in zip(panels.flat, result.z, result.under, result.fits, strict=False):
+        no_fit = "" if fit.beta > 0.0 else f", {fitted_asperities(under)} with damage: no fit"
+        axes.set_title(f"z/a = {z:g}{no_fit}", fontsize="small", loc="left")
+        draw_fits(axes, log_life(under), fit)
+    for axes in panels.flat[result.z.size :]:
+        axes.set_visible(False)
+    first = panels[0, 0]
+    first.set(xscale="log", ylim=_stretched(np.array([0.005, 0.99])))
+    first.xaxis.set_major_formatter("{x:g}")
+    first.xaxis.set_minor_locator(LogLocator(subs=(2, 4, 6, 8)))
+    first.xaxis.set_minor_formatter("{x:g}")
+    first.set_yticks(_stretched(np.array(FRACTIONS)), [f"{100 * share:g}" for share in FRACTIONS])
+    figure.supxlabel(r"$-\log_{10} D$ of one pass", fontsize="medium")
+    figure.supylabel("asperities of shorter life [%]", fontsize="medium")
+    style.legend_beside(panels[0, -1])
+    counted = f"{result.height.size} asperities, surface {result.main}"
+    style.set_title(figure, f"{counted}, bounds of {100 * CONFIDENCE:g} % confidence")
+    return figure
+
+
+def draw_fits(axes: Axes, lives: np.ndarray, fit: WeibullFit) -> None:
+    """Draw median ranks, the line through them, the fit by maximum likelihood and its bounds."""
+    lives = np.sort(lives)
+    used = (lives > 0) & np.isfinite(lives)
+    if np.isnan(fit.beta):
+        return
+    axes.plot(lives[used], _stretched(benard_ranks(lives.size)[used]), ".", ms=3, color=style.DARK)
+    x = np.geomspace(lives[used][0] / STRETCH, STRETCH * lives[used][-1], 100)
+    ranked = -np.expm1(-((x / fit.alpha) ** fit.beta))
+    axes.plot(x, _stretched(ranked), "--", lw=0.9, color=style.DARK, label="median ranks")
+    estimate, low, high = weibull_likelihood(lives).fractions(x)
+    axes.plot(x, _stretched(estimate), lw=1.2, color=style.SINGLE, label="maximum\nlikelihood")
+    axes.fill_between(
+        x, _stretched(low), _stretched(high), color=style.SINGLE, alpha=0.2, lw=0, label="bounds"
+    )
+
+
+def _stretched(fraction: np.ndarray) -> np.ndarray:
+    """Ordinate on which a Weibull distribution over log x is a straight line."""
+    return np.log(-np.log1p(-np.clip(fraction, 1e-12, 1 - 1e-12)))

@@ -1,0 +1,137 @@
+"""Heights of one areal surface on a uniform grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ehlpetsc.surfaces.areal_parameters import ArealParameters, rms_gradient
+from ehlpetsc.surfaces.continued_spline import Continuation, ContinuedSpline
+from ehlpetsc.surfaces.profile import WAVE_NODES
+
+RIDGE_ROWS = 4  # of a map of ridges, for its parameters
+BLOCK = 256  # columns whose splines across are in memory at a time
+
+
+@dataclass(frozen=True)
+class Topography:
+    """Heights of one areal surface, measured or synthetic.
+
+    `X`, `Y`: equally spaced, m, shape (nx,), (ny,); with one row the heights are ridges, independent of Y,
+        whose X need not be equally spaced.
+    `z`: heights [m], positive out of the metal, shape (ny, nx); the last row or column equals the first
+        where they are periodic.
+    `along`, `across`: continuation along X and Y.
+    `middle`: Y that runs along y = 0 [m].
+    `measured`: whether the heights are from a file.
+    `notes`: notes on the processing of the numbers of a file.
+    """
+
+    X: np.ndarray
+    Y: np.ndarray
+    z: np.ndarray
+    along: Continuation = "mirrored"
+    across: Continuation = "mirrored"
+    middle: float = 0.0
+    measured: bool = False
+    notes: tuple[str, ...] = ()
+
+    @property
+    def is_ridge(self) -> bool:
+        """Whether the heights do not depend on Y."""
+        return len(self.Y) == 1
+
+    @property
+    def repeats(self) -> bool:
+        """Whether the surface is continued along X, otherwise by height 0."""
+        return self.along != "zero"
+
+    @property
+    def length(self) -> float:
+        """Distance from the first column to the last [m]."""
+        return float(self.X[-1] - self.X[0])
+
+    @property
+    def dx(self) -> float:
+        """Mean distance of the columns [m]."""
+        return self.length / (len(self.X) - 1)
+
+    @property
+    def dy(self) -> float:
+        """Distance of the rows [m]; of ridges that of the columns."""
+        return self.dx if self.is_ridge else float(self.Y[-1] - self.Y[0]) / (len(self.Y) - 1)
+
+    @property
+    def spacing(self) -> float:
+        """The wider distance of two points [m]."""
+        return max(self.dx, self.dy)
+
+    @property
+    def rms_slope(self) -> float:
+        """Sdq, root mean square gradient."""
+        if self.is_ridge:
+            return float(np.sqrt(np.mean(np.gradient(self.z[0], self.X) ** 2)))
+        return rms_gradient(self.z, self.dx, self.dy)
+
+    @property
+    def _once(self) -> np.ndarray:
+        """Heights without the last row and column where they repeat the first."""
+        across, along = (slice(-1 if way == "periodic" else None) for way in (self.across, self.along))
+        return self.z[across, along]
+
+    @cached_property
+    def sq(self) -> float:
+        """Root mean square height [m]."""
+        return float(self._once.std())
+
+    @cached_property
+    def parameters(self) -> ArealParameters:
+        """Roughness parameters of the map."""
+        z = np.repeat(self._once, RIDGE_ROWS, axis=0) if self.is_ridge else self._once
+        return ArealParameters.of(z, self.dx, self.dy)
+
+    def row_means(self, faces: np.ndarray) -> np.ndarray:
+        """Mean heights [m] between faces in Y, at the columns.
+
+        `faces`: increasing or decreasing, shape (rows + 1,).
+
+        Returns shape (nx, rows); of ridges (nx, 1).
+        """
+        if self.is_ridge:
+            return self.z.T
+        blocks = np.array_split(self.z, range(BLOCK, len(self.X), BLOCK), axis=1)
+        return np.concatenate([ContinuedSpline(self.Y, z, self.across).means(faces).T for z in blocks])
+
+    def periodic_over(self, width: float) -> Topography:
+        r"""The same surface with a period across, for a strip: mirrored, hence without a seam.
+
+        Its middle :math:`w/2m` of the width w, m the least number for which it is as wide, is reflected at
+        both edges. A surface with this period, a ridge, or zero beyond its edges is left as it is.
+        """
+        if self.across != "mirrored" or self.is_ridge:
+            return self
+        extent = float(self.Y[-1] - self.Y[0])
+        part = width / (2 * np.ceil(width / (2 * extent) * (1 - 1e-9)))
+        begin = np.clip(self.middle - 0.5 * part, self.Y[0], max(self.Y[-1] - part, self.Y[0]))
+        Y = np.linspace(begin, begin + part, max(round(part / self.dy), 3) + 1)
+        blocks = np.array_split(self.z, range(BLOCK, len(self.X), BLOCK), axis=1)
+        z = np.concatenate([ContinuedSpline(self.Y, block, "mirrored")(Y) for block in blocks], axis=1)
+        return replace(self, Y=Y, z=z, middle=begin + 0.5 * part)
+
+    def unresolved_variance(self, dx: float, dy: float) -> float:
+        """Fraction of the height variance in waves shorter than `WAVE_NODES` spacings of the mesh [m]."""
+        from scipy.fft import dctn
+
+        z = self.z
+        if self.is_ridge:
+            z = ContinuedSpline(self.X, z.T, self.along)(np.linspace(self.X[0], self.X[-1], len(self.X))).T
+        axes = [k for k, n in enumerate(z.shape) if n > 1]
+        power = dctn(z, type=1, axes=axes) ** 2  # mirrored: no jump, hence no leakage in the spectrum
+        power[0, 0] = 0.0
+        lengths = (2 * max(n - 1, 1) * step for n, step in zip(z.shape, (self.dy, self.dx), strict=True))
+        in_y, in_x = (np.arange(n) / length for n, length in zip(z.shape, lengths, strict=True))
+        short = np.logical_or.outer(in_y * WAVE_NODES * dy > 1.0, in_x * WAVE_NODES * dx > 1.0)
+        total = power.sum()
+        return float(power[short].sum() / total) if total > 0 else 0.0

@@ -1,0 +1,345 @@
+"""Areal maps as files: read, filled, levelled, filtered, turned, or refused with the key that settles it."""
+
+import sys
+from types import ModuleType, SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.tables.surface import PROFILE
+from ehlpetsc.surfaces.areal_files import MapLayout, read_map
+from ehlpetsc.surfaces.areal_samples import areal_samples, inscribed, turned
+from ehlpetsc.surfaces.filters import mean_surface, without_form
+from ehlpetsc.surfaces.gaps import gap_width
+
+DX, DY = 2e-6, 3e-6
+X, Y = DX * np.arange(60), DY * np.arange(40)
+Z = 1e-7 * np.cos(X / 9e-6) * np.sin(Y / 2e-5)[:, np.newaxis]
+SPACED = MapLayout(spacing=DX, spacing_across=DY)
+
+
+def as_text(z, separator="\t"):
+    return "\n".join(separator.join(f"{v:.9e}" for v in row) for row in z)
+
+
+def write_npy(path, z):
+    np.save(path, z)
+
+
+def write_text(path, z):
+    path.write_text("# heights\n" + as_text(z))
+
+
+def write_x3p(path, z):
+    pytest.importorskip("x3pio").write(str(path), z, x_scale=DX, y_scale=DY)
+
+
+def write_sdf(path, z):
+    pytest.importorskip("sdfio").write(str(path), z, x_scale=DX, y_scale=DY)
+
+
+FORMATS = {".npy": (write_npy, SPACED), ".txt": (write_text, SPACED)}
+FORMATS |= {".x3p": (write_x3p, MapLayout()), ".sdf": (write_sdf, MapLayout())}
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_formats_give_the_same_map(tmp_path, suffix):
+    path, (write, layout) = tmp_path / f"map{suffix}", FORMATS[suffix]
+    write(path, Z)
+    z, dx, dy, notes = read_map(path, layout)
+    np.testing.assert_allclose(z, Z, rtol=0, atol=1e-16)
+    assert (dx, dy) == pytest.approx((DX, DY)) and notes == ()
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+def test_missing_heights_are_filled_up_to_the_width_stated(tmp_path, suffix):
+    path, (write, layout) = tmp_path / f"map{suffix}", FORMATS[suffix]
+    holed = Z.copy()
+    holed[10:13, 20:24] = holed[30, 5] = holed[-2:] = np.nan
+    write(path, holed)
+    z, *_, notes = read_map(path, layout._replace(fill_gaps=8.1e-6))
+    assert z.shape == (38, 60)  # the last two rows are missing altogether
+    np.testing.assert_allclose(z, Z[:-2], rtol=0, atol=0.03e-7)
+    assert notes == ("133 missing heights filled or, at the edges, cut off; widest gap 8 um",)
+    with pytest.raises(ProfileError, match=r"^133 .*widest gap 8e-06 m; write fill_gaps = 8\.5e-06 "):
+        read_map(path, layout)
+
+
+def test_surfalize_reads_other_formats(tmp_path, monkeypatch):
+    surface = SimpleNamespace(data=1e6 * Z, step_x=1e6 * DX, step_y=1e6 * DY)
+    package = ModuleType("surfalize")
+    package.Surface = SimpleNamespace(load=lambda path: surface)
+    monkeypatch.setitem(sys.modules, "surfalize", package)
+    path = tmp_path / "map.sur"
+    path.touch()
+    z, dx, dy, _ = read_map(path)
+    np.testing.assert_allclose(z, Z, rtol=1e-12)
+    assert (dx, dy) == pytest.approx((DX, DY))
+
+
+@pytest.mark.parametrize(
+    ("suffix", "package"), [(".x3p", "x3pio"), (".sdf", "sdfio"), (".plux", "surfalize")]
+)
+def test_a_missing_package_is_named(tmp_path, monkeypatch, suffix, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    path = tmp_path / f"map{suffix}"
+    path.touch()
+    with pytest.raises(ProfileError, match=rf"pip install {package}\).* \.npy or text, a matrix"):
+        read_map(path)
+
+
+@pytest.mark.parametrize("suffix", [".x3p", ".sdf"])
+def test_a_damaged_file_is_refused(tmp_path, suffix):
+    package = {".x3p": "x3pio", ".sdf": "sdfio"}[suffix]
+    pytest.importorskip(package)
+    path = tmp_path / f"map{suffix}"
+    path.write_bytes(b"\x01\x02 nothing")
+    with pytest.raises(ProfileError, match=f"^{package} cannot read it: "):
+        read_map(path)
+
+
+def test_a_profile_in_the_format_of_maps_is_refused(tmp_path):
+    x3pio = pytest.importorskip("x3pio")
+    x3pio.Profile.from_array(Z[3], x_scale=DX).save(str(tmp_path / "p.x3p"))
+    with pytest.raises(ProfileError, match="^no map in it; allowed: "):
+        read_map(tmp_path / "p.x3p")
+
+
+def test_a_matrix_needs_its_spacing(tmp_path):
+    np.save(tmp_path / "map.npy", Z)
+    with pytest.raises(ProfileError, match="^a matrix of heights needs spacing = "):
+        read_map(tmp_path / "map.npy")
+
+
+def test_a_spacing_beside_that_of_the_file_is_refused(tmp_path):
+    (tmp_path / "map.x3p").touch()
+    with pytest.raises(ProfileError, match=r"^spacing: '\.x3p' includes it; leave it out$"):
+        read_map(tmp_path / "map.x3p", SPACED)
+
+
+def test_units_named_in_a_header_are_asked_for(tmp_path):
+    (tmp_path / "map.txt").write_text("height [um]\n" + as_text(1e6 * Z))
+    with pytest.raises(ProfileError, match="^its header names um; write unit "):
+        read_map(tmp_path / "map.txt", SPACED)
+    np.testing.assert_allclose(read_map(tmp_path / "map.txt", SPACED._replace(unit="um")).z, Z, atol=1e-15)
+
+
+def test_infinite_heights_are_refused_with_their_place(tmp_path):
+    z = Z.copy()
+    z[4, 6] = np.inf
+    np.save(tmp_path / "map.npy", z)
+    with pytest.raises(ProfileError, match="^row 5, column 7 is not a height below "):
+        read_map(tmp_path / "map.npy", SPACED)
+
+
+@pytest.mark.parametrize("z", [Z[:3], Z[0], Z[np.newaxis]])
+def test_a_map_of_few_rows_or_more_than_two_dimensions_is_refused(tmp_path, z):
+    np.save(tmp_path / "map.npy", z)
+    with pytest.raises(ProfileError, match="^[0-9 x]* heights; allowed: a matrix of 4 x 4 or more$"):
+        read_map(tmp_path / "map.npy", SPACED)
+
+
+def test_a_matrix_of_words_is_refused(tmp_path):
+    np.save(tmp_path / "map.npy", np.full((5, 5), "a"))
+    with pytest.raises(ProfileError, match="^numbers of type <U1; allowed: "):
+        read_map(tmp_path / "map.npy", SPACED)
+
+
+def test_a_map_mostly_missing_is_refused(tmp_path):
+    z = np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
+    np.save(tmp_path / "map.npy", z)
+    with pytest.raises(ProfileError, match="missing; allowed: no more than half "):
+        read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=1.0))
+
+
+def test_the_width_of_a_gap_is_that_of_its_widest_circle():
+    missing = np.zeros((40, 60), bool)
+    missing[10:13] = True  # a scratch: four rows apart are present
+    assert gap_width(missing, DX, DY) == pytest.approx(2 * 2 * DY)
+
+
+def test_a_value_far_from_all_others_is_no_height(tmp_path):
+    z = Z + 1e-9 * np.random.default_rng(2).standard_normal(Z.shape)
+    z[10:13, 20:24] = z[30, 5] = 9.999e-3
+    np.save(tmp_path / "map.npy", z)
+    with pytest.raises(
+        ProfileError, match=r"^13 heights missing, 13 of them the value 0\.009999 m far from "
+    ):
+        read_map(tmp_path / "map.npy", SPACED)
+    found = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=9e-6))
+    np.testing.assert_allclose(found.z, Z, rtol=0, atol=0.05e-7)
+
+
+def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
+    tilted = np.repeat(Z[::4], 4, axis=0) + 1e-2 * X
+    np.save(tmp_path / "map.npy", tilted)
+    np.testing.assert_array_equal(read_map(tmp_path / "map.npy", SPACED).z, tilted)
+
+
+def test_spikes_of_a_map_are_not_bridged(tmp_path):
+    np.save(tmp_path / "map.npy", Z)
+    with pytest.raises(ProfileError, match="^bridge_spikes: of a profile, not of a map; leave it out$"):
+        areal_samples(tmp_path, spec(tmp_path / "map.npy", spacing=DX, bridge_spikes=True), 1e-4, False)
+
+
+def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):
+    plane = 1e-3 * X + 2e-3 * Y[:, np.newaxis]
+    holed = plane.copy()
+    holed[10:20, 20:40] = np.nan
+    np.save(tmp_path / "map.npy", holed)
+    z = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=1e-3)).z
+    np.testing.assert_allclose(z, plane, rtol=0, atol=1e-16)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 4])
+def test_form_of_its_degree_is_subtracted_exactly(degree):
+    x, y = X / X[-1], (Y / Y[-1])[:, np.newaxis]
+    form = 1e-6 * (x + 3 * y) ** degree - 2e-6 * y
+    np.testing.assert_allclose(without_form((Y, X), form, degree), 0.0, atol=1e-18)
+    rough = without_form((Y, X), Z, degree)
+    np.testing.assert_allclose(without_form((Y, X), Z + form, degree), rough, atol=1e-18)
+    if degree > 1:
+        assert np.abs(without_form((Y, X), form, degree - 1)).max() > 1e-8
+
+
+def test_a_line_is_the_form_of_degree_one_of_a_profile():
+    from ehlpetsc.surfaces.filters import levelled
+
+    z = Z[7] + 3e-3 * X
+    np.testing.assert_allclose(without_form([X], z, 1), levelled(X, z), atol=1e-19)
+
+
+@pytest.mark.parametrize("waves", [(6, 0), (0, 5), (6, 5)])
+def test_the_areal_filter_has_the_transmission_of_iso_16610_61(waves):
+    kx, ky = np.pi * waves[0] / X[-1], np.pi * waves[1] / Y[-1]
+    wave = np.cos(kx * X) * np.cos(ky * Y)[:, np.newaxis]  # mirrored at its edges it goes on as a wave
+    cutoff = 30e-6
+    left = 2.0 ** -((cutoff * np.hypot(kx, ky) / (2 * np.pi)) ** 2)
+    np.testing.assert_allclose(mean_surface(X, Y, wave, cutoff, "cutoff"), left * wave, atol=1e-12)
+
+
+def test_a_cutoff_above_the_width_is_refused():
+    with pytest.raises(ProfileError, match=r"^cutoff = 0\.000118 m; allowed: at most .* 0\.000117 m"):
+        mean_surface(X, Y, Z, 118e-6, "cutoff")
+
+
+@pytest.mark.parametrize(("angle", "turns"), [(0, 0), (90, 1), (180, 2), (270, 3), (-90, 3), (360, 0)])
+def test_quarters_of_a_turn_are_exact(angle, turns):
+    z, dx, dy = turned(Z, DX, DY, angle)
+    assert (dx, dy) == ((DY, DX) if turns % 2 else (DX, DY))
+    np.testing.assert_array_equal(z, np.rot90(Z, -turns))
+
+
+@pytest.mark.parametrize("angle", [30.0, 90.0, 135.0, -20.0, 250.0])
+def test_rows_of_a_turned_map_lie_in_their_direction(angle):
+    fine = 0.5e-6
+    z = np.broadcast_to(np.sin(fine * np.arange(300) / 9e-6), (200, 300))  # waves that run along the rows
+    z, dx, dy = turned(z, fine, fine, angle)
+    k = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))]) / 9e-6
+    along_y, along_x = np.gradient(z, dy, dx)
+    inner = slice(5, -5), slice(5, -5)
+    cross = along_x * k[1] - along_y * k[0]
+    size = np.hypot(along_x, along_y).max() * np.hypot(*k)
+    np.testing.assert_allclose(cross[inner], 0.0, atol=2e-3 * size)
+
+
+def test_the_inscribed_rectangle_touches_the_turned_map():
+    for length, width in ((3.0, 1.0), (1.0, 3.0), (2.0, 1.9)):
+        for angle in np.radians([0.1, 20.0, 45.0, 70.0, 89.9]):
+            c, s = np.cos(angle), np.sin(angle)
+            sides = np.array(inscribed(length, width, c, s))
+            reach = np.array([[c, s], [s, c]]) @ sides  # of its corners in the map
+            assert (reach <= np.array([length, width]) * (1 + 1e-9)).all()
+            assert (reach >= np.array([length, width]) * (1 - 1e-9)).any()
+
+
+def spec(path, **keys):
+    return values_of(PROFILE, {"file": path.name} | keys)
+
+
+def test_keys_of_a_map_are_applied_in_order(tmp_path):
+    path = tmp_path / "map.npy"
+    np.save(path, Z + 1e-3 * X + 5e-6)
+    keys = {"spacing": DX, "spacing_across": DY}
+    raw = areal_samples(tmp_path, spec(path, **keys), 1e-4, False)
+    assert raw.notes[-1].startswith("mean height of 5.0") and abs(raw.z.mean()) < 1e-18
+    level = areal_samples(tmp_path, spec(path, **keys, level=True), 1e-4, False)
+    np.testing.assert_allclose(level.z, without_form((Y, X), Z, 1), atol=1e-17)
+    assert level.middle == pytest.approx(0.5 * Y[-1]) and level.measured
+    flipped = areal_samples(tmp_path, spec(path, **keys, level=True, flip=True, scale=-2), 1e-4, False)
+    np.testing.assert_allclose(flipped.z, -2 * level.z[::-1, ::-1], atol=1e-17)
+    smoothed = areal_samples(tmp_path, spec(path, **keys, form=2, short_cutoff=40e-6), 1e-4, False)
+    assert 0.65 < smoothed.sq / level.sq < 0.75 and smoothed.notes[0].startswith("short_cutoff: Sa 0.0")
+
+
+def test_a_map_for_a_strip_has_its_period(tmp_path):
+    np.save(tmp_path / "map.npy", Z)
+    keys = {"spacing": DX, "spacing_across": DY}
+    strip = areal_samples(tmp_path, spec(tmp_path / "map.npy", **keys), 90e-6, True)
+    assert strip.Y[-1] - strip.Y[0] == pytest.approx(45e-6)
+
+
+def test_a_position_beside_the_map_is_refused(tmp_path):
+    np.save(tmp_path / "map.npy", Z)
+    beside = spec(tmp_path / "map.npy", spacing=DX, position_across=1e-3)
+    with pytest.raises(
+        ProfileError, match=r"^position_across = 0\.001 m; allowed: on the map, from 0 to 7\.8e-05 m"
+    ):
+        areal_samples(tmp_path, beside, 1e-4, False)
+
+
+def test_a_profile_in_a_file_is_a_ridge_and_has_no_direction(tmp_path):
+    path = tmp_path / "p.csv"
+    np.savetxt(path, np.transpose([X, Z[7] - Z[7].mean()]), delimiter=",")
+    ridge = areal_samples(tmp_path, spec(path), 1e-4, False)
+    assert ridge.is_ridge
+    np.testing.assert_allclose(ridge.z[0], Z[7] - Z[7].mean(), atol=1e-22)
+    with pytest.raises(ProfileError, match="^direction: of a map, not of a profile$"):
+        areal_samples(tmp_path, spec(path, direction=10.0), 1e-4, False)
+
+
+def test_a_matrix_of_heights_in_the_case_is_a_map():
+    keys = {"z": (1e6 * Z).tolist(), "unit": "um", "level": True}
+    by_axes = values_of(PROFILE, keys | {"x": (1e6 * X).tolist(), "y": (1e6 * Y).tolist()})
+    by_spacing = values_of(PROFILE, keys | {"spacing": DX, "spacing_across": DY})
+    first, second = (areal_samples(None, found, 1e-4, False) for found in (by_axes, by_spacing))
+    np.testing.assert_allclose(first.z, without_form((Y, X), Z, 1), atol=1e-18)
+    np.testing.assert_allclose(second.z, first.z, atol=1e-18)
+    assert (first.dx, first.dy) == pytest.approx((DX, DY))
+
+
+def test_axes_that_are_not_equally_spaced_are_refused():
+    keys = {"z": Z[:4].tolist(), "x": (X**1.1).tolist(), "y": [0.0, 1.0, 2.0, 3.0]}
+    with pytest.raises(ProfileError, match="^x: allowed for a map: equally spaced, increasing$"):
+        areal_samples(None, values_of(PROFILE, keys), 1e-4, False)
+
+
+ROWS = [[0.0, 1.0, 0.0, 1.0]] * 4
+REFUSED_MATRICES = {
+    "rows of different lengths": ({"z": [*ROWS[:3], [0.0] * 5]}, "z = .* allowed: "),
+    "three rows": ({"z": ROWS[:3]}, "z = .* allowed: "),
+    "words": ({"z": [["a"] * 4] * 4}, "z = .* allowed: "),
+    "two forms": ({"z": ROWS, "level": True, "form": 2}, "level is the form of degree 1: write one "),
+    "x alone": ({"z": ROWS, "x": [0, 1, 2, 3], "spacing": None}, "x and y are both for "),
+    "y of another length": (
+        {"z": ROWS, "x": [0, 1, 2, 3], "y": [0, 1, 2, 3, 4], "spacing": None},
+        "y has 5 values, z 4 rows; allowed: as many",
+    ),
+    "x of another length": (
+        {"z": ROWS, "x": [0, 1, 2, 3, 4], "y": [0, 1, 2, 3], "spacing": None},
+        "x has 5 values, z 4; allowed: as many",
+    ),
+}
+
+
+@pytest.mark.parametrize(("keys", "message"), REFUSED_MATRICES.values(), ids=REFUSED_MATRICES)
+def test_a_faulty_matrix_in_the_case_is_refused(keys, message):
+    from support import CASES
+
+    from ehlpetsc.base.errors import CaseError
+    from ehlpetsc.case.loading import load
+
+    with pytest.raises(CaseError, match=message):
+        load(CASES / "table1_smooth.toml", {"surface.2": {"spacing": 1e-6} | keys})

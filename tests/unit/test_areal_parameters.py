@@ -1,0 +1,100 @@
+"""Roughness parameters of areal surfaces, and the command that prints and draws them."""
+
+import numpy as np
+import pytest
+from support import refused
+
+from ehlpetsc.pictures.surface import main
+from ehlpetsc.surfaces.areal_parameters import ArealParameters, autocorrelation, correlation_lengths
+
+AMPLITUDE, WAVE = 1e-7, 40e-6
+STEP = WAVE / 32
+X = STEP * np.arange(1024)
+
+
+def waves(across=WAVE):
+    return AMPLITUDE * np.cos(2 * np.pi * X / WAVE) * np.cos(2 * np.pi * X / across)[:, np.newaxis]
+
+
+def test_heights_of_a_product_of_cosines():
+    found = ArealParameters.of(waves(), STEP, STEP)
+    assert found.sa == pytest.approx(AMPLITUDE * (2 / np.pi) ** 2, rel=1e-2)
+    assert found.sq == pytest.approx(AMPLITUDE / 2, rel=1e-12)
+    assert found.ssk == pytest.approx(0.0, abs=1e-12)
+    assert found.sku == pytest.approx(9 / 4, rel=1e-12)
+
+
+def test_gradient_of_a_product_of_cosines():
+    found = ArealParameters.of(waves(2 * WAVE), STEP, STEP)
+    assert found.sdq == pytest.approx(AMPLITUDE * np.pi / WAVE * np.hypot(1.0, 0.5), rel=6e-3)
+
+
+def test_texture_of_a_product_of_cosines():
+    # the autocorrelation is cos(k tx) cos(k ty): 0.2 along x, and along the diagonal
+    found = ArealParameters.of(waves(), STEP, STEP)
+    k = 2 * np.pi / WAVE
+    assert found.sal == pytest.approx(np.arccos(0.2) / k, rel=5e-3)
+    assert found.str == pytest.approx(np.arccos(0.2) / np.sqrt(2) / np.arccos(np.sqrt(0.2)), rel=1e-2)
+
+
+def test_spacings_of_the_columns_and_rows_may_differ():
+    every_other = ArealParameters.of(waves()[::2], STEP, 2 * STEP)
+    whole = ArealParameters.of(waves(), STEP, STEP)
+    np.testing.assert_allclose(every_other, whole, rtol=1e-2, atol=1e-12)
+
+
+def test_autocorrelation_is_that_of_all_pairs():
+    z = np.random.default_rng(1).standard_normal((7, 9))
+    z -= z.mean()
+    found = autocorrelation(z)
+    assert found.shape == (7, 9) and found[3, 4] == pytest.approx(1.0)
+    pairs = np.mean(z[2:, :-3] * z[:-2, 3:])
+    assert found[3 + 2, 4 - 3] == pytest.approx(pairs / np.mean(z**2))
+
+
+def test_texture_longer_than_half_the_map_has_no_aspect_ratio():
+    ridges = np.broadcast_to(np.cos(2 * np.pi * X / WAVE), (64, len(X)))
+    found = ArealParameters.of(ridges, STEP, STEP)
+    assert found.sal == pytest.approx(np.arccos(0.2) * WAVE / (2 * np.pi), rel=5e-3)
+    assert np.isnan(found.str)
+
+
+def test_a_plane_has_no_shape():
+    found = ArealParameters.of(np.zeros((8, 8)), STEP, STEP)
+    assert (found.sa, found.sq, found.sdq) == (0.0, 0.0, 0.0)
+    assert np.isnan([found.ssk, found.sku, found.sal, found.str]).all()
+
+
+def test_a_map_shorter_than_its_texture_has_no_correlation_length():
+    assert np.isnan(correlation_lengths(np.ones((8, 8)) + 1e-3 * np.eye(8), STEP, STEP)).all()
+
+
+def test_the_command_prints_and_draws_a_map(tmp_path, capsys):
+    path = tmp_path / "map.npy"
+    np.save(path, waves()[:128, :256] + 1e-3 * X[:256])
+    assert main([str(path), "--set", f"spacing={STEP!r}"]) == 0
+    shown = capsys.readouterr().out.splitlines()
+    assert shown[0] == f"{path}: 0.3188 x 0.1588 mm, 256 x 128 points 1.25 um and 1.25 um apart"
+    values = {line.split()[0]: float(line.split()[1]) for line in shown[1:-1]}
+    assert values["Sq"] == pytest.approx(1e6 * AMPLITUDE / 2, rel=0.01)  # without the plane
+    assert values["Sku"] == pytest.approx(9 / 4, rel=0.02) and 0.7 < values["Str"] < 1.0
+    assert (
+        shown[-1] == str(tmp_path / "map.surface.png") and (tmp_path / "map.surface.png").stat().st_size > 1e4
+    )
+
+
+def test_form_of_a_map_replaces_its_plane(tmp_path, capsys):
+    np.save(tmp_path / "map.npy", waves()[:128, :256] + 10.0 * X[:256] ** 2)
+    words = [str(tmp_path / "map.npy"), "--no-picture", "--set", f"spacing={STEP!r}"]
+    heights = []
+    for more in ([], ["--set", "form=2"]):
+        assert main([*words, *more]) == 0
+        heights.append(float(capsys.readouterr().out.split("Sq")[1].split()[0]))
+    assert heights[0] > 1.5e6 * AMPLITUDE / 2
+    assert heights[1] == pytest.approx(1e6 * AMPLITUDE / 2, rel=0.02)
+
+
+def test_the_spectrum_of_a_map_is_refused(tmp_path, capsys):
+    np.save(tmp_path / "map.npy", waves()[:64, :64])
+    words = [tmp_path / "map.npy", "--set", "spacing=1e-6", "--no-picture", "--csv", tmp_path / "a.csv"]
+    assert "--csv: of a profile, not of a map; leave it out" in refused(capsys, main, *words)

@@ -1,0 +1,130 @@
+"""Roughness parameters of profiles, and the command that prints and draws them."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.special import ndtr, ndtri
+from support import CASES, refused
+
+from ehlpetsc.pictures.surface import main
+from ehlpetsc.surfaces.profile_parameters import (
+    ProfileParameters,
+    binned,
+    core_parameters,
+    correlation_length,
+    power_spectrum,
+)
+from ehlpetsc.surfaces.self_affine import Spectrum, heights
+from ehlpetsc.surfaces.synthetic import ground
+
+ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
+
+
+def test_parameters_of_a_sine():
+    amplitude, wavelength, dx = 1e-7, 100e-6, 0.5e-6
+    z = amplitude * np.sin(2 * np.pi * dx * np.arange(10_000) / wavelength)
+    found = ProfileParameters.of(z, dx)
+    assert found.ra == pytest.approx(2 * amplitude / np.pi, rel=1e-4)
+    assert found.rq == pytest.approx(amplitude / np.sqrt(2), rel=1e-9)
+    assert found.rz == pytest.approx(2 * amplitude, rel=1e-9)
+    assert (found.rsk, found.rku) == pytest.approx((0.0, 1.5), abs=1e-9)
+    assert found.rdq == pytest.approx(np.sqrt(2) * np.pi * amplitude / wavelength, rel=5e-3)
+    assert found.correlation_length == pytest.approx(np.arccos(1 / np.e) / (2 * np.pi) * wavelength, rel=5e-3)
+
+
+def test_core_of_gaussian_heights_has_the_slope_of_their_middle():
+    """Least-squares line over material ratios 0.3 to 0.7, where the secant of 0.4 falls least."""
+    z = ndtri((np.arange(100_000) + 0.5) / 100_000)
+    found = ProfileParameters.of(np.random.default_rng(0).permutation(z), 1e-6)
+    assert (found.rq, found.rsk, found.rku) == pytest.approx((1.0, 0.0, 3.0), abs=2e-3)
+    slope = quad(lambda ratio: (ratio - 0.5) * ndtri(ratio), 0.3, 0.7)[0] / (0.4**3 / 12)
+    assert found.core.rk == pytest.approx(slope, rel=1e-3)
+    assert found.core.rpk == pytest.approx(found.core.rvk, rel=1e-3)
+    assert found.core.mr1 == pytest.approx(ndtr(-slope / 2), abs=1e-4)
+
+
+def test_waves_of_a_ground_profile_have_their_correlation_length():
+    x, z = ground(0.3e-6, 25e-6, 0.0, 2)
+    found = ProfileParameters.of(z, x[1])
+    assert found.ra == pytest.approx(0.3e-6, rel=1e-9)
+    assert found.correlation_length == pytest.approx(25e-6, rel=0.1)
+    assert found.rdq == pytest.approx(np.sqrt(2) * found.rq / 25e-6, rel=0.05)
+
+
+def test_core_of_a_profile_of_three_processes():
+    """A ramp with peaks over a tenth and valleys over a fifth of the length, triangles of known height."""
+    ratio = (np.arange(100_000) + 0.5) / 100_000
+    z = 1.0 - ratio
+    z[ratio < 0.1] = 1.0 + 0.7 * (1.0 - ratio[ratio < 0.1] / 0.1)
+    z[ratio > 0.8] = -2.0 * (ratio[ratio > 0.8] - 0.8) / 0.2
+    found = core_parameters(np.random.default_rng(0).permutation(z))
+    assert found[:5] == pytest.approx((0.7, 1.0, 2.0, 0.1, 0.8), abs=1e-3)
+
+
+def test_skewness_exchanges_peaks_and_valleys():
+    x, z = ground(0.3e-6, 25e-6, -1.5, 2)
+    one, other = (ProfileParameters.of(sign * z, x[1]) for sign in (1, -1))
+    assert one.rsk == pytest.approx(-1.5, abs=1e-6) and other.rsk == pytest.approx(1.5, abs=1e-6)
+    assert one.core.rvk == pytest.approx(other.core.rpk, rel=1e-6)
+    assert one.core.rvk > 3 * one.core.rpk
+
+
+def test_rz_is_the_mean_over_sections_of_the_cutoff():
+    z = np.zeros(1000)
+    z[[50, 250]] = 1.0, 3.0
+    assert ProfileParameters.of(z, 1e-6).rz == pytest.approx((1 + 3) / 5)
+    assert ProfileParameters.of(z, 1e-6, 100e-6).rz == pytest.approx((1 + 3) / 10)
+
+
+def test_correlation_of_a_slope_has_no_length():
+    assert np.isnan(correlation_length(np.full(100, 0.0), 1e-6))
+
+
+def test_spectrum_integrates_to_rq_and_falls_as_it_was_made():
+    z = heights((16_000,), (1e-6,), Spectrum(0.2e-6, 0.8, 80e-6, 8e-6), 5)
+    q, density = power_spectrum(z, 1e-6)
+    assert np.sqrt(density.sum() * q[0] / np.pi) == pytest.approx(0.2e-6, rel=0.05)
+    mean_q, mean_density = binned(q, density)
+    falling = (mean_q > 2 * np.pi / 70e-6) & (mean_q < 2 * np.pi / 10e-6)
+    slope = np.polyfit(np.log(mean_q[falling]), np.log(mean_density[falling]), 1)[0]
+    assert slope == pytest.approx(-2.6, abs=0.15)
+
+
+def test_surface_prints_parameters_and_writes_spectrum_and_picture(tmp_path, capsys):
+    path = tmp_path / "p.csv"
+    table = np.loadtxt(ALICONA, delimiter=",")
+    np.savetxt(path, 1e6 * table + (0.0, 1.0), delimiter=";")
+    words = [str(path), "--set", "unit=um", "--set", 'cutoff="0.3 mm"', "--csv", str(tmp_path / "psd.csv")]
+    assert main(words) == 0
+    printed = capsys.readouterr().out
+    assert "1.712 mm long, 3425 points 0.5 um apart" in printed
+    values = {line.split()[0]: float(line.split()[1]) for line in printed.splitlines() if line[:1] in "Rl"}
+    assert list(values) == "Ra Rq Rz Rsk Rku Rpk Rk Rvk Rdq l".split()
+    assert values["Ra"] == pytest.approx(0.156, abs=0.002)
+    assert (tmp_path / "p.surface.png").stat().st_size > 10_000
+    wavelength, q, density = np.loadtxt(tmp_path / "psd.csv", delimiter=",", skiprows=1).T
+    np.testing.assert_allclose(wavelength * q, 2 * np.pi)
+    assert np.sqrt(density.sum() * q[0] / np.pi) == pytest.approx(1e-6 * values["Rq"], rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--set", "cutof=1e-3"], "cutof = 0.001: unknown key; did you mean"),
+        (["--set", "cutoff"], "--set cutoff: allowed: KEY=VALUE, as in unit=um"),
+        (["--set", 'cutoff="1 kg"'], 'cutoff = "1 kg": not a unit of this key'),
+        (["--set", "surface.1.unit=mil", "--set", "columns=[3]"], "columns = [3]: the file has 2"),
+        (["-o", "a.txt"], "a.txt: allowed for -o: a name that ends in .png"),
+        (["--csv", str(ALICONA)], "is read by this run"),
+    ],
+)
+def test_invalid_words_are_refused_in_one_line(tmp_path, monkeypatch, capsys, words, message):
+    monkeypatch.chdir(tmp_path)
+    assert message in refused(capsys, main, ALICONA, *words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_profile_of_few_points_has_no_parameters(tmp_path, capsys):
+    path = tmp_path / "p.csv"
+    path.write_text("0,0\n1e-6,1e-7\n2e-6,0\n3e-6,1e-7\n4e-6,0\n")
+    assert "5 points; allowed for parameters: at least 50" in refused(capsys, main, path)
