@@ -18,7 +18,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
 from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.run.validity import domain_faults, warnings
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.roughness import Roughness, roughness_of
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -38,7 +38,7 @@ def explain(case: Case) -> str:
     Raises :class:`ehlpetsc.base.errors.ProfileError`.
     """
     scales = Scales.of(case)
-    rough = Roughness.of(case, scales)
+    rough = roughness_of(case, scales)
     sections = [
         [case.title],
         _series(case) if case.series else [],
