@@ -13,8 +13,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.errors import CaseError, NotConverged, Stopped, UsageError
+from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.nonlinear import events
@@ -33,6 +34,7 @@ from ehlpetsc.stepping.time_stepping import TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
+MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
@@ -134,6 +136,7 @@ class Simulation:
             one_by_one = "solve its members one by one, ehlpetsc.members(case)"
             raise CaseError([f"{case.path}: a [series]: {one_by_one}"])
         self.comm = comm or MPI.COMM_SELF
+        self._options = options
         self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}))
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
@@ -242,12 +245,34 @@ class Simulation:
     def _start(self, watch: Watch) -> State:
         self._print_heading("steady start")
         with events.START:
-            solution = self.stepper.start(self._records, watch)
+            try:
+                solution = self.stepper.start(self._records, watch)
+            except NotConverged as error:
+                points = self.case.mesh.points_per_half_width // 2
+                if not isinstance(error.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
+                    raise
+                guess = self._coarser_start(points, watch, error)
+                solution = self.stepper.start(self._records, watch, guess)
         if isinstance(self.stepper.solver, NewtonSolver):
             for name in self.options.deferred_views:
                 snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
         return solution
+
+    def _coarser_start(self, points: int, watch: Watch, failure: NotConverged) -> Unknowns:
+        """Steady solution on a coarser mesh at these nodes; raise the `failure` without one."""
+        mesh = self.case.mesh.copy({"points_per_half_width": points})
+        try:
+            coarse = Simulation(self.case.copy({"mesh": mesh}), self.comm, self._options)
+            coarse.advance(watch=watch)
+        except (CaseError, NotConverged, UsageError):
+            raise failure from failure.__cause__
+        x, of_coarse = coarse.scales.x, coarse.solution
+        model = coarse.stepper.problem.model
+        h, solids = model.state(of_coarse.q, of_coarse.w).film, model.contact_pressure(of_coarse.w)
+        q, h, solids = (np.interp(self.scales.x, x, values) for values in (of_coarse.q, h, solids))
+        w = self.stepper.problem.model.w_from_state(h, solids)
+        return Unknowns(q, w, of_coarse.unknowns.h00)
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")

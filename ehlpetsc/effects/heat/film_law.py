@@ -56,6 +56,7 @@ MAX_CHANGE = 60.0  # K in an iteration
 QUADRATIC = 1e-3  # K: change in an iteration of Newton's method, after which it is accurate to 1e-7 K
 QUADRATIC_Y = 1e-4  # the same of y
 MAX_SPLIT_CHANGE = 1e-6  # of d
+MAX_SPLIT = 30.0  # of d, walls thousands of kelvins apart: beyond, in first iterations, its sinh may overflow
 MIN_SLOPE = 1e-12  # 1/K
 MIN_RISE = 0.1  # K of the secant
 MIN_HEATING = 1e-12  # of b: less does not heat the film
@@ -193,7 +194,8 @@ def fixed_at(i: int, of_nodes: np.ndarray, law: FilmLaw) -> tuple:
 def _split(kind: int, t: float, r: float, walls: tuple, exchange: float, alpha: float, beta: float) -> float:
     """Half the difference of the walls' temperatures, times beta."""
     q1, q2, _ = fluxes(kind, t, r, walls, exchange, alpha)
-    return 0.5 * beta * (walls[0] + walls[2] * q1 - walls[1] - walls[3] * q2)
+    d = 0.5 * beta * (walls[0] + walls[2] * q1 - walls[1] - walls[3] * q2)
+    return min(max(d, -MAX_SPLIT), MAX_SPLIT)
 
 
 @inlined
