@@ -48,6 +48,8 @@ def main(words: list[str] | None = None) -> int:
         sys.stdout.flush()
     except SystemExit:
         raise
+    except UsageError as error:  # of a command whose modules cannot be imported
+        status = refuse(f"ehlpetsc: {error}")
     except BrokenPipeError:  # the reader has gone, as `head -1` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = ExitStatus.STOPPED

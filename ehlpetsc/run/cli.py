@@ -136,6 +136,7 @@ def run(chosen: argparse.Namespace, stop: StopRequest) -> int:
 def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, stop: StopRequest) -> int:
     """Run a case file on all ranks; with -help print PETSc's options."""
     from ehlpetsc.case.loading import load
+    from ehlpetsc.results.output_guard import file_path
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.simulation import Simulation
 
@@ -143,7 +144,7 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
     if options.hasName("help"):
         Simulation(case, comm)  # PETSc's objects print their options when they are created
         return ExitStatus.DONE
-    output = Path(chosen.output or f"{Path(case.path).stem}.h5")
+    output = file_path(f"{Path(case.path).stem}.h5" if chosen.output is None else chosen.output)
     restart, overwrite = chosen.restart, chosen.overwrite
     has_passes = case.time is not None and case.time.passes > 1
     if case.series and has_passes:
