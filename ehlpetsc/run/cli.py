@@ -99,7 +99,7 @@ def _check(word: str, value: str, before: str, case: str | None, names: list[str
     """Refuse a word that neither this program nor PETSc has, and files that PETSc could not open."""
     name = word.lstrip("-")
     if word in ("-n", "-np"):
-        raise UsageError(f"{word} is of mpirun and run_mpi.sh, before the case: mpirun {word} RANKS ...")
+        raise UsageError(f"{word} RANKS comes before the case: ehlpetsc -n RANKS {case}")
     if re.match(r"[^-]|-\d", word) and not before.startswith("-"):
         reason = "neither an option nor a value; a command comes first"
         raise UsageError(f"{word}: {reason}: ehlpetsc {word} {case}")
