@@ -1,7 +1,7 @@
 """The program: ``ehlpetsc CASE.toml`` runs a case, ``ehlpetsc plot RESULT.h5`` draws, and so on: `COMMANDS`.
 
-``ehlpetsc -n N CASE.toml`` and ``mpirun -n N python3 -m ehlpetsc CASE.toml`` run it on N ranks. A command imports only what it
-needs, and names the packages that are missing.
+``ehlpetsc -n N CASE.toml``, or ``mpirun -n N python3 -m ehlpetsc CASE.toml``, runs it on N ranks. A command
+imports only what it needs, and names the packages that are missing.
 """
 
 import difflib
