@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TextIO
 
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.run.outputs.busy_cores import BusyCores
 from ehlpetsc.run.outputs.progress import Progress, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 
@@ -82,7 +83,8 @@ class Run:
             self._print(*(f"restart: {note}" for note in notes))
             self._notes = self.simulation.options.loose_tolerances()
             printed: list[Output] = [self, Progress(self.simulation, self.out)] if self.root else []
-            return solve(self.simulation, [self.recorder, *printed], self.stop)
+            busy = BusyCores(self.simulation.comm, self._print)
+            return solve(self.simulation, [self.recorder, busy, *printed], self.stop)
 
     def write(self, state: AcceptedState) -> None:
         """Print the unused options after the first step, when PETSc has read those of the solver."""
