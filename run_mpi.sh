@@ -113,7 +113,8 @@ needed:  Python 3.11 or newer with ${run_modules// /, }, and the mpirun of their
 
 set_environment() {
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 # threads of BLAS would compete with the ranks for the cores
-    [ -t 1 ] || export TERM=dumb                    # mpirun gives every rank a terminal, also without one here
+    # mpirun gives every rank a terminal, also without one here
+    if [ -t 1 ]; then export EHLPETSC_TERMINAL=1; else export TERM=dumb; fi
     [ -z "${OMPI_COMM_WORLD_SIZE-}${PMI_SIZE-}${PMIX_RANK-}" ] || return 0 # under mpirun, which has set the rest
     # Open MPI 4 | 5; another MPI does not read them. No binding, as runs side by side would share a core.
     export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none

@@ -47,7 +47,10 @@ def solve(
 
 
 class Run:
-    """Run of a simulation by the command, with messages of rank 0 on `out` and `err`; one of its outputs."""
+    """Run of a simulation by the command, with messages of rank 0 on `out` and `err`; one of its outputs.
+
+    `progress`: output that shows the steps, by default a `Progress`.
+    """
 
     def __init__(
         self,
@@ -56,10 +59,12 @@ class Run:
         stop: StopRequest | None = None,
         out: TextIO | None = None,
         err: TextIO | None = None,
+        progress: Output | None = None,
     ) -> None:
         self.simulation, self.recorder = simulation, Recorder(simulation, output)
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
+        self._progress = progress
         self._unused: set[str] = set()
 
     def run(self, restart: Path | None = None, overwrite: bool = False) -> Outcome:
@@ -82,7 +87,9 @@ class Run:
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._notes = self.simulation.options.loose_tolerances()
-            printed: list[Output] = [self, Progress(self.simulation, self.out)] if self.root else []
+            printed: list[Output] = (
+                [] if not self.root else [self, self._progress or Progress(self.simulation, self.out)]
+            )
             busy = BusyCores(self.simulation.comm, self._print)
             return solve(self.simulation, [self.recorder, busy, *printed], self.stop)
 
