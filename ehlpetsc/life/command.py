@@ -13,6 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life.history import read_life
 from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path, inputs_of
@@ -71,6 +72,8 @@ def _run_lives(chosen: Namespace) -> None:
     comm = MPI.COMM_WORLD
     output = file_path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
     show = partial(print, flush=True) if comm.rank == 0 else lambda text: None
+    if comm.rank == 0:
+        announce_compilation(show)
     options = {"overwrite": chosen.overwrite, "unresolved": chosen.unresolved}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
     if case.series:

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.base.progress_line import ProgressLine
 from ehlpetsc.post.criteria import CRITERIA
@@ -55,6 +56,7 @@ def main(words: Sequence[str]) -> int:
 
 
 def _run(chosen: argparse.Namespace) -> int:
+    announce_compilation(_say)
     files = [str(file) for path in chosen.results for file in files_of(path)]
     _check(chosen, files)
     jobs = [_job(path, chosen) for path in files]

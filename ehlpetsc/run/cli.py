@@ -11,6 +11,7 @@ import difflib
 import math
 import os
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -135,11 +136,14 @@ def run(chosen: argparse.Namespace, stop: StopRequest) -> int:
 
 def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, stop: StopRequest) -> int:
     """Run a case file on all ranks; with -help print PETSc's options."""
+    from ehlpetsc.base.compiled import announce_compilation
     from ehlpetsc.case.loading import load
     from ehlpetsc.results.output_guard import file_path
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.simulation import Simulation
 
+    if comm.rank == 0:
+        announce_compilation(partial(print, flush=True))
     case = on_root(comm, load, chosen.case, chosen.set)
     if options.hasName("help"):
         Simulation(case, comm)  # PETSc's objects print their options when they are created
