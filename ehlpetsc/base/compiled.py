@@ -34,7 +34,7 @@ except ImportError:
     COMPILED = False
 # type of indices that are not negative, with which loops take half the time
 unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
-ZERO = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
+ZERO: Any = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
 def drop_stale_code(package: Path) -> None:
