@@ -9,6 +9,7 @@ import hashlib
 import json
 import os
 import re
+import time as clock
 from collections.abc import Callable, Container, Iterable
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,8 @@ import numpy as np
 os.environ.setdefault(
     "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1"
 )  # no colour codes at the end of the output
+# full optimisation takes a third more time to compile, and the code is as fast
+os.environ.setdefault("NUMBA_OPT", "1")
 try:
     import numba
     from llvmlite import ir
@@ -31,7 +34,7 @@ except ImportError:
     COMPILED = False
 # type of indices that are not negative, with which loops take half the time
 unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
-ZERO = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
+ZERO: Any = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
 def drop_stale_code(package: Path) -> None:
@@ -86,6 +89,35 @@ def _imported_files(text: str, package: str, files: Container[str]) -> set[str]:
 
 if COMPILED:
     drop_stale_code(Path(__file__).parents[1])
+
+
+COMPILING = "note: compiling for this processor and this version, once: half a minute to a minute"
+MIN_COMPILATION = 1.0  # s: shorter ones are not announced
+
+
+def announce_compilation(show: Callable[[str], None]) -> None:
+    """Call `show` with a note once if functions are compiled, rather than loaded from the cache."""
+    if not COMPILED:
+        return
+    from numba.core import event
+
+    class Announcement(event.Listener):
+        depth, spent, begun, is_shown = 0, 0.0, 0.0, False
+
+        def on_start(self, event: Any) -> None:
+            now = clock.monotonic()
+            self.begun = now if self.depth == 0 else self.begun
+            self.depth += 1
+            if not self.is_shown and self.spent + now - self.begun > MIN_COMPILATION:
+                self.is_shown = True
+                show(COMPILING)
+
+        def on_end(self, event: Any) -> None:
+            self.depth -= 1
+            if self.depth == 0:
+                self.spent += clock.monotonic() - self.begun
+
+    event.register("numba:compile", Announcement())
 
 
 def compiled(function: Callable | None = None, **options: Any) -> Any:

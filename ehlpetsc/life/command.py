@@ -13,9 +13,10 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life.history import read_life
-from ehlpetsc.results.output_guard import PICTURES, check_derived, inputs_of
+from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path, inputs_of
 
 
 def arguments() -> CommandParser:
@@ -69,14 +70,15 @@ def _run_lives(chosen: Namespace) -> None:
     from ehlpetsc.run.stop import StopRequest
 
     comm = MPI.COMM_WORLD
-    output = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
+    output = file_path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
     show = partial(print, flush=True) if comm.rank == 0 else lambda text: None
+    if comm.rank == 0:
+        announce_compilation(show)
     options = {"overwrite": chosen.overwrite, "unresolved": chosen.unresolved}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
     if case.series:
         return show(str(run_regimes(case, output, **options)))
-    draws = output.name and not chosen.no_picture
-    target = on_root(comm, _picture, output, inputs_of(case)) if draws else None
+    target = None if chosen.no_picture else on_root(comm, _picture, output, inputs_of(case))
     run_life(case, output, **options)
     show(str(output))
     if target and comm.rank == 0:

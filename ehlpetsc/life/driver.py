@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.base.errors import CaseError, NotConverged
+from ehlpetsc.base.progress_line import ProgressLine, duration
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
@@ -25,7 +26,6 @@ from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
-from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
@@ -100,8 +100,9 @@ class _Life:
         show: Callable | None,
         unresolved: bool,
     ) -> None:
-        self.case, self.path, self.comm, self.history = case, path, comm, history
-        self.reports, self.show = show is not None, show or (lambda text: None)
+        self.case, self.path, self.comm, self.history, self._show = case, path, comm, history, show
+        self._line = ProgressLine("life", 1.0) if show and comm.rank == 0 else None
+        self._passes = 0  # of this round, solved by this rank
         self.scales = Scales.of(case)
         self.positions = Positions(case, self.scales)
         self.jumps = Jumps(case.life, self.positions.rq)
@@ -112,6 +113,20 @@ class _Life:
             advice = "the life would depend on the mesh; allowed also: a longer short_cutoff, --unresolved"
             raise CaseError([f"{case.path}: {fault}; {advice}" for fault in faults])
 
+    def show(self, text: str) -> None:
+        """Show a line of text in place of the line of progress."""
+        if self._line:
+            self._line.clear()
+        if self._show:
+            self._show(text)
+
+    def _show_share(self, of_pass: float) -> None:
+        """Show the share of the life that is done, with a share of the pass of this rank."""
+        if self._line:
+            solved = self.history.solved + self.ranks.groups * (self._passes + of_pass)
+            shares = solved / self.case.life.max_solved, self.history.done / self.jumps.passes
+            self._line.reach(min(max(shares), 1.0))
+
     def run(self, stop: Callable | None, max_rounds: int | None) -> LifeHistory:
         """Solve rounds until the end of the life."""
         try:
@@ -120,6 +135,8 @@ class _Life:
             self.file.close("not converged")
             raise
         finally:
+            if self._line:
+                self._line.clear()
             self.file.close("done" if self.history.done >= self.jumps.passes else "stopped")
         if self.history.done < self.jumps.passes and self.history.solved >= self.case.life.max_solved:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
@@ -134,13 +151,13 @@ class _Life:
             steps, count = self._scene.operation.step_count(self.scales.dt), self.positions.count
             self.show(f"passes of a round: {count}, each of {steps} steps and {seconds} on one rank")
         while not self._is_over and rounds != max_rounds:
-            begun = clock.monotonic()
+            begun, self._passes = clock.monotonic(), 0
             solved_round = self._solve(stop)
             if self.history.rows:
                 bodies = self.history.bodies[-1]
             else:
                 bodies = tuple(map(self.positions.new_body, solved_round.passes[0].bodies, range(2)))
-            if self.reports and not self.history.rows:
+            if self._show and not self.history.rows:
                 for line in on_root(self.comm, self._band):
                     self.show(line)
             self._jump(solved_round, bodies)
@@ -177,7 +194,10 @@ class _Life:
         if self.history.rows:
             records = self.positions.records(self.history.bodies[-1], position, plastic)
         simulation = Simulation(self.case, comm, pass_number=position + 1, records=records)
-        return run_pass(simulation, records, pass_file(self.path, position, self.positions.count), stop)
+        file = pass_file(self.path, position, self.positions.count)
+        solved = run_pass(simulation, records, file, stop, self._show_share)
+        self._passes += 1
+        return solved
 
     def _plastic(self) -> PlasticRecord | None:
         """Record of the plastic deformation after the last row; None without."""

@@ -20,11 +20,15 @@ FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
 
 
 class Ranks:
-    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks."""
+    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks.
+
+    `groups`: number of passes that are solved at the same time.
+    """
 
     def __init__(self, comm: MPI.Comm, positions: int) -> None:
         self.comm, self.each = comm, max(1, comm.size // positions)
         is_shared = positions > 1 and comm.size > 1
+        self.groups = min(positions, comm.size)
         self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
 
     def solve(self, positions: list[int], solve: Callable, stop: Any = None) -> list[Pass]:

@@ -21,7 +21,7 @@ import numpy as np
 from ehlpetsc.base.declarations import Field
 from ehlpetsc.base.errors import OutputError, not_written
 from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, of_every_case
-from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend
+from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_hdf5
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
@@ -157,7 +157,7 @@ class ResultWriter:
         self._fields = [name for name in FIELDS if name in self._file]
 
     def _create(self, target: Path | BinaryIO, layout: Layout, attributes: dict[str, Any]) -> None:
-        self._file = file = h5py.File(target, "w", libver=LIBVER)
+        self._file = file = open_hdf5(target, "w", libver=LIBVER)
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
         common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
         # texts of fixed length, which may be overwritten while the file is read

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status, put
+from ehlpetsc.base.progress_line import duration
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
@@ -16,7 +17,6 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
-from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.run.validity import domain_faults, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 

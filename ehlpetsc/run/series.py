@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.base.progress_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.run.simulation import AcceptedState
     from ehlpetsc.run.stop import StopRequest
 
 MAX_NAME_LENGTH = 60  # characters
@@ -127,14 +129,35 @@ class PrefixedStream(io.TextIOBase):
 
     def __init__(self, name: str, stream: TextIO) -> None:
         self._name, self._stream, self._line = f"[{name}] ", stream, ""
+        self._begin = ERASE if on_terminal(stream) else ""
 
     def write(self, text: str) -> None:
         *lines, self._line = (self._line + text).split("\n")
         # one write for all lines, so that the output of groups does not mix within a line
-        self._stream.write("".join(f"{self._name}{line}\n" for line in lines))
+        if lines:
+            self._stream.write(self._begin + "".join(f"{self._name}{line}\n" for line in lines))
 
     def flush(self) -> None:
         self._stream.flush()
+
+
+class MemberProgress:
+    """Output that adds the steps of a member to the line of its series, if this rank has it."""
+
+    def __init__(self, simulation: Simulation, line: ProgressLine | None, work: float) -> None:
+        self._simulation, self._line, self._work, self._share = simulation, line, work, 0.0
+
+    def write(self, state: AcceptedState) -> None:
+        """Add the step."""
+        share = float(state.time) / self._simulation.end if self._simulation.case.time else 1.0
+        if self._line:
+            self._line.add(self._work * max(share - self._share, 0.0))
+        self._share = max(share, self._share)
+
+    def close(self, status: ExitStatus) -> None:
+        """Add steps that are left out."""
+        if self._line:
+            self._line.add(self._work * (1.0 - self._share))
 
 
 class Series:
@@ -158,13 +181,28 @@ class Series:
         on_root(self.world, index.acquire, self.overwrite)
         try:
             missing = on_root(self.world, self._missing)
-            compute_rows(self.world, index, missing, self._run_member, self.stop)
+            self._show_progress(missing)
+            compute_rows(self.world, index, missing, self._run_member, self.stop, self._on_row)
             if self.world.rank == 0:
+                self._line.clear()
                 self._report(clock.monotonic() - begun)
             on_root(self.world, index.write)
         finally:
             index.release()
         return self._status()
+
+    def _show_progress(self, missing: list[int]) -> None:
+        """Begin the line of progress, on a terminal, which the first rank writes."""
+        self._work = {number: float(self.members[number].weight()[0]) for number in missing}
+        self._is_in_line, self._own = on_terminal(sys.stdout), set[int]()
+        self._line: Any = None
+        if self.world.rank == 0:
+            self._line = ProgressLine(f"series, {len(missing)} members", sum(self._work.values()))
+
+    def _on_row(self, number: int) -> None:
+        """Add the work of a member of another rank."""
+        if number not in self._own:
+            self._line.add(self._work[number])
 
     def _missing(self) -> list[int]:
         """Numbers of the members without a complete result, the longest first; prints the opening."""
@@ -190,7 +228,10 @@ class Series:
         out: Any = PrefixedStream(member.name, sys.stdout)
         err: Any = PrefixedStream(member.name, sys.stderr)
         try:
-            run = Run(Simulation(member.case, group), member.output, stop, out, err)
+            simulation, work = Simulation(member.case, group), self._work[number]
+            progress = MemberProgress(simulation, self._line, work) if self._is_in_line else None
+            self._own.add(number)
+            run = Run(simulation, member.output, stop, out, err, progress)
             status, failure = run.run(overwrite=self.overwrite)
         except (CaseError, OutputError, UsageError) as error:
             return {"state": ExitStatus.BAD_INPUT.words, "reason": str(error)}

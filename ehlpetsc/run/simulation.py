@@ -13,8 +13,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.errors import CaseError, NotConverged, Stopped, UsageError
+from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.nonlinear import events
@@ -33,6 +34,7 @@ from ehlpetsc.stepping.time_stepping import TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
+MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
@@ -135,6 +137,7 @@ class Simulation:
             raise CaseError([f"{case.path}: a [series]: {one_by_one}"])
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}), case.kind)
+        self._options = options
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number: int = pass_number or (after.pass_number + 1 if after else 1)
@@ -242,12 +245,36 @@ class Simulation:
     def _start(self, watch: Watch) -> State:
         self._print_heading("steady start")
         with events.START:
-            solution = self.stepper.start(self._records, watch)
+            try:
+                solution = self.stepper.start(self._records, watch)
+            except NotConverged as error:
+                points = self.case.mesh.points_per_half_width // 2
+                if not isinstance(error.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
+                    raise
+                guess = self._coarser_start(points, watch, error)
+                solution = self.stepper.start(self._records, watch, guess)
         if isinstance(self.stepper.solver, NewtonSolver):
             for name in self.options.deferred_views:
                 snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
         return solution
+
+    def _coarser_start(self, points: int, watch: Watch, failure: NotConverged) -> Unknowns:
+        """Steady solution on a coarser mesh at these nodes; raise the `failure` without one."""
+        mesh = self.case.mesh.copy({"points_per_half_width": points})
+        if mesh.points_across:
+            mesh = mesh.copy({"points_across": max(mesh.points_across // 2, 1)})
+        try:
+            coarse = Simulation(self.case.copy({"mesh": mesh}), self.comm, self._options)
+            coarse.advance(watch=watch)
+        except (CaseError, NotConverged, UsageError):
+            raise failure from failure.__cause__
+        onto, of_coarse = self.scales.grid, coarse.solution
+        model = coarse.stepper.problem.model
+        h, solids = model.state(of_coarse.q, of_coarse.w).film, model.contact_pressure(of_coarse.w)
+        q, h, solids = (coarse.scales.grid.interpolated(v, onto) for v in (of_coarse.q, h, solids))
+        w = self.stepper.problem.model.w_from_state(h, solids)
+        return Unknowns(q, w, of_coarse.unknowns.h00)
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")

@@ -8,7 +8,7 @@ from scipy.special import erf
 from support import CASES, COARSE_LIFE, ROOT
 from support.made_results import save_life
 
-from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.base.errors import CaseError, OutputError, PostError
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody
@@ -370,3 +370,37 @@ def test_stored_life_is_not_drawn_where_no_picture_is_wanted(tmp_path):
     save_life(made_life(), tmp_path / "a.life.h5")
     assert main([str(tmp_path / "a.life.h5"), "--no-picture"]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["a.life.h5"]
+
+
+@pytest.mark.parametrize(
+    "keys, side", [({}, 2), ({"motion.slide_roll_ratio": -0.4}, 1), ({"time.pass_shift": 0.0}, 2)]
+)
+def test_travel_too_short_for_the_slow_surface_names_one_that_is_enough(tmp_path, keys, side):
+    """Points of the slow surface pass the contact, but with its profile still on the ramp."""
+    ground = {"kind": "ground", "ra": 1e-7, "correlation": 4e-5}
+    case = {
+        "title": "short",
+        "contact": {
+            "radius": 0.0191,
+            "load": 400e3,
+            "material": "16MnCr5",
+            "model": "mixed",
+            "asperity_height": 2e-8,
+        },
+        "fluid": {
+            "viscosity": 0.004,
+            "law": "roelands",
+            "pressure_viscosity": 15e-9,
+            "density": "dowson-higginson",
+        },
+        "motion": {"entrainment_speed": 3.0, "slide_roll_ratio": 0.4},
+        "mesh": {"inlet": -1.8, "outlet": 1.4, "points_per_half_width": 12},
+        "surface": {str(k): {"synthetic": ground | {"seed": 2 + k}} for k in (1, 2)},
+        "time": {"travel": 5.0, "courant": 2.0, "pass_shift": 3e-4},
+        "wear": {"coefficient": 1e-15},
+        "life": {"passes": 1e5, "partners": 2, "max_solved": 3},
+    }
+    with pytest.raises(PostError, match=f"surface {side}: .*time.travel = 5, allowed: 6.6 or more"):
+        run_life(load(case, keys), tmp_path / "a.h5", unresolved=True)
+    if side == 2 and not keys:
+        run_life(load(case, {"time.travel": 6.7}), tmp_path / "b.h5", unresolved=True, most=1)

@@ -1,5 +1,6 @@
 """Result and restart files: their content, and that faults leave them readable."""
 
+import errno
 import json
 import os
 import signal
@@ -320,3 +321,26 @@ def test_restart_content_round_trip(tmp_path):
     np.testing.assert_array_equal(values["h"], 2 * X)
     assert (values["step"], values["case"], values["time"]) == (5, "text", 0.1)
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("number", [errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS])
+def test_file_system_without_locks_is_written_and_read(tmp_path, monkeypatch, number):
+    real = h5py.File
+
+    def without_locks(path, *arguments, locking=True, **options):
+        if locking:
+            raise OSError(number, "unable to lock file")
+        return real(path, *arguments, locking=False, **options)
+
+    monkeypatch.setattr(h5py, "File", without_locks)
+    assert content(written(tmp_path / "a.h5", range(3)))["step"].tolist() == [0, 1, 2]
+
+
+def test_file_that_another_process_has_locked_is_not_called_damaged(tmp_path):
+    code = f"import h5py; file = h5py.File({str(tmp_path / 'a.h5')!r}, 'w', libver='earliest'); input()"
+    code = code.replace("; input()", "; print(flush=True); input()")
+    with subprocess.Popen([sys.executable, "-c", code], stdin=-1, stdout=-1, text=True) as other:
+        other.stdout.readline()
+        with pytest.raises(OutputError, match="a.h5: another process has it open for writing; wait for it"):
+            read_result(tmp_path / "a.h5")
+        other.communicate("\n")

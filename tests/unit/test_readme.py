@@ -126,6 +126,14 @@ def test_theory_equations_are_numbered_consecutively():
     assert numbers == [[str(k)] for k in range(1, len(displayed) + 1)] and len(numbers) > 10
 
 
+def test_site_without_debians_mathjax_takes_that_of_sphinx():
+    path = ROOT / ".github" / "site" / "conf.py"
+    text = path.read_text(encoding="utf-8").replace('"/usr/share/javascript/mathjax"', '"/none"')
+    found: dict = {}
+    exec(compile(text, path, "exec"), found)
+    assert "/none" in str(found["MATHJAX"]) and not {"mathjax_path", "mathjax2_config"} & found.keys()
+
+
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site") / "new"

@@ -204,6 +204,33 @@ def test_command_link_works_in_any_folder(script, tmp_path):
     (tmp_path / "ehlpetsc" / "__main__.py").write_text("import os, sys; print(sys.argv[1:], os.getcwd())")
     path = {"PATH": f"{folder}:/usr/bin:/bin"}
     called = subprocess.run(
-        ["ehlpetsc", "-n", "a b"], cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60
+        ["ehlpetsc", "-x", "a b"], cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60
     )
-    assert called.stdout == f"{['-n', 'a b']} {tmp_path}\n", called.stderr
+    assert called.stdout == f"{['-x', 'a b']} {tmp_path}\n", called.stderr
+
+
+def test_command_link_starts_ranks_as_the_script_does(script, tmp_path):
+    script("--commands", str(tmp_path / "bin"))
+    path = {"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin"}
+    words = ["ehlpetsc", "-n", "2", "case.toml"]
+    done = subprocess.run(words, cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60)
+    assert "ARGS ['case.toml'] SIZE 2" in done.stdout, done.stderr
+
+
+@pytest.mark.parametrize(
+    "settings, words",
+    [
+        (
+            {"OMPI_MCA_orte_default_hostfile": "{hosts}"},
+            ["There are not enough slots available", "; try -n 1"],
+        ),
+        ({"OMPI_MCA_btl": "nonsense"}, ["A requested component was not found", "Component: nonsense"]),
+        ({"OMPI_MCA_plm": "nonsense"}, ["A requested component was not found", "Framework: plm"]),
+    ],
+)
+def test_refusal_of_the_launcher_is_one_sentence(script, tmp_path, settings, words):
+    (tmp_path / "hosts").write_text("localhost slots=1\n")
+    settings = {name: value.format(hosts=tmp_path / "hosts") for name, value in settings.items()}
+    done = script("-n", "2", "case.toml", **settings)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert is_line_with(done.stderr, "run_mpi.sh: mpirun: ", *words)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.errors import CaseError, UsageError
 from ehlpetsc.base.toml_file import is_plain, toml_text
 from ehlpetsc.case.tables.contact import CONTACT, FLUID
 from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
@@ -152,5 +152,9 @@ def key_of(name: str) -> Key | None:
 
 if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
     sys.path.append(os.getcwd())
-    own = importlib.import_module(name)
+    try:
+        own = importlib.import_module(name)
+    except ImportError as error:
+        allowed = "a module in this folder or on Python's path, with LAWS, DENSITY_LAWS or EFFECTS"
+        raise UsageError(f"EHLPETSC_OWN = {name}: {error}; allowed: {allowed}") from None
     extend(*(getattr(own, name, {}) for name in ("LAWS", "DENSITY_LAWS", "EFFECTS")))

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from ehlpetsc.base.compiled import compiled, unsigned
+from ehlpetsc.base.compiled import ZERO, compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.block_lu import (
@@ -239,7 +239,7 @@ def solve(factors: tuple, b: np.ndarray, solution: np.ndarray) -> None:
     y[:] = 0.0
     for i in range(len(dofs)):
         y[dofs[i]] = b[i]
-    begin(is_outer, lu, cuts[:2], y, 0, everyone[rank])
+    begin(is_outer, lu, cuts[:2], y, ZERO, everyone[rank])
     if len(b) > len(dofs):
         everyone[rank, -1] -= b[-1]
     exchange(collective, everyone)
