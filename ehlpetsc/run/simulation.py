@@ -15,7 +15,6 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.nonlinear import events
@@ -25,6 +24,7 @@ from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.failed_start import coarser, cures, guess_of
 from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.run.validity import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
@@ -246,35 +246,33 @@ class Simulation:
         self._print_heading("steady start")
         with events.START:
             try:
-                solution = self.stepper.start(self._records, watch)
+                solution = self._started(watch)
             except NotConverged as error:
-                points = self.case.mesh.points_per_half_width // 2
-                if not isinstance(error.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
-                    raise
-                guess = self._coarser_start(points, watch, error)
-                solution = self.stepper.start(self._records, watch, guess)
+                if isinstance(error.__cause__, NoSteadyStart):
+                    advice = cures(self.case, self.operation.at(0.0))
+                    raise NotConverged(f"{error}{advice}") from error.__cause__
+                raise
         if isinstance(self.stepper.solver, NewtonSolver):
             for name in self.options.deferred_views:
                 snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
         return solution
 
-    def _coarser_start(self, points: int, watch: Watch, failure: NotConverged) -> Unknowns:
-        """Steady solution on a coarser mesh at these nodes; raise the `failure` without one."""
-        mesh = self.case.mesh.copy({"points_per_half_width": points})
-        if mesh.points_across:
-            mesh = mesh.copy({"points_across": max(mesh.points_across // 2, 1)})
+    def _started(self, watch: Watch) -> State:
+        """Steady state, from the solution on a coarser mesh if need be."""
         try:
-            coarse = Simulation(self.case.copy({"mesh": mesh}), self.comm, self._options)
-            coarse.advance(watch=watch)
-        except (CaseError, NotConverged, UsageError):
-            raise failure from failure.__cause__
-        onto, of_coarse = self.scales.grid, coarse.solution
-        model = coarse.stepper.problem.model
-        h, solids = model.state(of_coarse.q, of_coarse.w).film, model.contact_pressure(of_coarse.w)
-        q, h, solids = (coarse.scales.grid.interpolated(v, onto) for v in (of_coarse.q, h, solids))
-        w = self.stepper.problem.model.w_from_state(h, solids)
-        return Unknowns(q, w, of_coarse.unknowns.h00)
+            return self.stepper.start(self._records, watch)
+        except NotConverged as failure:
+            points = self.case.mesh.points_per_half_width // 2
+            if not isinstance(failure.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
+                raise
+            try:
+                coarse = Simulation(coarser(self.case, points), self.comm, self._options)
+                coarse.advance(watch=watch)
+            except (CaseError, NotConverged, UsageError):
+                raise failure from failure.__cause__
+            guess = guess_of(coarse.solution, coarse.stepper.problem, self.stepper.problem)
+            return self.stepper.start(self._records, watch, guess)
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")

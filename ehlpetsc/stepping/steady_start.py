@@ -23,13 +23,11 @@ If the Hertz pressure exceeds the yield pressure, the guess is the dry contact o
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
@@ -95,18 +93,6 @@ def yielding_start(
         if load < reached * (1.0 + MIN_RAMP_INCREMENT) or not reached:
             raise NoSteadyStart(attempt.failure)
     return solution, attempt.spent
-
-
-def cures(case: Any, conditions: Conditions) -> str:
-    """Advice for a case without a steady start."""
-    found = ["a finer mesh"]
-    if case.fluid and case.heat and case.fluid.limiting_shear is None and conditions.sliding:
-        found.append("fluid.limiting_shear, as sliding heats an oil without one beyond measure")
-    if case.fluid and conditions.entrainment == 0.0:
-        found.append("a slow entrainment instead of rest at the begin")
-    if case.fluid and not case.contact.has_contact_pressure:
-        found.append('contact.model = "mixed"')
-    return f". Try {' or '.join(found)}"
 
 
 class SolveAttempts:

@@ -20,7 +20,7 @@ from ehlpetsc.physics.operation import LEVEL_TOLERANCE
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
 from ehlpetsc.stepping.predictor import predict
 from ehlpetsc.stepping.state import State, TimeLevel
-from ehlpetsc.stepping.steady_start import cures, steady
+from ehlpetsc.stepping.steady_start import steady
 
 RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
@@ -86,13 +86,10 @@ class TimeStepping:
             state = self._steady(inputs, records, watch, guess)
         except NoSteadyStart as error:
             if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
-                raise self._not_started(error) from error
+                raise NotConverged(f"steady start: {error}") from error
             state = self._start_by_time_stepping(records, watch)
         self.baseline = (state.q, state.w)
         return state
-
-    def _not_started(self, error: NoSteadyStart) -> NotConverged:
-        return NotConverged(f"steady start: {error}{cures(self.scene.case, self.operation.at(0.0))}")
 
     def _steady(
         self, inputs: StepInputs, records: dict, watch: Watch, guess: Unknowns | None = None
@@ -149,7 +146,7 @@ class TimeStepping:
             inputs = self._with_effects(self._inputs_of(end), records, end)
             state = self._steady(replace(inputs, phi=np.zeros(self.problem.n)), records, watch)
         except NoSteadyStart as error:
-            raise self._not_started(error) from error
+            raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
         self.ramp_time = np.ceil(RAMP_LENGTH * self.scales.a / self.scales.u / dt) * dt
         moved = self.operation.displacement(0.0, -self.ramp_time)
