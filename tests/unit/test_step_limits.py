@@ -12,6 +12,7 @@ from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.contact.yielding import YieldingContact, limit_yield_switch
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
+from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
 from ehlpetsc.physics.asperities import LayerLaw
 
 
@@ -86,10 +87,10 @@ def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
     model, rng, owned = model(), np.random.default_rng(5), slice(0, len(q))
     state = model.linearised(model.state(np.array(q), np.array(w)), owned, lambda sums: sums)
     rows, stencil = rng.standard_normal((len(q), 8)), np.arange(len(q))[:, None] - np.arange(4)
-    (p_first, separation_first, separation_second, by_pairs) = model.band_entries(state, rows, stencil)
+    of_nodes = NodePairs(state, model.compliance)
+    (p_first, separation_first, separation_second, by_pairs) = of_nodes.entries(rows, stencil)
     pairs = rng.standard_normal((len(q), 2))
-    changes = pairs.copy()
-    model.from_band(state, owned, changes)
+    changes = np.einsum("kni,nk->ni", of_nodes.unknowns(owned), pairs)
     pressure, oil, film, separation = (state.derivatives() * changes.T).sum(axis=1)
     (first, second), places = pairs.T, (q_columns, w_columns)
     np.testing.assert_allclose(p_first * first, pressure, rtol=1e-12, atol=1e-12)

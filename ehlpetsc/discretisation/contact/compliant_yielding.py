@@ -21,13 +21,11 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
-    BandEntries,
     NodeState,
     PlasticState,
     limit_cavitation,
 )
 from ehlpetsc.discretisation.contact.yielding import Yielding
-from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
 
 
@@ -78,42 +76,6 @@ class CompliantYieldingContact(Yielding, CompliantContact):
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         limit_steps(now, step, self.law, self.yield_pressure, self.smallest, self.compliance)
-
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """Pairs of :class:`.compliant.CompliantContact`; where solids yield (e, h) or (e, q).
-
-        e is the excess over p_y, which the depth follows.
-        """
-        entries, y = super().band_entries(state, derivatives, stencil), state.plastic
-        if not y.yielding.any():
-            return entries
-        by_oil, closed = self._plastic_kinds(state)
-        p_first = np.where(y.yielding, y.hardening, entries.p_first)
-        separation_first = np.where(y.yielding, -self.compliance, entries.separation_first)
-        separation_second = np.where(closed, 0.0, np.where(by_oil, 1.0, entries.separation_second))
-        old_q, old_h = q_columns(derivatives), w_columns(derivatives)
-        by_first, by_second = (
-            q_columns(entries.reynolds_derivatives),
-            w_columns(entries.reynolds_derivatives),
-        )
-        slope = np.where(by_oil, y.reynolds_w, 0.0)[stencil]
-        by_oil, closed = by_oil[stencil], closed[stencil]
-        by_second[:] = np.where(by_oil, old_h + old_q * slope, np.where(closed, old_q, by_second))
-        by_first[:] = np.where(by_oil | closed, 0.0, by_first)
-        return BandEntries(p_first, separation_first, separation_second, entries.reynolds_derivatives)
-
-    def _plastic_kinds(self, state: NodeState) -> tuple[np.ndarray, np.ndarray]:
-        """Masks of yielding nodes with oil, and of those without."""
-        by_oil = state.plastic.depth_q > 0.0
-        return by_oil, state.plastic.yielding & ~by_oil
-
-    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        first, second = solution[:, 0].copy(), solution[:, 1].copy()
-        super().from_band(state, local, solution)
-        by_oil, closed = (kind[local] for kind in self._plastic_kinds(state))
-        slope = -state.plastic.reynolds_w[local]
-        solution[:, 0] = np.where(by_oil, first - slope * second, np.where(closed, second, solution[:, 0]))
-        solution[:, 1] = np.where(by_oil, second, np.where(closed, -self.compliance * first, solution[:, 1]))
 
 
 @compiled

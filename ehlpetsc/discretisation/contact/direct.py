@@ -15,7 +15,6 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
-    BandEntries,
     NodeState,
     SurfaceLoads,
     limit_cavitation,
@@ -74,10 +73,6 @@ class DirectContact(ContactModel):
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         clip_cavities(now, step, self.lower_bound)
-
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """The unknowns of the band are (q, h) themselves."""
-        return BandEntries(state.p_q, np.zeros_like(state.film), state.h_w, derivatives)
 
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float

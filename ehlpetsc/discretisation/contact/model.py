@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact.node_state import BandEntries, NodeState, SurfaceLoads
+from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.physics.scales import Scales
 
 
@@ -108,17 +108,6 @@ class ContactModel:
             Largest film that a node gets in the iteration in which its solids separate, in a^2/R.
         """
         raise NotImplementedError
-
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """:class:`.band.BandEntries` of a state.
-
-        `state`, `derivatives`: as in `ehl_problem.Evaluation`.
-        `stencil`: nodes of each Reynolds row, by their index in the window, shape (local nodes, 4).
-        """
-        raise NotImplementedError
-
-    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        """Translate the local solution, shape (local nodes, 2), from the unknowns of the band in place."""
 
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float

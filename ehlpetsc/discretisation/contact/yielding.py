@@ -20,11 +20,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch, swap_pairs
+from ehlpetsc.discretisation.contact.mixed import MixedContact, limit_contact_switch
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     PRESSURE_AFTER_REFILL,
-    BandEntries,
     NodeState,
     PlasticState,
 )
@@ -108,29 +107,6 @@ class YieldingContact(Yielding, MixedContact):
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         limit_contact_switch(now, step, self.stiffness, film_after_release)
         limit_yield_switch(now, step, self.stiffness, self.yield_pressure)
-
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """Where solids yield, the first unknown is the excess e over p_y, which the depth follows.
-
-        The second one is h or p_f as in mixed contact, or under a void that touches q.
-        """
-        plastic = state.plastic
-        if not plastic.yielding.any():
-            return super().band_entries(state, derivatives, stencil)
-        mask = state.contact_mask
-        p_first = np.where(plastic.yielding, plastic.hardening, np.where(mask, 1.0, state.p_q))
-        separation_first = np.where(plastic.yielding, -self.compliance, 0.0)
-        derivatives = swap_pairs(derivatives, mask[stencil], (mask | plastic.yielding)[stencil])
-        return BandEntries(p_first, separation_first, state.h_w, derivatives)
-
-    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        solid = np.flatnonzero(state.contact_mask[local])
-        first, oil = solution[solid, 0], solution[solid, 1]
-        by_oil = state.plastic.depth_q[local][solid] > 0.0
-        elastic = first - state.p_q[local][solid] * oil
-        p_c = np.where(by_oil, -oil, np.where(state.plastic.yielding[local][solid], first, elastic))
-        solution[solid, 0] = np.where(by_oil, first + oil, oil)
-        solution[solid, 1] = -p_c / self.stiffness
 
 
 @compiled
