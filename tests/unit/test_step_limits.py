@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
 from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
 from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
-from ehlpetsc.discretisation.contact.yielding import YieldingContact, limit_yield_switch
+from ehlpetsc.discretisation.contact.yielding import (
+    CompliantYieldingContact,
+    YieldingContact,
+    limit_yield_switch,
+)
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
 from ehlpetsc.physics.asperities import LayerLaw

@@ -37,7 +37,7 @@ def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance:
         )
     if contact.asperity_height is not None:
         from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-        from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
+        from ehlpetsc.discretisation.contact.yielding import CompliantYieldingContact
 
         layer = Layer.of(contact, scales)
         if contact.yield_pressure is None:
