@@ -13,7 +13,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.results.index import groups
 from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.results.post_result import PostResult, damage_beside
@@ -88,6 +87,6 @@ def table(results: list[Result]) -> list[Sequence]:
             deviation = values.std(ddof=1) if values.size > 1 else np.nan
             reduced = values.mean(), deviation, values.min(), values.max()
             others = "K" if name.startswith("flash_temperature") else "1"
-            unit = STEP_SCALARS[name].units if name in STEP_SCALARS else others
+            unit = results[0].unit(f"steps/{name}") if name in results[0].scalars else others
             rows.append((ensemble, name, unit, values.size, *(f"{v:.6g}" for v in reduced)))
     return rows

@@ -22,7 +22,7 @@ import numpy as np
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.effects.quantities import STEP_SCALARS
+from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import atomic_write, check_derived
@@ -45,7 +45,7 @@ def statistics(result: Result) -> list[tuple]:
             v, w = values[usable], weights[usable]
             percentiles = weighted_percentiles(v, w, PERCENTILES)
             reduced = (mean(result, name, weights), *percentiles, v.min(), v.max(), v[-1])
-            unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
+            unit = result.unit(f"steps/{name}")
             begin = (time - dt)[usable][0]
             rows.append((name, unit, *(f"{x:.6g}" for x in reduced), f"{begin:.6g}", int(usable.sum())))
     return rows
@@ -63,7 +63,7 @@ def table(results: list[Result]) -> list[tuple]:
 def steps_table(result: Result) -> list[Sequence]:
     """Names with units of the scalars of the steps, in the order of progress, then a row for every step."""
     names = [name for name in STEP_SCALARS if name in result.scalars]
-    return _columns({f"{name} [{STEP_SCALARS[name].units}]": result.steps(name) for name in names})
+    return _columns({f"{name} [{result.unit(f'steps/{name}')}]": result.steps(name) for name in names})
 
 
 def frame_table(result: Result, step: int) -> list[Sequence]:
@@ -72,7 +72,7 @@ def frame_table(result: Result, step: int) -> list[Sequence]:
     if result.step[frame] != step:
         stored = f"{result.step[0]} to {result.step[-1]}, next to it {result.step[frame]}"
         raise UsageError(f"--frame {step}: {result.path} stores no such step; allowed: one of {stored}")
-    fields = {f"{name} [{result[name].attrs['units']}]": result[name][frame] for name in result.fields}
+    fields = {f"{name} [{result.unit(name)}]": result[name][frame] for name in result.fields}
     return _columns({"x [m]": result.x} | fields)
 
 

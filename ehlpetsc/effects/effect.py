@@ -95,7 +95,7 @@ class Effect:
     `record`: type of the record, a NamedTuple.
     `table`: table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
     `moves_with_surfaces`: whether its contribution to the gap moves with the surfaces from the first step on.
-    `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.effects.quantities`: fields
+    `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.base.quantities`: fields
     over the nodes, scalars of every time step, depths along each surface at the end of the run.
     """
 

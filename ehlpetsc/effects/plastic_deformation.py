@@ -34,14 +34,22 @@ class PlasticDeformation(BodyDepth):
     record = PlasticRecord
     scalars = {
         "yielding": StepScalar(
-            "1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True
+            "1",
+            "nodes that yield",
+            dtype="i4",
+            over_run="sum",
+            summary="d",
+            compared=True,
+            of=lambda o: np.count_nonzero(o.state.records["plastic_deformation"].added),
         ),
         "set_volume": StepScalar(
-            "m^2",
+            "m^3",
             "plastic deformation of both solids since the first pass",
+            integrated=True,
             over_run="last",
             summary=".4g",
             compared=True,
+            of=lambda o: o.state.records["plastic_deformation"].depth.volume,
         ),
     }
     surface = {"set": Field("m", "depth of the plastic deformation at the end", ("s",))}
@@ -70,7 +78,3 @@ class PlasticDeformation(BodyDepth):
         depths = [fraction * total for fraction in self._fractions]
         depth = self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths)
         return PlasticRecord(depth, total, record.hidden)
-
-    def observe(self, record: PlasticRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Number of yielding nodes, volume."""
-        return {}, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
+import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 
@@ -153,6 +154,10 @@ class Result:
             return stored_case(self.attrs["case"])
         except CaseError as error:
             raise OutputError(f"{self.path}: {error.faults[0]}") from None
+
+    def unit(self, name: str) -> str:
+        """Unit of a dataset."""
+        return self[name].attrs.get("units", "1")
 
     def to_xarray(self) -> Dataset:
         """Fields over (time, x) and scalars over (step), with units, long names and the root attributes.

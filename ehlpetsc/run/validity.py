@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
@@ -20,7 +21,6 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.flash_temperature import expected_friction
 from ehlpetsc.physics.laws import LAWS, viscosity
-from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:

@@ -68,7 +68,7 @@ def test_contact_precedes_yielding_in_a_step():
     assert (q[2], w[2]) == pytest.approx((0.5, -0.02))
 
 
-LAYER = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2, high_pressure=0.1)
+LAYER = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2)
 SOLIDS, COMPLIANT = partial(MixedContact, 0.1, 10.0), partial(CompliantContact, LAYER)
 YIELDING = partial(YieldingContact, 0.1, 10.0, 0.6)
 PLASTIC, SMALLEST = partial(CompliantYieldingContact, LAYER, 0.6, 0.1), 1e-3 * np.log(100.0 / 0.6)

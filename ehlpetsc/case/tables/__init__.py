@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from ehlpetsc.base import quantities
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.base.toml_file import is_plain, toml_text
 from ehlpetsc.case.tables.contact import CONTACT, FLUID
@@ -20,7 +21,6 @@ from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.quantities import add_quantities
 from ehlpetsc.physics.laws import LAWS, Law
 
 CONDITIONS = (CONTACT, FLUID, MOTION, MESH, SURFACE, TIME, OPERATION, GEARS)
@@ -88,7 +88,7 @@ def extend(laws: Mapping[str, Law], effects: Iterable[type[Effect]]) -> None:
         FLUID.keys.update(law.keys)
     for effect in effects:
         EFFECTS[:] = [*(kind for kind in EFFECTS if kind.name != effect.name), effect]
-        add_quantities(effect)
+        quantities.register(effect)
         if effect.table:
             CASE.keys[effect.table.name] = effect.table.key
 

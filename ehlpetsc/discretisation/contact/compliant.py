@@ -37,7 +37,6 @@ from ehlpetsc.physics.asperities import (
 )
 from ehlpetsc.physics.scales import Scales
 
-HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
 DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess
@@ -49,14 +48,13 @@ class Layer:
 
     `law`: see :class:`ehlpetsc.physics.asperities.LayerLaw`.
     `slope_modulus`, `hardness`: E* h'_rms; infinite for elastic asperities.
-    `contact_pressure`, `high_pressure`: thresholds of the lengths in contact.
+    `contact_pressure`: from which on asperities count as in contact.
     """
 
     law: LayerLaw
     slope_modulus: float
     hardness: float
     contact_pressure: float
-    high_pressure: float
 
     @classmethod
     def of(cls, contact: Any, scales: Scales) -> Layer:
@@ -67,7 +65,6 @@ class Layer:
             contact.asperity_slope * modulus,
             (contact.asperity_hardness or np.inf) / scales.p0,
             CONTACT_PRESSURE / scales.p0,
-            HIGH_PRESSURE / scales.p0,
         )
 
 
@@ -134,18 +131,8 @@ class CompliantContact(SeparatedContact):
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         limit_rise(now, step, self.law)
 
-    def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
-        """Integral of the real area fraction [m]."""
-        return (
-            scales.dx
-            * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus, self.layer.hardness).sum()
-        )
-
-    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        return super().diagnostics(loads, scales, thin_film) | {
-            "contact_length_10mpa": scales.dx * loads.contact_mask.sum(),
-            "contact_length_100mpa": scales.dx * (loads.contact_pressure > self.layer.high_pressure).sum(),
-        }
+    def real_area_fraction(self, loads: SurfaceLoads) -> np.ndarray:
+        return real_area_fraction(loads.contact_pressure, self.layer.slope_modulus, self.layer.hardness)
 
 
 @compiled

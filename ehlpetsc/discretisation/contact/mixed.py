@@ -22,7 +22,6 @@ from ehlpetsc.discretisation.contact.node_state import (
     full_of_oil,
     limit_cavitation,
 )
-from ehlpetsc.physics.scales import Scales
 
 
 class SeparatedContact(ContactModel):
@@ -35,20 +34,6 @@ class SeparatedContact(ContactModel):
         solids, everywhere = self.contact_pressure(w), np.ones(len(w), dtype=bool)
         oil = pressure - solids
         return SurfaceLoads(mask, pressure, solids, h, oil, everywhere, solids, everywhere)
-
-    def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
-        """Length in contact [m]."""
-        return scales.dx * loads.contact_mask.sum()
-
-    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        thin = loads.film < thin_film * self.minimum_film
-        total = loads.pressure.sum()
-        return {
-            "contact_share": loads.contact_pressure.sum() / total,
-            "contact_length": self.contact_length(loads, scales),
-            "thin_length": scales.dx * thin.sum(),
-            "thin_share": loads.pressure[thin].sum() / total,
-        }
 
 
 class MixedContact(SeparatedContact):

@@ -14,7 +14,6 @@ from collections.abc import Callable
 import numpy as np
 
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
-from ehlpetsc.physics.scales import Scales
 
 
 class ContactModel:
@@ -136,9 +135,6 @@ class ContactModel:
         """:class:`.node_state.SurfaceLoads` of a solution; h its film."""
         raise NotImplementedError
 
-    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        """Scalars of the contact in SI units.
-
-        `thin_film`: films count as thin below this multiple of `minimum_film`.
-        """
-        return {}
+    def real_area_fraction(self, loads: SurfaceLoads) -> np.ndarray:
+        """Share of each cell on which solids touch."""
+        return loads.contact_mask
