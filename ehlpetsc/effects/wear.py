@@ -50,7 +50,7 @@ class WearRecord(NamedTuple):
     hidden: BodyFields
 
 
-class Wear(BodyDepth):
+class Wear(BodyDepth[WearRecord]):
     """Wear depth, added to the gap and kept in the bodies."""
 
     name = "wear"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
+
+if TYPE_CHECKING:
+    from ehlpetsc.run.stop import StopRequest
 
 
 class OfBody(NamedTuple):
@@ -56,7 +59,9 @@ SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
-def run_pass(simulation: Simulation, before: dict[str, tuple], file: Path, stop: Any = None) -> Pass:
+def run_pass(
+    simulation: Simulation, before: dict[str, tuple], file: Path, stop: StopRequest | None = None
+) -> Pass:
     """Solve a pass to its end and evaluate it.
 
     `before`: records of the bodies, after the previous pass. `file`: result file, replaced. Raises

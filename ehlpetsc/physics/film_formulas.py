@@ -7,11 +7,13 @@ u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Fluid
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
 
@@ -36,7 +38,7 @@ def moes_central_film(M: float, L: float) -> float:
     return (isoviscous + piezoviscous) ** (1.0 / s)
 
 
-def smooth_films(fluid: Any, modulus: float, conditions: Conditions) -> tuple[float, float]:
+def smooth_films(fluid: Fluid, modulus: float, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
     .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
@@ -116,7 +118,7 @@ def _grubin(film: float, inlet: float) -> float:
     return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
 
 
-def expected_film(case: Any, scales: Scales) -> float:
+def expected_film(case: Case, scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0

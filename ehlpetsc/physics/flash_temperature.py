@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.traction import wall_shear
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
     from ehlpetsc.physics.scales import Scales
 
 
@@ -79,7 +80,7 @@ def blok_flash_temperature(
     return 1.11 * friction * load * abs(sliding) / (np.maximum(carried, TINY) * (2.0 * a) ** 0.5)
 
 
-def expected_friction(fluid: Any, boundary_friction: float, scales: Scales, film: float) -> float:
+def expected_friction(fluid: Fluid, boundary_friction: float, scales: Scales, film: float) -> float:
     """Coefficient of friction of a smooth contact at its mean Hertz pressure; dry: of the boundary.
 
     Parameters

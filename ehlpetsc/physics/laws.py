@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -29,12 +29,17 @@ from ehlpetsc.physics.viscosity_laws import (
     WALTHER,
     YASUTOMI,
     Derivatives,
+    Numbers,
     doolittle,
     power_law,
     walther_constants,
     yasutomi,
 )
 
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+
+FluidValues = SimpleNamespace  # of [fluid], checked or to be completed
 SLOTS = 10  # constants that compiled loops get of any law
 BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05
 ROELANDS_S0 = 1.1  # where a case with his law of pressure gives none: mineral oils have 1 to 1.5
@@ -62,10 +67,10 @@ class Law:
     """
 
     function: Callable[..., Derivatives]
-    constants: Callable[[Any, Any], tuple[float, ...]]
+    constants: Callable[[FluidValues, Values | None], tuple[float, ...]]
     equation: str
     keys: Mapping[str, Key] = field(default_factory=dict)
-    complete: Callable[[Any], Mapping[str, Any]] = lambda fluid: {}
+    complete: Callable[[FluidValues], Mapping[str, Any]] = lambda fluid: {}
     of_temperature: bool = False
 
     def __call__(self, *arguments: Any) -> Derivatives:
@@ -133,7 +138,7 @@ def padded(constants: tuple[float, ...]) -> tuple[float, ...]:
     return (*map(float, constants), *[0.0] * (SLOTS - len(constants)))
 
 
-def reference_temperature(fluid: Any, heat: Any = None) -> float:
+def reference_temperature(fluid: FluidValues, heat: Values | None = None) -> float:
     """Temperature at which `fluid.viscosity` holds [K]."""
     given = getattr(fluid, "temperature", None)
     if heat is None:
@@ -145,7 +150,7 @@ def reference_temperature(fluid: Any, heat: Any = None) -> float:
 
 
 def temperature_constants(
-    fluid: Any, heat: Any, factor: float | None = None
+    fluid: FluidValues, heat: Values | None, factor: float | None = None
 ) -> tuple[float, float, float, float]:
     """Last four constants of :func:`power_law`; `factor` c of Roelands' law, None: not his."""
     reference = reference_temperature(fluid, heat)
@@ -162,23 +167,23 @@ def temperature_constants(
     return EXPONENTIAL, beta, 0.0, reference
 
 
-def _barus(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _barus(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     return fluid.pressure_viscosity, 1.0, 1.0, *temperature_constants(fluid, heat)
 
 
-def _roelands(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _roelands(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     pressure, z = fluid.roelands_pressure, fluid.roelands_z
     factor = fluid.pressure_viscosity * pressure / z
     return factor, pressure, z, *temperature_constants(fluid, heat, factor)
 
 
-def _with_coefficient(fluid: Any) -> dict[str, float]:
+def _with_coefficient(fluid: FluidValues) -> dict[str, float]:
     if fluid.pressure_viscosity is None:
         raise Refused("", "pressure_viscosity")
     return {}
 
 
-def _complete_roelands(fluid: Any) -> dict[str, float]:
+def _complete_roelands(fluid: FluidValues) -> dict[str, float]:
     """Exponent from the viscosity that the oil tends to under tension, by default Roelands' 6.315e-5 Pa s."""
     _with_coefficient(fluid)
     pressure = fluid.roelands_pressure or ROELANDS_PRESSURE
@@ -197,19 +202,19 @@ def _complete_roelands(fluid: Any) -> dict[str, float]:
     return {"roelands_z": z, "roelands_pressure": pressure}
 
 
-def _doolittle(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _doolittle(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     constants = *(getattr(fluid, name) for name in DOOLITTLE), 0.0
     ambient = doolittle(0.0, reference_temperature(fluid, heat), *constants)[0]
     return *constants[:-1], ambient / fluid.doolittle_b
 
 
-def _yasutomi(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _yasutomi(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     c1, c2, glass, *others = (getattr(fluid, name) for name in YASUTOMI)
     above = reference_temperature(fluid, heat) - glass
     return c1, c2, glass, *others, above / (c2 + above)
 
 
-def _complete_with_slope(fluid: Any) -> dict[str, float]:
+def _complete_with_slope(fluid: FluidValues) -> dict[str, float]:
     """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure."""
     law = LAWS[fluid.law]
     for name in law.keys:
@@ -277,7 +282,7 @@ def ln_viscosities(law: tuple, p: float, T: float, other: float) -> tuple[Deriva
     return _ln_viscosities(law[0], (p, T, other), law[1])
 
 
-def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
+def viscosity_law(fluid: FluidValues, heat: Values | None = None) -> OilLaw:
     """Viscosity law of a case; `fluid.exponent_factor` below 1 is that of a continuation."""
     law = LAWS[fluid.law]
     first, *others = law.constants(fluid, heat)
@@ -286,7 +291,9 @@ def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
     return OilLaw(kind, padded((first, *others)), float(reference_temperature(fluid, heat)))
 
 
-def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tuple[np.ndarray, np.ndarray]:
+def viscosity(
+    p: np.ndarray, fluid: FluidValues, heat: Values | None = None, T: Numbers | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """ln(eta/eta0), by default at the reference temperature, and its derivative by p [1/Pa]."""
     law = viscosity_law(fluid, heat)
     return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
@@ -316,13 +323,13 @@ def conductivity(p: float, ambient: float, c1: float, c2: float) -> tuple[float,
 # ---- density ----
 
 
-def compression(p: Any, gamma: float, lambda_: float) -> Derivatives:
+def compression(p: Numbers, gamma: float, lambda_: float) -> Derivatives:
     r"""Density over its ambient value, :math:`(1+\gamma p)/(1+\lambda p)`, and its derivative."""
     below = 1.0 + lambda_ * p
     return (1.0 + gamma * p) / below, (gamma - lambda_) / (below * below)
 
 
-def incompressible(p: Any) -> Derivatives:
+def incompressible(p: Numbers) -> Derivatives:
     """Density 1 and derivative 0."""
     return 1.0 + 0.0 * p, 0.0 * p
 
@@ -332,7 +339,7 @@ TEXTBOOKS = "the density `1 + 0.6e-9 p/(1 + 1.7e-9 p)` of textbooks is gamma = 2
 DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
 
 
-def _complete_density(fluid: Any) -> dict[str, float]:
+def _complete_density(fluid: FluidValues) -> dict[str, float]:
     values = {
         name: default if getattr(fluid, name) is None else getattr(fluid, name)
         for name, default in DENSITY.items()
@@ -364,13 +371,13 @@ def relative_density(law: tuple, p: float) -> Derivatives:
     return _relative_density(law[0], (p,), law[1])
 
 
-def density_law(fluid: Any) -> OilLaw:
+def density_law(fluid: FluidValues) -> OilLaw:
     """Density law of a case."""
     constants = DENSITY_LAWS[fluid.density].constants(fluid, None)
     return OilLaw(list(DENSITY_LAWS).index(fluid.density), padded(constants))
 
 
-def density(p: np.ndarray, fluid: Any) -> tuple[np.ndarray, np.ndarray]:
+def density(p: np.ndarray, fluid: FluidValues) -> tuple[np.ndarray, np.ndarray]:
     """Density over its ambient value under pressures [Pa], and its derivative [1/Pa]."""
     return DENSITY_LAWS[fluid.density](p, density_law(fluid).constants)
 

@@ -6,11 +6,14 @@ Eyring's law has a closed form; that of any other is a table, see :mod:`ehlpetsc
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 NEWTON, EYRING, CARREAU = 0, 1, 2
@@ -104,7 +107,7 @@ def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, fl
     return value, by_x * by_tau, by_limit + 0.0 * by_x
 
 
-def flow_law(fluid: Any) -> FlowLaw:
+def flow_law(fluid: Fluid) -> FlowLaw:
     """Shear law of a case."""
     for key, kind in SHEAR_LAWS.items():
         if getattr(fluid, key, None) is not None:
@@ -115,7 +118,7 @@ def flow_law(fluid: Any) -> FlowLaw:
     return FlowLaw(NEWTON)
 
 
-def stress_pressure(fluid: Any) -> float:
+def stress_pressure(fluid: Fluid) -> float:
     """Relative rise of the Eyring stress with pressure [1/Pa]."""
     return getattr(fluid, "eyring_stress_pressure", None) or 0.0
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from ehlpetsc.physics.operation import Conditions
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
 
 
 def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[float]) -> float:
@@ -124,7 +127,7 @@ class Scales:
         return Conditions(self.load, self.R, self.u1, self.u2)
 
     @classmethod
-    def of(cls, case: Any) -> Self:
+    def of(cls, case: Case) -> Self:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""
         contact, mesh = case.contact, case.mesh
         modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)

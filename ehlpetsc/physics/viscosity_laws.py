@@ -23,12 +23,13 @@ ISOTHERMAL, EXPONENTIAL, ROELANDS, WALTHER, ROELANDS_WALTHER = 0.0, 1.0, 2.0, 3.
 ROELANDS_ZERO = 138.0  # K
 GOLD_PRESSURE = 2e8  # Pa: that of the secant of Gold's coefficients
 WALTHER_SHIFT = 0.7  # mm^2/s
+Numbers = float | np.ndarray
 Derivatives = tuple[Any, ...]
 
 
 def power_law(
-    p: Any,
-    T: Any,
+    p: Numbers,
+    T: Numbers,
     factor: float,
     reference: float,
     z: float,
@@ -68,7 +69,7 @@ def power_law(
 
 
 @compiled
-def walther(temperature: Any, a: float, b: float) -> Derivatives:
+def walther(temperature: Numbers, a: float, b: float) -> Derivatives:
     r"""Kinematic viscosity [mm^2/s], :math:`\lg\lg(\nu+0.7)=A-B\lg T` (ASTM D341), T in K; d ln(nu)/dT."""
     exponent = 10.0 ** (a - b * np.log(temperature) / 2.302585092994046)
     shifted = 10.0**exponent
@@ -115,8 +116,8 @@ def roelands_slope_of_secant(secant: float, decades: float, pressure: float, z: 
 
 
 def doolittle(
-    p: Any,
-    T: Any,
+    p: Numbers,
+    T: Numbers,
     b: float,
     occupied: float,
     occupied_rise: float,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Contact, Fluid
     from ehlpetsc.physics.scales import Scales
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
@@ -145,7 +146,7 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
     return list(isothermal(case, scales, friction))
 
 
-def _oil_warnings(fluid: Any) -> Iterator[str]:
+def _oil_warnings(fluid: Fluid) -> Iterator[str]:
     """Oil constants that the viscosity law does not use."""
     others = {name for law in LAWS.values() for name in law.keys}
     others -= set(LAWS[fluid.law].keys) if fluid else others
@@ -188,7 +189,7 @@ def limits(case: Case, scales: Scales, rough: Roughness | None, totals: dict[str
     return [*_of_solids(case.contact, totals), *mesh, *heat, *of_oil]
 
 
-def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
+def _of_solids(contact: Contact, totals: dict[str, float]) -> Iterator[str]:
     if contact.yield_pressure is None and totals["p_max"] > ASPERITY_YIELD_PRESSURE:
         yield (
             f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "

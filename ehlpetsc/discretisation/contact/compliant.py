@@ -13,7 +13,7 @@ the rise of an exponential.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -37,6 +37,9 @@ from ehlpetsc.physics.asperities import (
 )
 from ehlpetsc.physics.scales import Scales
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Contact
+
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
 DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess
@@ -57,7 +60,7 @@ class Layer:
     contact_pressure: float
 
     @classmethod
-    def of(cls, contact: Any, scales: Scales) -> Layer:
+    def of(cls, contact: Contact, scales: Scales) -> Layer:
         """Layer of the table [contact], its rms height `asperity_height` a number."""
         modulus = 0.5 * scales.E / scales.p0
         return cls(

@@ -89,7 +89,7 @@ def _temperature(name: str, over_run: str) -> StepScalar:
     return StepScalar("K", name, over_run=over_run, summary=".5g" if over_run == "max" else "", compared=True)
 
 
-class Heat(Effect):
+class Heat(Effect[HeatRecord]):
     """Film and surface temperatures."""
 
     name = "heat"

@@ -32,7 +32,7 @@ regular at r = 0.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -48,6 +48,10 @@ from ehlpetsc.physics.laws import (
 )
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
 from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO
+
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+    from ehlpetsc.case.tables.contact import Fluid
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 ITERATIONS = 30  # of Newton's method, before bisection
@@ -112,7 +116,7 @@ class FilmLaw(NamedTuple):
     limit_temperature: float = 0.0
 
 
-def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
+def film_law(fluid: Fluid, heat: Values | None, sliding: float, thinnest: float = 0.0) -> FilmLaw:
     """Constants of the oil in a step with u1 - u2 [m/s]; `fluid` None: dry."""
     conduction = (
         float(heat.oil_conductivity),
