@@ -109,8 +109,8 @@ def test_hertz_gap_is_the_deflected_parabola(ratio):
 
 
 def test_hertz_gap_at_the_inlet():
-    assert hertz.hertz_gap(-2.5 * A, A, R) == pytest.approx(12.27534e-6, rel=1e-6)
-    np.testing.assert_array_equal(hertz.hertz_gap(np.linspace(-A, A, 5), A, R), 0.0)
+    assert hertz_gap(-2.5 * A, A, R) == pytest.approx(12.27534e-6, rel=1e-6)
+    np.testing.assert_array_equal(hertz_gap(np.linspace(-A, A, 5), A, R), 0.0)
 
 
 def test_moes_fit_approximates_films_and_its_asymptotes():

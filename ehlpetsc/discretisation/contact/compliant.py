@@ -87,8 +87,7 @@ class CompliantContact(SeparatedContact):
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         solids, slope = asperity_pressures(w, self.law)
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
-        mask = solids > self.layer.contact_pressure
-        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones, mask)
+        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         return asperity_pressures(w, self.law)[0]

@@ -40,7 +40,7 @@ class DirectContact(ContactModel):
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         p_q = np.where(q > self.lowest_pressure - AMBIENT_TOLERANCE, 1.0, 0.0)
         zeros, ones = np.zeros(len(w)), np.ones(len(w))
-        return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones, w <= self.lower_bound)
+        return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Not separated from the oil's: zero."""
@@ -66,7 +66,7 @@ class DirectContact(ContactModel):
 
     def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """A node in contact and cavitated at once would leave its deflection row without an entry for q."""
-        return state._replace(p_q=np.where(state.contact_mask, 1.0, state.p_q))
+        return state._replace(p_q=np.where(state.film <= self.lower_bound, 1.0, state.p_q))
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         return pressure_change(now, step, self.lower_bound, self.lowest_pressure)

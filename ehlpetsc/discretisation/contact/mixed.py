@@ -51,7 +51,7 @@ class MixedContact(SeparatedContact):
         mask, pressure = w < 0.0, np.maximum(q, 0.0) + self._carried(w)
         p_w, h_w = np.where(mask, -self.stiffness, 0.0), np.where(mask, 0.0, 1.0)
         film = self.boundary_film + np.maximum(w, 0.0)
-        return NodeState(q, pressure, film, full_of_oil(q) * 1.0, p_w, h_w, mask)
+        return NodeState(q, pressure, film, full_of_oil(q) * 1.0, p_w, h_w)
 
     def _carried(self, w: np.ndarray) -> np.ndarray:
         return self.stiffness * np.maximum(-w, 0.0)

@@ -42,7 +42,6 @@ class NodeState(NamedTuple):
         where negative.
     `pressure`, `film`: total pressure p; film h of the Reynolds equation.
     `p_q`, `p_w`, `h_w`: derivatives of p with respect to q and w, of h with respect to w.
-    `contact_mask`: nodes whose solids carry.
     `plastic`: None where solids are elastic.
     """
 
@@ -52,7 +51,6 @@ class NodeState(NamedTuple):
     p_q: np.ndarray
     p_w: np.ndarray
     h_w: np.ndarray
-    contact_mask: np.ndarray
     plastic: PlasticState | None = None
 
     @property
