@@ -50,7 +50,7 @@ class Observation:
         """Width of a cell [m]."""
         return self.scene.scales.dx
 
-    @property
+    @cached_property
     def rq(self) -> float:
         """Combined rms height [m]."""
         return self.scene.rq
@@ -75,7 +75,7 @@ class Observation:
         """Undeformed separation h00 [m]."""
         return self.state.solution.unknowns.h00 * self.scene.scales.h
 
-    @property
+    @cached_property
     def mean_film(self) -> float:
         """See :func:`mean_film`."""
         return mean_film(self.scene.scales, self.state.solution.nodes.film)
@@ -96,7 +96,7 @@ class Observation:
         """Pressure of the oil where it is known [Pa], else 0."""
         return np.where(self.loads.oil_mask, self.loads.oil_pressure, 0.0) * self.scene.scales.p0
 
-    @property
+    @cached_property
     def thin(self) -> np.ndarray:
         """Nodes whose film is thin, ``output.thin_film``."""
         return self.loads.film < self.scene.case.output.thin_film * self.model.minimum_film

@@ -17,7 +17,6 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState
-from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 
 STIFF_SLOPE = 1.0  # p0 per a^2/R: from this slope of pressure over film on, solids are stiff
 
@@ -44,13 +43,15 @@ class NodePairs:
     """
 
     def __init__(self, state: NodeState, compliance: float):
-        none = np.zeros(len(state.film), dtype=bool)
-        self.state, self.compliance, plastic = state, compliance, state.plastic
-        self.yielding = none if plastic is None else plastic.yielding
-        self.by_oil = none if plastic is None else plastic.depth_q > 0.0  # q is the excess
-        self.is_full = ~self.yielding & (state.p_q > 0.0)
-        stiff = ~self.yielding & ~self.is_full & (state.p_w < -STIFF_SLOPE)
-        self.has_film = (state.h_w > 0.0) & ~stiff  # as the second unknown
+        n, plastic = len(state.film), state.plastic
+        zeros = np.zeros(n)
+        self._deflection, self._unknowns = np.empty((3, n)), np.empty((2, n, 2))
+        self._has_film, self._rows = np.empty(n, dtype=bool), np.empty((3, n))
+        depth: tuple = (zeros > 0.0, zeros, zeros, 0.0)
+        if plastic is not None:
+            depth = plastic.yielding, plastic.depth_q, plastic.reynolds_w, plastic.hardening
+        found = self._deflection, self._unknowns, self._has_film, self._rows
+        choose_pairs((state.p_q, state.p_w, state.h_w), depth, compliance, found)
 
     def entries(self, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
         """Derivatives of the state by the pairs.
@@ -59,50 +60,66 @@ class NodePairs:
             `ehl_problem.Evaluation`.
         `stencil`: nodes of each row, by their index in the window, shape (local nodes, 4).
         """
-        state, elastic_pressure = self.state, np.where(self.has_film, self.state.p_q, 1.0)
-        hardening = 0.0 if state.plastic is None else state.plastic.hardening
-        film_first = np.where(self.has_film | self.yielding, 0.0, state.h_w * self._w_by_pressure())
-        return BandEntries(
-            np.where(self.yielding, hardening, elastic_pressure),
-            np.where(self.yielding, -self.compliance, film_first),
-            np.where(self.has_film, state.h_w, 0.0),
-            self._reynolds(derivatives, stencil, film_first),
-        )
-
-    def _w_by_pressure(self) -> np.ndarray:
-        """Change of w with the pressure at elastic nodes without the film as an unknown."""
-        return 1.0 / np.where(self.has_film | self.yielding, 1.0, self.state.p_w)
-
-    def _q_by_film(self) -> np.ndarray:
-        """Change of q with the film at the same pressure, or excess."""
-        full = np.where(self.is_full, -self.state.p_w, 0.0)
-        plastic = self.state.plastic
-        return full if plastic is None else np.where(self.yielding, plastic.reynolds_w, full)
-
-    def _reynolds(self, derivatives: np.ndarray, stencil: np.ndarray, film_first: np.ndarray) -> np.ndarray:
-        if not (self.state.p_w.any() or self.yielding.any()):
-            return derivatives
-        by_unknown, by_film = q_columns(derivatives), w_columns(derivatives)
-        has_film, first = self.has_film[stencil], np.where(self.yielding, 0.0, 1.0)[stencil]
-        found = np.empty_like(derivatives)
-        q_columns(found)[:] = np.where(has_film, by_unknown * first, by_film * film_first[stencil])
-        with_film = by_film + by_unknown * self._q_by_film()[stencil]
-        w_columns(found)[:] = np.where(has_film, with_film, by_unknown)
-        return found
+        by_pairs = np.empty_like(derivatives)
+        reynolds_by_pairs(derivatives, stencil, self._has_film, self._rows, by_pairs)
+        return BandEntries(*self._deflection, by_pairs)
 
     def unknowns(self, owned: slice) -> np.ndarray:
         """q and w by both unknowns of the pairs of local nodes, shape (2, nodes, 2)."""
-        state, film, by_oil = self.state, self.has_film, self.by_oil
-        by_pair = np.empty((2, len(film), 2))
-        (q_first, w_first), (q_second, w_second) = np.moveaxis(by_pair, 2, 1)
-        inverse = self._w_by_pressure()
-        q_first[:] = np.where(film | by_oil, 1.0, 0.0)
-        w_first[:] = np.where(film | by_oil, 0.0, np.where(self.yielding, -self.compliance, inverse))
-        q_second[:] = np.where(film, self._q_by_film(), 1.0)
-        w_second[:] = np.where(film, 1.0, np.where(self.yielding, 0.0, -state.p_q * inverse))
-        held = by_oil & ~film
-        w_second[held] = 1.0 / state.plastic.reynolds_w[held] if held.any() else 0.0
-        return by_pair[:, owned]
+        return self._unknowns[:, owned]
+
+
+@compiled
+def choose_pairs(state: tuple, depth: tuple, compliance: float, found: tuple) -> None:
+    """Choose the pair of each node.
+
+    `state`: p_q, p_w, h_w of `NodeState`. `depth`: yielding, depth_q, reynolds_w, hardening of it.
+    `found`: filled in: the first three of `BandEntries`; q and w by the pairs; whether the film is the second
+        unknown; changes of the Reynolds unknown and of the film with the first one, of the Reynolds unknown
+        with the film.
+    """
+    (p_qs, p_ws, h_ws), (yielding, depth_q, reynolds_w, hardening) = state, depth
+    deflection, unknowns, has_film, rows = found
+    for i in range(len(p_qs)):
+        p_q, p_w, h_w, yields, by_oil = p_qs[i], p_ws[i], h_ws[i], yielding[i], depth_q[i] > 0.0
+        is_full = p_q > 0.0 and not yields
+        film = h_w > 0.0 and (yields or is_full or p_w >= -STIFF_SLOPE)
+        w_by_pressure = 1.0 if film or yields else 1.0 / p_w
+        film_first = 0.0 if film or yields else h_w * w_by_pressure
+        q_by_film = reynolds_w[i] if yields else (-p_w if is_full else 0.0)
+        has_film[i], rows[0, i], rows[1, i], rows[2, i] = film, 0.0 if yields else 1.0, film_first, q_by_film
+        deflection[0, i] = hardening if yields else (p_q if film else 1.0)
+        deflection[1, i] = -compliance if yields else film_first
+        deflection[2, i] = h_w if film else 0.0
+        if film:
+            unknowns[0, i, 0], unknowns[0, i, 1], unknowns[1, i, 0], unknowns[1, i, 1] = (
+                1.0,
+                0.0,
+                q_by_film,
+                1.0,
+            )
+            continue
+        unknowns[0, i, 0], unknowns[1, i, 0] = (1.0 if by_oil else 0.0), 1.0
+        if by_oil:
+            unknowns[0, i, 1], unknowns[1, i, 1] = 0.0, 1.0 / reynolds_w[i]
+        elif yields:
+            unknowns[0, i, 1], unknowns[1, i, 1] = -compliance, 0.0
+        else:
+            unknowns[0, i, 1], unknowns[1, i, 1] = w_by_pressure, -p_q * w_by_pressure
+
+
+@compiled
+def reynolds_by_pairs(
+    derivatives: np.ndarray, stencil: np.ndarray, has_film: np.ndarray, rows: np.ndarray, out: np.ndarray
+) -> None:
+    """Fill in the derivatives of the Reynolds rows by the pairs, see :func:`choose_pairs`."""
+    for i in range(stencil.shape[0]):
+        for k in range(stencil.shape[1]):
+            j, by_unknown, by_film = stencil[i, k], derivatives[i, 2 * k], derivatives[i, 2 * k + 1]
+            if has_film[j]:
+                out[i, 2 * k], out[i, 2 * k + 1] = by_unknown * rows[0, j], by_film + by_unknown * rows[2, j]
+            else:
+                out[i, 2 * k], out[i, 2 * k + 1] = by_film * rows[1, j], by_unknown
 
 
 @compiled
