@@ -62,7 +62,8 @@ class NodePairs:
         """
         by_pairs = np.empty_like(derivatives)
         reynolds_by_pairs(derivatives, stencil, self._has_film, self._rows, by_pairs)
-        return BandEntries(*self._deflection, by_pairs)
+        p_first, separation_first, separation_second = self._deflection
+        return BandEntries(p_first, separation_first, separation_second, by_pairs)
 
     def unknowns(self, owned: slice) -> np.ndarray:
         """q and w by both unknowns of the pairs of local nodes, shape (2, nodes, 2)."""
