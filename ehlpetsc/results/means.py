@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
 from ehlpetsc.base.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 
