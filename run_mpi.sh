@@ -7,7 +7,9 @@ usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [options]         run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh COMMAND ...                            as ehlpetsc COMMAND, see below
+./run_mpi.sh python SCRIPT.py                       run a script in which import ehlpetsc works
 ./run_mpi.sh test [TESTS]                           run the test suite, serial and under mpirun
+./run_mpi.sh docs [FOLDER]                          open the pages as one site, or build it in a folder
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
 ./run_mpi.sh --commands FOLDER                      link the command ehlpetsc into a folder, one of your PATH
 
@@ -226,6 +228,17 @@ run_tests() {
     done
 }
 
+# The pages with search and typeset equations
+build_site() {
+    local target=${1-${XDG_CACHE_HOME:-$HOME/.cache}/ehlpetsc/docs} scratch
+    scratch=$(mktemp -d)
+    trap "rm -r '$scratch'" EXIT
+    "$python" -m sphinx -q -W --keep-going -d "$scratch" -c "$here/.github/site" "$here" "$target" ||
+        { say "$target: the site was not built"; exit 2; }
+    echo "$target/README.html"
+    [ -n "${1-}" ] || "$python" -m webbrowser "file://$target/README.html"
+}
+
 # A link to this script, which by its name knows that it is a command
 write_command() {
     mkdir -p -- "$1" && [ ! -e "$1/ehlpetsc" ] || [ -L "$1/ehlpetsc" ] || { say "$1/ehlpetsc: is not such a link"; exit 2; }
@@ -235,7 +248,7 @@ write_command() {
 }
 
 ranks=""
-if [ "${0##*/}" = ehlpetsc ] && [ "${1-}" != -n ]; then # by the link of write_command
+if [ "${0##*/}" = ehlpetsc ] && [ "${1-}" != -n ] && [ "${1-}" != python ]; then # by the link of write_command
     prepare "$run_modules" "$drawing"
     exec "$python" -m ehlpetsc "$@"
 elif [ "${1-}" = -n ]; then
@@ -249,7 +262,8 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_command "${2-}" ;;
     test) prepare "$run_modules $testing"; run_tests "${@:2}" ;;
-    docs) prepare "$run_modules $drawing $site"; exec "$python" -m ehlpetsc "$@" ;;
+    docs) prepare "$run_modules $drawing $site"; build_site "${@:2}" ;;
+    python) prepare "$run_modules" "$drawing"; exec "$python" "${@:2}" ;;
     -[!-]*) say "$1: a case or a command comes first, see -h"; exit 2 ;;
     *)
         trap stopped_early INT TERM HUP USR1

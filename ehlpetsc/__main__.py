@@ -13,7 +13,6 @@ import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import NoReturn
 
 import ehlpetsc.base.environment as packages
 from ehlpetsc import __version__
@@ -30,14 +29,12 @@ COMMANDS = {  # module and its function, by default main, packages that it needs
     "plot": ("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
     "summary": ("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),
-    "ensemble": ("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
     "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
     "surface": ("ehlpetsc.pictures.surface", DRAWING, "roughness parameters of a profile or map file"),
     "explain": ("ehlpetsc.run.explain", FORECAST, "film, run time and effects of a case, before it runs"),
     "keys": ("ehlpetsc.case.keys", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": ("ehlpetsc.case.keys:template_command", READING, "a commented case to begin with"),
-    "docs": ("ehlpetsc.base.docs", (), "these pages as one site, opened in a browser"),
 }
 
 
@@ -76,8 +73,6 @@ def _start(words: list[str]) -> int:
         return _print(help_text())
     if first in COMMANDS:
         return _start_command(first, words[1:])
-    if first == "python":
-        return _run_script(words[1:])
     if first in ("-n", "-np"):
         return _start_ranks(words[1:])
     if first and not (first.startswith("-") or first.endswith(".toml") or Path(first).exists()):
@@ -94,13 +89,6 @@ def _start_command(name: str, words: list[str]) -> int:
         return refuse(packages.advice(lacks, [name, *words]))
     module, _, function = place.partition(":")
     return getattr(importlib.import_module(module), function or "main")(words)
-
-
-def _run_script(words: list[str]) -> NoReturn:
-    """Run a script, or Python itself, with ehlpetsc and PETSc on the path."""
-    packages.prepare()
-    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
-    os.execv(sys.executable, [sys.executable, *words])
 
 
 def _start_ranks(words: list[str]) -> int:
@@ -147,7 +135,6 @@ def help_text() -> str:
         "usage: ehlpetsc [-n RANKS] CASE.toml [options]    run a case",
         "       ehlpetsc COMMAND ...            each with -h:",
         *(f"  {name:9s} {text}" for name, (*_, text) in COMMANDS.items()),
-        "  python    SCRIPT.py: run a script in which import ehlpetsc works",
         "Options of a run, also as -ehl_output ...; and --version:",
         run_parser().format_help().partition("\n")[2],
         "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",

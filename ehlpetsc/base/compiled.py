@@ -4,6 +4,8 @@ The solver requires numba. Post-processing works without numba: the functions th
 with bitwise equal results.
 """
 
+from __future__ import annotations
+
 import contextlib
 import hashlib
 import json
@@ -13,9 +15,15 @@ import time as clock
 from collections.abc import Callable, Container, Iterable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from llvmlite.ir import IRBuilder, Value
+    from numba.core.base import BaseContext
+    from numba.core.typing import Context, Signature
+    from numba.types import Type
 
 os.environ.setdefault(
     "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1"
@@ -155,13 +163,13 @@ def address_of(law: Callable, count: int, state: int) -> int:
     pointer = numba.types.CPointer(real)
     if state == 1:
 
-        def call(p: float, T: float, constants: Any, found: Any) -> None:
+        def call(p: float, T: float, constants: Value, found: Value) -> None:
             values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
             values[0], values[1] = function(p, *given)
 
     else:
 
-        def call(p: float, T: float, constants: Any, found: Any) -> None:
+        def call(p: float, T: float, constants: Value, found: Value) -> None:
             values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
             values[0], values[1], values[2] = function(p, T, *given)
 
@@ -177,10 +185,14 @@ def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:
 if COMPILED:
 
     @intrinsic
-    def call_at(typing: Any, address: Any, p: Any, T: Any, constants: Any) -> tuple[Any, Callable]:
+    def call_at(
+        typing: Context, address: Type, p: Type, T: Type, constants: Type
+    ) -> tuple[Signature, Callable]:
         """Three results of the function at an address, of two numbers and a tuple of constants."""
 
-        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def code(
+            context: BaseContext, builder: IRBuilder, signature: Signature, arguments: list[Value]
+        ) -> Value:
             address, p, T, constants = arguments
             real = ir.DoubleType()
             given = cgutils.alloca_once_value(builder, constants)
@@ -194,11 +206,19 @@ if COMPILED:
 
     @intrinsic
     def call_allgather(
-        typing: Any, function: Any, send: Any, number: Any, received: Any, count: Any, communicator: Any
-    ) -> tuple[Any, Callable]:
+        typing: Context,
+        function: Type,
+        send: Type,
+        number: Type,
+        received: Type,
+        count: Type,
+        communicator: Type,
+    ) -> tuple[Signature, Callable]:
         """``function(send, count, number, received, count, number, communicator)`` of C in compiled loops."""
 
-        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def code(
+            context: BaseContext, builder: IRBuilder, signature: Signature, arguments: list[Value]
+        ) -> Value:
             function, send, number, received, count, communicator = arguments
             word, integer = ir.IntType(64), ir.IntType(32)
             kind = ir.FunctionType(integer, [word, integer, word, word, integer, word, word])

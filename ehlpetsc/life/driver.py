@@ -28,6 +28,7 @@ from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
@@ -51,7 +52,7 @@ def run_life(
     unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
-    stop: Callable | None = None,
+    stop: StopRequest | None = None,
     most: int | None = None,
 ) -> LifeHistory:
     """Run the life of a case's surfaces, or continue it.
@@ -127,7 +128,7 @@ class _Life:
             shares = solved / self.case.life.max_solved, self.history.done / self.jumps.passes
             self._line.reach(min(max(shares), 1.0))
 
-    def run(self, stop: Callable | None, max_rounds: int | None) -> LifeHistory:
+    def run(self, stop: StopRequest | None, max_rounds: int | None) -> LifeHistory:
         """Solve rounds until the end of the life."""
         try:
             self._run(stop, max_rounds)
@@ -142,7 +143,7 @@ class _Life:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
         return self.history
 
-    def _run(self, stop: Callable | None, max_rounds: int | None) -> None:
+    def _run(self, stop: StopRequest | None, max_rounds: int | None) -> None:
         rounds = 0
         if not self.history.rows:
             for line in mesh_warnings(self._scene.roughness, self.scales):
@@ -173,7 +174,7 @@ class _Life:
     def _is_over(self) -> bool:
         return self.history.done >= self.jumps.passes or self.history.solved >= self.case.life.max_solved
 
-    def _solve(self, stop: Callable | None) -> Round:
+    def _solve(self, stop: StopRequest | None) -> Round:
         """The next round: of a single position while passes yield, as each changes the next."""
         solve = partial(self._solve_pass, self._plastic())
         every, rows = list(range(self.positions.count)), self.history.rows
@@ -188,7 +189,7 @@ class _Life:
         return solved_round
 
     def _solve_pass(
-        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: Callable | None
+        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: StopRequest | None
     ) -> Pass:
         records = {}
         if self.history.rows:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
+
+if TYPE_CHECKING:
+    from ehlpetsc.run.stop import StopRequest
 
 
 class OfBody(NamedTuple):
@@ -75,7 +78,7 @@ def run_pass(
     simulation: Simulation,
     before: dict[str, tuple],
     file: Path,
-    stop: Any = None,
+    stop: StopRequest | None = None,
     show: Callable[[float], None] = lambda share: None,
 ) -> Pass:
     """Solve a pass to its end and evaluate it.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Contact
 
 
 def main(words: list[str]) -> int:
@@ -59,7 +60,7 @@ def explain(case: Case) -> str:
     return "\n".join(line for section in sections for line in section)
 
 
-def _layer(contact: Any, s: Scales) -> list[str]:
+def _layer(contact: Contact, s: Scales) -> list[str]:
     """Films at which a compliant layer carries load; [] without a layer."""
     if contact.asperity_height is None:
         return []

@@ -13,7 +13,6 @@ import re
 import sys
 import time as clock
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
 
 MAX_NAME_LENGTH = 60  # characters
 WAITING = "waiting"  # state of a member that is not computed yet
+VARIED = ("key", "keys")  # of [series], in the index
 
 
 def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
@@ -69,38 +69,6 @@ def members_of(case: Case, output: Path) -> list[Member]:
     if min(len({m.output for m in found}), len({repr(m.value) for m in found})) < len(found):
         raise UsageError("series.values: two values have the same name; allowed: values that differ")
     return found
-
-
-def index_of(case: Case, path: Path, members: list[Member], files: list[Path]) -> Index:
-    """Index of the members of a series, all waiting."""
-    swept = tomllib.loads(case.text)["series"]
-    index = Index(path, case, "members", **{name: swept[name] for name in ("key", "keys") if name in swept})
-    index.rows = [
-        {"value": member.value, "file": file.name, "state": WAITING}
-        for member, file in zip(members, files, strict=True)
-    ]
-    return index
-
-
-def compute_rows(
-    world: MPI.Comm,
-    index: Index,
-    order: list[int],
-    solve: Callable[[int, MPI.Comm, PollingStop], dict[str, Any]],
-    stop: StopRequest | None,
-    on_row: Callable[[int], None] = lambda number: None,
-) -> None:
-    """Compute the rows `order` of an index, one a rank, write it after each; `on_row` on rank 0."""
-
-    def record(report: tuple[int, dict]) -> None:
-        number, row = report
-        index.rows[number] |= row
-        with contextlib.suppress(OutputError):  # of the first rank alone; it is written again at the end
-            index.write()
-        on_row(number)
-
-    on_root(world, index.write)
-    index.rows[:] = WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows)
 
 
 class Member:
@@ -172,8 +140,11 @@ class Series:
     ) -> None:
         self.world, self.stop, self.overwrite = world, stop, overwrite
         self.members = members_of(case, output)
-        files = [member.output for member in self.members]
-        self.index = index_of(case, output.with_name(f"{output.stem}.series.json"), self.members, files)
+        varied = {name: value for name, value in tomllib.loads(case.text)["series"].items() if name in VARIED}
+        self.index = Index(output.with_name(f"{output.stem}.series.json"), case, "members", **varied)
+        self.index.rows = [
+            {"value": member.value, "file": member.output.name, "state": WAITING} for member in self.members
+        ]
 
     def run(self) -> ExitStatus:
         """Run the missing members; returns the exit status."""
@@ -182,7 +153,9 @@ class Series:
         try:
             missing = on_root(self.world, self._missing)
             self._show_progress(missing)
-            compute_rows(self.world, index, missing, self._run_member, self.stop, self._on_row)
+            on_root(self.world, index.write)
+            queue = WorkQueue(self.world, 1, missing, self._record)
+            index.rows[:] = queue.compute(self._run_member, self.stop, lambda: index.rows)
             if self.world.rank == 0:
                 self._line.clear()
                 self._report(clock.monotonic() - begun)
@@ -199,9 +172,13 @@ class Series:
         if self.world.rank == 0:
             self._line = ProgressLine(f"series, {len(missing)} members", sum(self._work.values()))
 
-    def _on_row(self, number: int) -> None:
-        """Add the work of a member of another rank."""
-        if number not in self._own:
+    def _record(self, report: tuple[int, dict]) -> None:
+        """Write the row of a member that has ended to the index, on the first rank."""
+        number, row = report
+        self.index.rows[number] |= row
+        with contextlib.suppress(OutputError):  # of the first rank alone; it is written again at the end
+            self.index.write()
+        if number not in self._own:  # of another rank
             self._line.add(self._work[number])
 
     def _missing(self) -> list[int]:

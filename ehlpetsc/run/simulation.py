@@ -193,14 +193,14 @@ class Simulation:
             watch = partial(_raise_if_stopped, stop.overdue if begun else stop, self.comm) if stop else None
             yield self.advance(watch=watch)
 
-    def resume(self, solution: State, baseline: tuple[np.ndarray, np.ndarray]) -> None:
+    def resume(self, state: State, baseline: tuple[np.ndarray, np.ndarray]) -> None:
         """Continue from a time level; `baseline` are steady q and w for the predictor."""
         solver = self.stepper.solver
-        effects = effects_of(self.scene, solution.records)
+        effects = effects_of(self.scene, state.records)
         self.stepper = TimeStepping(solver, self.scene, effects, self._film, baseline)
-        records = {e.name: solution.records.get(e.name) or e.start() for e in effects}
-        m = solver.problem.mass_per_area(solution.q, solution.w) if solution.m is None else solution.m
-        self.solution = replace(solution, records=records, m=m)
+        records = {e.name: state.records.get(e.name) or e.start() for e in effects}
+        m = solver.problem.mass_per_area(state.q, state.w) if state.m is None else state.m
+        self.solution = replace(state, records=records, m=m)
 
     def advance(self, dt: float | None = None, watch: Watch | None = None) -> AcceptedState:
         """Solve the steady contact, at later calls one time step.
@@ -219,15 +219,15 @@ class Simulation:
         started = clock.monotonic()
         with self.options:
             try:
-                solution = self._start(watch) if self.solution is None else self._step(dt, watch)
-                check_ends(self.scales.grid, solution.p, solution.solution.loads.contact_mask)
-                self.solution = solution
+                state = self._start(watch) if self.solution is None else self._step(dt, watch)
+                check_ends(self.scales.grid, state.p, state.solution.loads.contact_mask)
+                self.solution = state
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error
         problem, effects = self.stepper.problem, self.stepper.effects
-        scalars, fields, in_contact = diagnostics(self.scene, problem, effects, solution, started)
-        scalars |= {"step": solution.step, "time": solution.time}
-        self.state = AcceptedState(scalars, fields, in_contact, solution)
+        scalars, fields, in_contact = diagnostics(self.scene, problem, effects, state, started)
+        scalars |= {"step": state.step, "time": state.time}
+        self.state = AcceptedState(scalars, fields, in_contact, state)
         return self.state
 
     def _check_time_step(self, dt: float | None) -> None:
@@ -246,7 +246,7 @@ class Simulation:
         self._print_heading("steady start")
         with events.START:
             try:
-                solution = self._started(watch)
+                state = self._started(watch)
             except NotConverged as error:
                 if isinstance(error.__cause__, NoSteadyStart):
                     advice = cures(self.case, self.operation.at(0.0))
@@ -256,7 +256,7 @@ class Simulation:
             for name in self.options.deferred_views:
                 snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
-        return solution
+        return state
 
     def _started(self, watch: Watch) -> State:
         """Steady state, from the solution on a coarser mesh if need be."""

@@ -19,7 +19,6 @@ from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps, Rates
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.life.regimes import outcome, winner
 from ehlpetsc.life.rounds import Round
 from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.body_field import BodyField
@@ -336,15 +335,6 @@ def made_life(pits=0, ahead=0.5, rows=2):
             figures[f"wear_volume_{k}"] = 1e-12 * row
         found.add(figures, (one._replace(failed=2.0 * one.failed), one), {})  # the first one fails later
     return found
-
-
-@pytest.mark.parametrize("pits, ahead, wins", [(1, 0.5, "fatigue"), (0, 0.5, "wear"), (0, 1.02, "neither")])
-def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, wins):
-    assert winner(made_life(pits, ahead)) == wins
-    found = outcome(made_life(pits, ahead))
-    assert found["first_failure"] == (8e5 if pits else None) and found["solved"] == 2
-    worse = 0.1 * pits, ahead
-    assert (found["pitted_share"], found["damage_ahead"]) == worse, "the larger of both surfaces"
 
 
 def test_line_of_a_round_names_its_figures():

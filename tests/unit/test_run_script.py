@@ -63,6 +63,16 @@ def test_options_after_the_case_are_passed_on(script):
     assert f"ARGS {['case.toml', *options]} SIZE 1" in done.stdout
 
 
+def test_script_runs_with_the_package_on_its_path(script, tmp_path):
+    """Also by the linked command, of which every other word goes to the program."""
+    (tmp_path / "elsewhere" / "mine.py").write_text("import sys, ehlpetsc, petsc4py; print(sys.argv)")
+    assert script("python", "mine.py", "-n").stdout == "['mine.py', '-n']\n"
+    script("--commands", "linked")
+    linked = [tmp_path / "elsewhere" / "linked" / "ehlpetsc", "python", "mine.py"]
+    done = subprocess.run(linked, cwd=tmp_path / "elsewhere", capture_output=True, text=True, check=True)
+    assert done.stdout == "['mine.py']\n"
+
+
 @pytest.mark.parametrize("status", [1, 4])
 def test_exit_status_is_passed_on_silently(script, status):
     done = script("case.toml", STATUS=str(status), **AT_ONCE)

@@ -65,7 +65,7 @@ def test_texts_of_cases_need_neither_petsc_nor_mpi(words):
     assert done.returncode == 0 and done.stdout, done.stderr
 
 
-@pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "ensemble", "gears", "explain"])
+@pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "gears", "explain"])
 def test_mistyped_option_is_refused_in_one_line(name, capsys):
     with pytest.raises(SystemExit) as end:
         main([name, "a.h5", "b.h5", "--deph"])

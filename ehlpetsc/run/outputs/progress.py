@@ -7,7 +7,7 @@ import time as clock
 from typing import TYPE_CHECKING, TextIO
 
 from ehlpetsc.base.progress_line import SECONDS_IN_PLACE, duration, in_notebook, on_terminal
-from ehlpetsc.effects.quantities import STEP_SCALARS
+from ehlpetsc.base.quantities import STEP_SCALARS
 
 if TYPE_CHECKING:
     from ehlpetsc.base.errors import ExitStatus

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
