@@ -97,6 +97,11 @@ class NewtonSolver:
                 "allowed: vinewtonrsls, and types without bounds where nothing touches"
             )
         snes.setLineSearchPreCheck(weakly(self._before_step))
+        # an error inside of PETSc could not be followed by a shorter step: a reason of the same meaning
+        snes.setErrorIfNotConverged(False)
+        if snes.ksp.getErrorIfNotConverged():
+            snes.ksp.setErrorIfNotConverged(False)
+            snes.setMaxLinearSolveFailures(1)
         return snes
 
     def _set_jacobian(self, snes: PETSc.SNES) -> None:

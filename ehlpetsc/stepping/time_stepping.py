@@ -74,8 +74,8 @@ class TimeStepping:
         # the baseline is the steady solution of the start, which holds for constant conditions only
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
-    def start(self, records: dict, watch: Watch = None) -> State:
-        """Steady state at time 0 from the records of the effects.
+    def start(self, records: dict, watch: Watch = None, guess: Unknowns | None = None) -> State:
+        """Steady state at time 0 from the records of the effects, or a guess from a coarser mesh.
 
         By time steps if roughness at rest prevents convergence, or if the case starts rough.
         """
@@ -83,7 +83,7 @@ class TimeStepping:
             return self._start_by_time_stepping(records, watch)
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
-            state = self._steady(inputs, records, watch)
+            state = self._steady(inputs, records, watch, guess)
         except NoSteadyStart as error:
             if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
                 raise NotConverged(f"steady start: {error}") from error
@@ -91,9 +91,11 @@ class TimeStepping:
         self.baseline = (state.q, state.w)
         return state
 
-    def _steady(self, inputs: StepInputs, records: dict, watch: Watch) -> State:
+    def _steady(
+        self, inputs: StepInputs, records: dict, watch: Watch, guess: Unknowns | None = None
+    ) -> State:
         solved, newton = self._inlet_first(
-            inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
+            inputs, guess, lambda i, begin: steady(self.solver, self.film, i, watch, begin)
         )
         state = self._state(solved, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
