@@ -25,7 +25,7 @@ class Elimination(Protocol):
     def prepare(self, operator: PlaneJacobian) -> None:
         """Prepare for the state of an operator."""
 
-    def solve(self, full: np.ndarray) -> np.ndarray:
+    def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side."""
 
 

@@ -30,6 +30,7 @@ from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
 from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
+from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
 MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
@@ -50,7 +51,7 @@ class EliminatedFilm:
         """Solve for one right-hand side."""
         operator, full = self.operator, np.zeros(self.operator.size)
         full[operator.active] = x.array_r
-        y.array[:] = operator.elimination.solve(full)[operator.active]
+        y.array[:] = operator.elimination.solve(operator, full)[operator.active]
 
 
 class SparseForm:
@@ -94,16 +95,12 @@ class SparseForm:
         self.pc.setFromOptions()
         self.pc.setUp()
         self.b, self.u = self.matrix.createVecs()
+        self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
         nodes = block * np.arange(problem.local)
         self.reynolds_rows = nodes + TERMS + (kind == CONTACT)
         self.has_reynolds, self.has_pressure = kind != BOUND, kind != VOID
         self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
         self.deflection_rows = nodes[self.touching] + TERMS
-
-    def destroy(self) -> None:
-        """Free PETSc's objects."""
-        for thing in (self.pc, self.matrix, self.b, self.u):
-            thing.destroy()
 
     def solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes."""
@@ -140,8 +137,6 @@ class Elimination:
 
     def begin_solve(self) -> None:
         """Return to the kept factors, or to none."""
-        if self.factors is not self.kept:
-            self.factors.sparse.destroy()
         self.factors, self.applications = self.kept, 0 if self.kept else MAX_KEPT + 1
 
     def keep(self, operator: PlaneJacobian) -> None:
@@ -152,14 +147,14 @@ class Elimination:
 
     def prepare(self, operator: PlaneJacobian) -> None:
         """Assemble and factor anew where the kept matrices no longer serve."""
-        self.operator, owned = operator, self.problem.owned
+        owned = self.problem.owned
         inactive = np.zeros(len(self.problem.window), dtype=bool)
         inactive[owned.start + operator.inactive_nodes] = True
         self.reduction = reduction_of(operator.state, inactive)
         slow = self._any(self.applications > MAX_KEPT)
         if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
             with events.FACTOR:
-                self._build(with_coarse=slow or self.factors is self.kept)
+                self._build(operator.reynolds_derivatives, slow or self.factors is self.kept)
         self.applications = 0
 
     def _any(self, condition: bool) -> bool:
@@ -170,15 +165,12 @@ class Elimination:
         """Values of all nodes from those of the local ones, first axis."""
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def _build(self, with_coarse: bool) -> None:
+    def _build(self, derivatives: np.ndarray, with_coarse: bool) -> None:
         p, self.builds, before = self.problem, self.builds + 1, self.factors
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
-        derivatives = self.operator.reynolds_derivatives
         sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
         coarse = None if before is None or with_coarse else before.coarse
-        if before is not None and before is not self.kept:
-            before.sparse.destroy()
         if coarse is None:
             mask = whole[0] == PRESSURE
             mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
@@ -205,9 +197,9 @@ class Elimination:
         load = p.deflection.cell * pressure.sum()
         return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
 
-    def solve(self, full: np.ndarray) -> np.ndarray:
+    def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
-        p, operator, (sparse, _, of_h00) = self.problem, self.operator, self.factors
+        p, (sparse, _, of_h00) = self.problem, self.factors
         exchange, local, scale = operator.exchange, n_dofs(p.local), p.deflection.row_scale
         self.applications += 1
         b_g, b_load = full[0:local:2] / scale, full[-1] if operator.size > local else 0.0
