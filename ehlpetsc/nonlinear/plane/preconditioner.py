@@ -61,7 +61,7 @@ class Elimination:
         self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
         self.spacings = problem.grid.steps
         self.coarse_space = CoarseSpace(problem.deflection.kernel, self.periodic)
-        self.terms = fitted_terms(problem.deflection, self.spacings)
+        self.terms = fitted_terms(problem.deflection.stiffness, self.spacings)
         self._nothing = np.zeros(len(problem.window))
         self.builds = 0
         self.applications = 0  # since the last set-up: iterations of GMRES
