@@ -132,7 +132,7 @@ class Deflection:
     ):
         self.owned = owned
         (n_y, n_x), (dy, dx) = shape, spacings
-        self.cell, self.periodic = dx * dy, periodic
+        self.cell, self.periodic, self.stiffness = dx * dy, periodic, stiffness
         self.row_scale = np.sqrt(self.cell) / film_scale
         kernel = stiffness * (periodic_kernel if periodic else free_kernel)(n_x, n_y, dx, dy)
         self.kernel = kernel

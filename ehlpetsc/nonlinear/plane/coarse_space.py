@@ -66,7 +66,7 @@ class CoarseSpace:
     def chosen(self, mask: np.ndarray) -> tuple[csr_matrix, np.ndarray]:
         """Functions cut off outside of a mask of nodes, and their deflections K_c.
 
-        Only of the coarse nodes in the mask: what is left of others may be linearly dependent.
+        Those whose own coarse node is in the mask: cut off more, several may be the same but for a factor.
         """
         cut = (diags(mask.astype(float)) @ self.functions).tocsc()
         kept = np.flatnonzero(mask.reshape(self.shape)[:: self.spacing, :: self.spacing])

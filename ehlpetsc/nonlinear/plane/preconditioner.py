@@ -129,7 +129,7 @@ class Elimination:
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
         self.coarse_space = CoarseSpace(problem.deflection.kernel, problem.grid.periodic)
-        self.terms = fitted_terms(problem.deflection, problem.grid.steps)
+        self.terms = fitted_terms(problem.deflection.stiffness, problem.grid.steps)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.factors: Factors | None = None
