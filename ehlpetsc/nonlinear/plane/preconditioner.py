@@ -136,7 +136,8 @@ class Elimination:
         if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.sparse.kind)):
             with events.FACTOR:
                 self._build(with_coarse=slow)
-        self.applications = 0
+        # factors with a zero pivot are not kept
+        self.applications = 0 if np.isfinite(self.of_h00[2]) else MAX_KEPT + 1
 
     def _any(self, condition: bool) -> bool:
         """Whether a condition holds on any rank."""
