@@ -42,6 +42,7 @@ FLOODED = 20.0  # gap at the inlet in central films
 BESIDE, BEHIND = 10.0, 4.0  # the same at the sides and the outlet
 MAX_DISTANCE = 24.0  # half-widths: a film beyond is far thicker than the deformation, and the mesh starves it
 NODES = 128  # along and across, about, of a large domain
+MAX_SPACING = 2.0  # of the nodes, in lengths film^(2/3) of the inlet sweep, film in a^2/R
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class Extreme:
         return math.exp(brentq(excess, -25.0, 25.0))
 
     def case(self, points: int, travel: float) -> Case:
-        """Case on a mesh of `points` nodes a half-width, fewer where the domain is large."""
+        """Case on a mesh of `points` nodes a half-width, more under a thin film, fewer where the domain is large."""
         tables = {
             "title": "extreme",
             "contact": {
@@ -105,8 +106,9 @@ class Extreme:
             for least, gap in ((2.5, FLOODED), (2.0 * across / math.sqrt(self.ratio), BESIDE), (1.5, BEHIND))
         )
         side = beside * math.sqrt(self.ratio) / across
+        finest = max(points, math.ceil(1.0 / (MAX_SPACING * film ** (2.0 / 3.0))))
         points, points_across = (
-            max(min(points, math.ceil(NODES / length)), 4) for length in (inlet + outlet, 2.0 * side)
+            max(min(finest, math.ceil(max(NODES, 4 * finest) / length)), 4) for length in (inlet + outlet, 2.0 * side)
         )
         tables["mesh"] = {
             "inlet": -math.ceil(inlet * points) / points,
