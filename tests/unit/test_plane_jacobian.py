@@ -8,7 +8,6 @@ from support.points import point
 petsc4py.init([])
 
 from petsc4py import PETSc
-from scipy.linalg import LinAlgWarning
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.plane.kernel import free_kernel
@@ -126,18 +125,3 @@ def test_coarse_functions_around_an_isolated_node_are_independent():
     functions, deflections = space.chosen(mask.ravel())
     assert functions.shape[1] == len(deflections) == 10
     assert np.linalg.matrix_rank(functions.toarray()) == functions.shape[1]
-
-
-def test_factors_with_a_zero_pivot_are_not_kept():
-    system, state, inputs = scene("rolling")
-    with RunOptions(kind="point"):
-        NewtonSolver(system, RunOptions(kind="point"))
-    system.set_initial_guess(state, inputs)
-    system.linearise(system.x)
-    elimination, derivatives = system.matrices.elimination, system.jacobian.reynolds_derivatives
-    system.jacobian.reynolds_derivatives = 0.0 * derivatives
-    with pytest.warns(LinAlgWarning, match="zero"):
-        elimination.prepare(system.jacobian)
-    system.jacobian.reynolds_derivatives = derivatives
-    elimination.prepare(system.jacobian)
-    assert np.isfinite(elimination.of_h00[2])

@@ -244,15 +244,17 @@ class HeatStep:
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it.
 
-        Next to no heat, as at a start from rest, is not the measure of the imbalance, but the heat that warms
-        the oil by `MIN_TEMPERATURE_RISE`.
+        Next to no heat, as at rest, is not the measure of the imbalance, but the heat that warms by
+        `MIN_TEMPERATURE_RISE` the oil that is stored and carried, or a film of a^2/R at the maximum speed.
         """
         total = (temperatures.shear + source + film.rubbing).sum()
         of_film = film.old, film.stored, film.extrapolated, film.couette
         taken = heat_taken(*of_film, self.inlet, temperatures.film, temperatures.extrapolated)
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
-        least = MIN_TEMPERATURE_RISE * (np.abs(film.couette).max() + film.stored.sum())
-        return self.scales.dx * total, abs(missing) / max(abs(total), least, 1e-300)
+        s = self.scales
+        moved = max(np.abs(film.couette).max(), self.capacity * s.u_max * s.h / s.dx)
+        least = MIN_TEMPERATURE_RISE * (moved + film.stored.sum())
+        return s.dx * total, abs(missing) / max(abs(total), least)
 
 
 def _rubbed(
