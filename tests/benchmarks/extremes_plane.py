@@ -1,12 +1,12 @@
-"""Point contacts at the edge of the ranges: ``python3 tests/benchmarks/extremes_plane.py [--count 60] [--only K]``.
+"""Point contacts at the edge of the ranges: ``python3 tests/benchmarks/extremes_plane.py [--only K]``.
 
-A Latin hypercube: Hertz pressure 0.1 to 3 GPa, U 1e-13 to 1e-9, L to 25, Eyring stress 1 to 30 MPa, ratio of the
-radii 1/8 to 8, roughness 0 to 1 um, slide/roll ratio 0 to 2. Steel, mixed contact with a compliant layer. Each case
-is a steady start, a ramp of the roughness over a half-width and the travel that follows. Inlet, sides and outlet
-lie where the gap is some films wide, so that they flood the contact.
+A Latin hypercube: Hertz pressure 0.1 to 3 GPa, U 1e-13 to 1e-9, L to 25, Eyring stress 1 to 30 MPa, ratio of
+the radii 1/8 to 8, roughness 0 to 1 um, slide/roll ratio 0 to 2. Steel in mixed contact with a compliant
+layer. Each case is a steady start, a ramp of the roughness over a half-width and the travel that follows.
+Inlet, sides and outlet lie where the gap is some films wide, so that they flood the contact.
 
-One row each: Newton iterations of the start, those a step, halved steps, central film, share of the solids, maximum
-pressure over that of Hertz, or the reason why there is no solution.
+One row each: Newton iterations of the start, those a step, halved steps, central film, share of the solids,
+maximum pressure over that of Hertz, or the reason why there is no solution.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import argparse
 import math
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +31,7 @@ from scipy.stats import qmc
 
 from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.film_formulas import expected_film, points_for_opening
 from ehlpetsc.physics.hertz import hertz_ellipse
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
@@ -42,7 +42,9 @@ FLOODED = 20.0  # gap at the inlet in central films
 BESIDE, BEHIND = 10.0, 4.0  # the same at the sides and the outlet
 MAX_DISTANCE = 24.0  # half-widths: a film beyond is far thicker than the deformation, and the mesh starves it
 NODES = 128  # along and across, about, of a large domain
-MAX_SPACING = 2.0  # of the nodes, in lengths film^(2/3) of the inlet sweep, film in a^2/R
+MAX_OPENING = 2.5  # films by which the gap opens from one node to the next beside the contact
+
+COLUMNS = ("case", "p0, GPa", "U", "M", "L", "Eyring, MPa", "Ry/Rx", "rms, um", "xi", "nodes", "outcome", "s")
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,9 @@ class Extreme:
         """Case of a point of the unit cube."""
         p0, U = 0.1e9 * 30.0 ** point[0], 1e-13 * 1e4 ** point[1]
         L = 1.0 + (min(25.0, MAX_COEFFICIENT * MODULUS * (2.0 * U) ** 0.25) - 1.0) * point[2]
-        return cls(p0, U, L, 1e6 * 30.0 ** point[3], 8.0 ** (2.0 * point[4] - 1.0), 1e-6 * point[5], 2.0 * point[6])
+        return cls(
+            p0, U, L, 1e6 * 30.0 ** point[3], 8.0 ** (2.0 * point[4] - 1.0), 1e-6 * point[5], 2.0 * point[6]
+        )
 
     def load(self) -> float:
         """Load [N] of the Hertz pressure."""
@@ -73,7 +77,10 @@ class Extreme:
         return math.exp(brentq(excess, -25.0, 25.0))
 
     def case(self, points: int, travel: float) -> Case:
-        """Case on a mesh of `points` nodes a half-width, more under a thin film, fewer where the domain is large."""
+        """Case on a mesh of `points` nodes a half-width.
+
+        More under a thin film, fewer where the domain is large.
+        """
         tables = {
             "title": "extreme",
             "contact": {
@@ -106,9 +113,10 @@ class Extreme:
             for least, gap in ((2.5, FLOODED), (2.0 * across / math.sqrt(self.ratio), BESIDE), (1.5, BEHIND))
         )
         side = beside * math.sqrt(self.ratio) / across
-        finest = max(points, math.ceil(1.0 / (MAX_SPACING * film ** (2.0 / 3.0))))
+        finest = max(points, math.ceil(points_for_opening(film, MAX_OPENING)))
         points, points_across = (
-            max(min(finest, math.ceil(max(NODES, 4 * finest) / length)), 4) for length in (inlet + outlet, 2.0 * side)
+            max(min(finest, math.ceil(max(NODES, 4 * finest) / length)), 4)
+            for length in (inlet + outlet, 2.0 * side)
         )
         tables["mesh"] = {
             "inlet": -math.ceil(inlet * points) / points,
@@ -145,10 +153,10 @@ def outcome(case: Case, seconds: float) -> tuple[bool, str]:
             steps, newton, halved = steps + 1, newton + state.newton, halved + state.retries
     except NotConverged as error:
         return False, str(error)
-    p0 = simulation.scales.p0
+    share, ratio = getattr(state, "contact_share", 0.0), state.p_max / simulation.scales.p0
     return True, (
-        f"start {start}, {newton / max(steps, 1):.1f} a step, halved {halved}, h_c {1e9 * state.film_central:.3g} nm, "
-        f"solids {getattr(state, 'contact_share', 0.0):.3f}, p_max {state.p_max / p0:.2f} p0"
+        f"start {start}, {newton / max(steps, 1):.1f} a step, halved {halved}, "
+        f"h_c {1e9 * state.film_central:.3g} nm, solids {share:.3f}, p_max {ratio:.2f} p0"
     )
 
 
@@ -162,24 +170,20 @@ def main() -> None:
     parser.add_argument("--only", type=int, nargs="+", help="numbers of cases")
     parser.add_argument("--smooth", action="store_true", help="without roughness")
     chosen = parser.parse_args()
-    done = 0
-    cases = drawn(chosen.count)
+    done, cases = 0, drawn(chosen.count)
     numbers = chosen.only or range(len(cases))
+    print(f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}")
     for k in numbers:
-        extreme, begun = cases[k], time.process_time()
-        if chosen.smooth:
-            extreme = Extreme(**(vars(extreme) | {"sq": 0.0}))
+        extreme, begun = replace(cases[k], **({"sq": 0.0} if chosen.smooth else {})), time.process_time()
         case = extreme.case(chosen.points, chosen.travel)
         scales = Scales.of(case)
         converged, text = outcome(case, chosen.seconds)
         done += converged
-        print(
-            f"{k}: p0 {1e-9 * extreme.p0:.2f} GPa, U {extreme.U:.1e}, M {scales.moes_m:.3g}, L {extreme.L:.1f}, "
-            f"Eyring {1e-6 * extreme.stress:.1f} MPa, Ry/Rx {extreme.ratio:.2f}, rms {1e6 * extreme.sq:.2f} um, "
-            f"xi {extreme.xi:.1f}, {' x '.join(map(str, scales.grid.shape[::-1]))} nodes: "
-            f"{'' if converged else 'NO SOLUTION: '}{text}; {time.process_time() - begun:.1f} s",
-            flush=True,
-        )
+        values = (1e-9 * extreme.p0, extreme.U, scales.moes_m, extreme.L, 1e-6 * extreme.stress)
+        values += (extreme.ratio, 1e6 * extreme.sq, extreme.xi)
+        cells = [str(k), *(f"{value:.3g}" for value in values), " x ".join(map(str, scales.grid.shape[::-1]))]
+        cells += [text if converged else f"NO SOLUTION: {text}", f"{time.process_time() - begun:.1f}"]
+        print(f"| {' | '.join(cells)} |", flush=True)
     print(f"{done} of {len(numbers)} cases converged")
 
 

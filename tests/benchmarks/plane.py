@@ -1,16 +1,17 @@
 """Contacts in the plane: iterations, time, memory and errors, mesh by mesh.
 
-``python3 tests/benchmarks/plane.py [--meshes 65 129 257 513] [--ranks 1 2] [--options pc_type=lu]``: scenes of a
-circular contact, M = 200 and L = 10, each in a process of its own; every table is Markdown.
+``python3 tests/benchmarks/plane.py [--meshes 65 129 257 513] [--ranks 1 2] [--options pc_type=lu]``: scenes
+of a circular contact, M = 200 and L = 10, each in a process of its own; every table is Markdown.
 
 - smooth: steady start, counted as one step.
 - wave: cos kx cos ky of a half-width, 10 nm, pure rolling.
-- rigid, layer: self-affine roughness in mixed contact, slide/roll ratio 0.3, with a boundary film or a compliant
-  layer. It fills the contact from the first step on (`time.start = "rough"`), and `--travel` follows.
+- rigid, layer: self-affine roughness in mixed contact, slide/roll ratio 0.3, with a boundary film or a
+  compliant layer. Roughness fills the contact from the first step on (`time.start = "rough"`).
 
-Time is processor time, on several ranks wall time, also in units of a zero-padded convolution of the mesh, the median
-of some in the same process; the last column is the processor time of the whole process. Errors are against the finest mesh at the same instant; of the smooth film
-against check values, extrapolated from two independent programs.
+Time is processor time, on several ranks wall time; its unit is a zero-padded convolution of the mesh, the
+median of some in the same process. The last column is the processor time of the whole process. Errors of the
+smooth films are against check values, extrapolated from two independent programs; all others are against the
+finest mesh at the same instant.
 """
 
 from __future__ import annotations
@@ -131,7 +132,12 @@ def inside(scene: str, side: int, travel: float, options: dict[str, str | None],
     newton, seconds = (state.newton, started) if is_steady else (newton, sum(taken) / steps)
     figures = {"steps": steps, "newton": newton / steps, "halved": halved, "seconds": seconds}
     figures |= {"gmres": (counter.linear - begun[0]) / newton, "builds": (counter.builds - begun[1]) / steps}
-    figures |= {"scene": scene, "nodes": side, "ranks": comm.size, "convolution": convolution(simulation, clock)}
+    figures |= {
+        "scene": scene,
+        "nodes": side,
+        "ranks": comm.size,
+        "convolution": convolution(simulation, clock),
+    }
     used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
     figures |= {"memory": comm.allreduce(used, MPI.MAX), "process": time.process_time()}
     figures["relative"] = 1e3 * figures["seconds"] / figures["convolution"]
@@ -214,7 +220,10 @@ def measure(chosen: argparse.Namespace, folder: Path) -> list[dict]:
 def summary(chosen: argparse.Namespace, rows: list[dict], folder: Path) -> None:
     """Print growth, speed-up and errors of the rows."""
     for scene in chosen.scenes:
-        of_scene = {ranks: [row for row in rows if (row["scene"], row["ranks"]) == (scene, ranks)] for ranks in chosen.ranks}
+        of_scene = {
+            ranks: [row for row in rows if (row["scene"], row["ranks"]) == (scene, ranks)]
+            for ranks in chosen.ranks
+        }
         first = of_scene[chosen.ranks[0]]
         if len(first) > 1:
             print(f"\n{scene}: time a step grows with nodes to the power of {exponent(first):.2f}")
@@ -228,7 +237,9 @@ def summary(chosen: argparse.Namespace, rows: list[dict], folder: Path) -> None:
         scene, side = row["scene"], row["nodes"]
         if scene != "smooth" and side == max(chosen.meshes):
             continue
-        found = errors(folder / f"{scene}{side}.npz", folder / f"{scene}{max(chosen.meshes)}.npz", scene == "smooth")
+        found = errors(
+            folder / f"{scene}{side}.npz", folder / f"{scene}{max(chosen.meshes)}.npz", scene == "smooth"
+        )
         cells = [found.get(name, "") for name in ERRORS]
         print(line([scene, side, row["seconds"] * row["steps"], *cells]))
 
