@@ -1,13 +1,12 @@
 """Conduction into a half-space against closed forms: uniform flux, sinusoid, Jaeger's moving band."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from support.exact_solutions import moving_band
 
 from ehlpetsc.effects.heat.half_spaces import Body, StepWeights, diffuse, exponentials
 from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
+from ehlpetsc.physics.grid import Grid
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 FLUX = 1e9  # W/m^2
@@ -35,8 +34,8 @@ def test_uniform_flux(steps):
 
 
 def body(speed, spacing, nodes, dt=None):
-    scales = SimpleNamespace(nx=nodes, dx=spacing)
-    return Body(STEEL, speed, scales, dt or 0.5 * spacing / speed)
+    grid = Grid((np.arange(nodes),), (spacing,), (1.0,), (1.0,), 1.0)
+    return Body(STEEL, speed, grid, dt or 0.5 * spacing / speed)
 
 
 @pytest.mark.parametrize("peclet", [0.1, 1.0, 10.0, 100.0])
