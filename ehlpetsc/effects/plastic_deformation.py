@@ -73,4 +73,5 @@ class PlasticDeformation(BodyDepth):
 
     def observe(self, record: PlasticRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Number of yielding nodes, volume."""
-        return {}, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}
+        volume = self.scene.mesh_on_bodies.volume(record.depth)
+        return {}, {"yielding": np.count_nonzero(record.added), "set_volume": volume}

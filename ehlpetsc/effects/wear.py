@@ -77,4 +77,4 @@ class Wear(BodyDepth):
 
     def observe(self, record: WearRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Worn volume."""
-        return {}, {"wear_volume": record.depth.volume}
+        return {}, {"wear_volume": self.scene.mesh_on_bodies.volume(record.depth)}
