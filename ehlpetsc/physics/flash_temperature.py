@@ -96,7 +96,7 @@ def expected_friction(fluid: Any, load: float, a: float, sliding: float, film: f
 
 
 def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Solid] = (STEEL, STEEL)) -> float:
-    """Blok's flash temperature [K] of a contact with a coefficient of friction; in a point of its middle row."""
+    """Blok's flash temperature [K] of a contact, of its middle row, with a coefficient of friction."""
     effusivities = [solid.effusivity for solid in solids]
     conditions = scales.load_per_length, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
     return blok_flash_temperature(friction, *conditions, effusivities)

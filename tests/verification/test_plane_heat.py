@@ -1,4 +1,4 @@
-"""Heat in points and strips: a strip is the line, a fast point has Blok's temperature, a long ellipse the line's."""
+"""Heat in points and strips: a strip is the line; Blok's temperature of fast points; long ellipses."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Wear and plastic deformation in points and strips: a strip is the line; the worn volume is k times the work."""
+"""Wear and plastic deformation in points and strips: strips are the line, worn volume is k times the work."""
 
 import numpy as np
 import pytest
@@ -46,7 +46,7 @@ def line():
 
 
 def test_an_asperity_of_a_strip_yields_and_wears_as_in_a_line(line):
-    strip = solved(RIDGE, "mesh.width=0.2", snes_atol=1e-13)
+    strip = solved(RIDGE, "mesh.width=0.25", snes_atol=1e-13)
     (of_line, states), (of_strip, others) = line, strip
     assert len(states) == len(others)
     for name in ("plastic_deformation", "wear"):
@@ -75,7 +75,7 @@ POINT = RIDGE | {
 
 
 def test_volumes_of_a_point_are_integrals_over_its_area():
-    """Worn volume k times the work of friction over its coefficient; plastic deformation the sum of its steps."""
+    """Worn volume k times pressure times sliding; plastic deformation the sum of its steps."""
     simulation, states = solved(POINT)
     s, records = simulation.scales, simulation.solution.records
     cell = s.grid.spacings[0] * s.grid.spacings[1]
