@@ -15,9 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import Result, read_result
 
 RTOL = 1e-6  # default of --rtol
@@ -74,14 +75,14 @@ def compare(one: Result, other: Result) -> Iterator[Difference]:
     for name in [name for name in FIELDS if name in one.fields and name in other.fields]:
         if name not in skipped:
             first, second = (r[name][:][f][:, n] for r, f, n in zip(both, frames, nodes, strict=True))
-            yield difference(name, FIELDS[name].units, first, second, x, time)
+            yield difference(name, one.unit(name), first, second, x, time)
     rows = common(one.steps("time"), other.steps("time"), "time steps")
     shared, time = set(one.scalars) & set(other.scalars), one.steps("time")[rows[0]]
     for name in [name for name in STEP_SCALARS if STEP_SCALARS[name].compared and name in shared]:
         if name not in skipped:
             first, second = (r.steps(name)[chosen, None] for r, chosen in zip(both, rows, strict=True))
             nowhere = np.array([np.nan])
-            yield difference(f"steps/{name}", STEP_SCALARS[name].units, first, second, nowhere, time)
+            yield difference(f"steps/{name}", one.unit(f"steps/{name}"), first, second, nowhere, time)
 
 
 def difference(

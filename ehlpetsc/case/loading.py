@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from os import PathLike
@@ -28,6 +29,7 @@ from ehlpetsc.physics.scales import Scales
 LINE = "line"  # the kind of contact whose surfaces are profiles
 DICT_NAME = "case"  # name of a case without a file in messages
 SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
+OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
 Overrides = dict[str, Any] | Iterable[str] | str | None
 __all__ = ["Case", "CaseError", "load", "members", "stored_case"]
 
@@ -62,6 +64,8 @@ def load(
     (0.003, 0.0191)
     """
     extend(laws, density_laws, effects)
+    if not isinstance(case, dict | str | PathLike):  # a number would be a file descriptor
+        raise CaseError([f"{case!r}: not a case; allowed: the path of a case file, or a dict of its tables"])
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
     written, folder = copy.deepcopy(data), Path(path).parent
@@ -86,7 +90,8 @@ def stored_case(text: str, overrides: Overrides = None) -> Case:
     faults = _override(data, overrides) + in_si(data)
     case, found = _checked(Path(), data, is_stored=True)
     if faults + found:
-        raise CaseError(_lines(DICT_NAME, faults + found))
+        own = "" if overrides or os.environ.get("EHLPETSC_OWN") else OWN_ADVICE
+        raise CaseError([f"{line}{own}" for line in _lines(DICT_NAME, faults + found)])
     return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
 
 

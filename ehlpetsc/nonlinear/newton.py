@@ -97,6 +97,11 @@ class NewtonSolver:
                 "allowed: vinewtonrsls, and types without bounds where nothing touches"
             )
         snes.setLineSearchPreCheck(weakly(self._before_step))
+        # an error inside of PETSc could not be followed by a shorter step: a reason of the same meaning
+        snes.setErrorIfNotConverged(False)
+        if snes.ksp.getErrorIfNotConverged():
+            snes.ksp.setErrorIfNotConverged(False)
+            snes.setMaxLinearSolveFailures(1)
         return snes
 
     def _set_jacobian(self, snes: PETSc.SNES) -> None:
@@ -137,6 +142,13 @@ class NewtonSolver:
         if "snes_max_it" in self._options.given:
             return self._max_it
         return needed or START_FACTOR * self._max_it
+
+    def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
+        """Linearise at a state whose factors every later solve begins with, where its matrices keep any."""
+        self.system.set_initial_guess(state, inputs)
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.system.linearise(self.system.x)
+            self.system.matrices.keep(self.system.jacobian)
 
     def residual(self) -> Rows:
         """Residual of the last solution."""

@@ -7,11 +7,13 @@ u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Fluid
     from ehlpetsc.physics.geometry import Geometry
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
@@ -76,7 +78,7 @@ def hamrock_dowson_ratio(U: float, G: float, W: float, ratio: float) -> float:
     return minimum / (2.69 * U**0.67 * G**0.53 * W**-0.067 * (1.0 - 0.61 * math.exp(-0.73 * k)))
 
 
-def smooth_films(scales: Scales, fluid: Any, conditions: Conditions) -> tuple[float, float]:
+def smooth_films(scales: Scales, fluid: Fluid, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
     .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
@@ -93,7 +95,7 @@ def smooth_films(scales: Scales, fluid: Any, conditions: Conditions) -> tuple[fl
 
 
 def contact_films(
-    geometry: Geometry, modulus: float, radius_ratio: float, fluid: Any, conditions: Conditions
+    geometry: Geometry, modulus: float, radius_ratio: float, fluid: Fluid, conditions: Conditions
 ) -> tuple[float, float]:
     """Films of :func:`smooth_films` of a kind of contact; E' [Pa] and the ratio of its radii."""
     from ehlpetsc.physics.laws import density
@@ -157,7 +159,7 @@ def _grubin(film: float, inlet: float) -> float:
     return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
 
 
-def expected_film(case: Any, scales: Scales) -> float:
+def expected_film(case: Case, scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0

@@ -139,7 +139,7 @@ def _lines(settings: str) -> str:
 
 
 def correlations(result: Result, ratios: np.ndarray) -> dict[str, np.ndarray]:
-    """Friction coefficients of smooth surfaces by published correlations, by their names; of points as of lines."""
+    """Friction coefficients of smooth lines, of the middle row of points, by published correlations."""
     case, scales = result.case, Scales.of(result.case)
     u, eta, load = abs(scales.u), case.fluid.viscosity, scales.load_per_length
     return {

@@ -14,7 +14,7 @@ import numpy as np
 
 from ehlpetsc.base.environment import has
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.effects.quantities import STEP_SCALARS
+from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show, travel_of, view
 from ehlpetsc.pictures.style import hertz_at
@@ -78,20 +78,20 @@ def facts(result: Result) -> list[tuple[str, str]]:
     for name in EXTREMES:
         if name in result.scalars and np.isfinite(values := result.steps(name)).any():
             extreme = np.nanmin(values) if name in MINIMUM_SCALARS else np.nanmax(values)
-            rows.append((STEP_SCALARS[name].long_name, _with_unit(name, extreme)))
+            rows.append((STEP_SCALARS[name].long_name, _with_unit(result, name, extreme)))
     for name, mean in means(result).items():
-        rows.append((f"{name.replace('_', ' ')}, mean", _with_unit(name, mean)))
+        rows.append((f"{name.replace('_', ' ')}, mean", _with_unit(result, name, mean)))
     return rows + [("limit", line) for line in str(result.attrs.get("limits", "")).strip().splitlines()]
 
 
-def _shown_unit(name: str) -> tuple[str, float]:
+def _shown_unit(result: Result, name: str) -> tuple[str, float]:
     """Unit in which a scalar is shown, and the factor to it."""
-    unit = STEP_SCALARS[name].units
+    unit = result.unit(f"steps/{name}")
     return SHOWN_UNITS.get(unit, (unit, 1.0))
 
 
-def _with_unit(name: str, value: float) -> str:
-    unit, factor = _shown_unit(name)
+def _with_unit(result: Result, name: str, value: float) -> str:
+    unit, factor = _shown_unit(result, name)
     return f"{factor * value:.4g} {unit}".strip()
 
 
@@ -134,7 +134,7 @@ def scalars_over_time(result: Result) -> dict:
         finite = values[np.isfinite(values)]
         if not finite.size or np.ptp(finite) <= MIN_CHANGE * np.abs(finite).max():
             continue
-        unit, factor = _shown_unit(name)
+        unit, factor = _shown_unit(result, name)
         reduce = np.fmin.reduce if name in MINIMUM_SCALARS else np.fmax.reduce
         label = STEP_SCALARS[name].long_name + (f" [{unit}]" if unit else "")
         figures.append({"name": label, "y": _packed(binned(factor * values, width, reduce))})

@@ -156,6 +156,10 @@ class Result:
         except CaseError as error:
             raise OutputError(f"{self.path}: {error.faults[0]}") from None
 
+    def unit(self, name: str) -> str:
+        """Unit of a dataset."""
+        return self[name].attrs.get("units", "1")
+
     def to_xarray(self) -> Dataset:
         """Fields over (time, x) and scalars over (step), with units, long names and the root attributes.
 

@@ -20,8 +20,8 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Field
 from ehlpetsc.base.errors import OutputError, not_written
-from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, of_every_case
-from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend
+from ehlpetsc.base.quantities import FIELDS, OTHERS, STEP_SCALARS, dims_in, of_every_case, unit_in
+from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_hdf5
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
@@ -93,12 +93,12 @@ def _add(
     """Create a dataset with a checksum, unit, name and dimension scales."""
     options = {"dtype": quantity.dtype, "fletcher32": True} | options
     dataset = file.create_dataset(name, data=values, **options)
-    dataset.attrs.update({"units": quantity.units, "long_name": quantity.long_name})
-    own_name = name.rpartition("/")[2]
-    if quantity.dims == (own_name,):
+    dataset.attrs.update({"units": unit_in(quantity), "long_name": quantity.long_name})
+    own_name, dims = name.rpartition("/")[2], dims_in(quantity)
+    if dims == (own_name,):
         dataset.make_scale(own_name)
         return
-    for axis, dim in enumerate(quantity.dims):
+    for axis, dim in enumerate(dims):
         dataset.dims[axis].attach_scale(dataset.parent[dim])
 
 
@@ -157,7 +157,7 @@ class ResultWriter:
         self._fields = [name for name in FIELDS if name in self._file]
 
     def _create(self, target: Path | BinaryIO, layout: Layout, attributes: dict[str, Any]) -> None:
-        self._file = file = h5py.File(target, "w", libver=LIBVER)
+        self._file = file = open_hdf5(target, "w", libver=LIBVER)
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
         common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
         # texts of fixed length, which may be overwritten while the file is read

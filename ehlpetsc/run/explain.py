@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import tomllib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status, put
+from ehlpetsc.base.progress_line import duration
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
@@ -16,12 +17,13 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
-from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.run.validity import domain_faults, warnings
-from ehlpetsc.surfaces.roughness import Roughness, roughness_of
+from ehlpetsc.surfaces.contact_roughness import roughness_of
+from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Contact
 
 
 def main(words: list[str]) -> int:
@@ -59,7 +61,7 @@ def explain(case: Case) -> str:
     return "\n".join(line for section in sections for line in section)
 
 
-def _layer(contact: Any, s: Scales) -> list[str]:
+def _layer(contact: Contact, s: Scales) -> list[str]:
     """Films at which a compliant layer carries load; [] without a layer."""
     if contact.asperity_height is None:
         return []

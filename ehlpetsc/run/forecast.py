@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from ehlpetsc import __version__
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.effects.effect import combined_rq
-from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
 

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM
 from ehlpetsc.case.checking import attribute
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
@@ -21,11 +22,11 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.flash_temperature import expected_friction
 from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
-from ehlpetsc.stepping.observables import MIN_CONTINUUM_FILM
 from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Contact, Fluid
     from ehlpetsc.physics.scales import Scales
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
@@ -153,7 +154,7 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
     return list(isothermal(case, scales, friction))
 
 
-def _oil_warnings(fluid: Any) -> Iterator[str]:
+def _oil_warnings(fluid: Fluid | None) -> Iterator[str]:
     """Oil constants that none of the case's laws uses."""
     if fluid is None:
         return
@@ -213,7 +214,7 @@ def limits(
     ]
 
 
-def _of_solids(contact: Any, totals: dict[str, float]) -> Iterator[str]:
+def _of_solids(contact: Contact, totals: dict[str, float]) -> Iterator[str]:
     if contact.yield_pressure is None and totals["p_max"] > ASPERITY_YIELD_PRESSURE:
         yield (
             f"pressure: up to {1e-9 * totals['p_max']:.2f} GPa, but asperities of hardened steel flow at "

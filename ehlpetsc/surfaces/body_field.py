@@ -156,7 +156,7 @@ class MeshOnBodies:
         return BodyFields(*(field.add(faces, depth.reshape(shape)) for field, faces, depth in bodies))
 
     def at_points(self, fields: BodyFields, points: Sequence[np.ndarray | None]) -> list[np.ndarray | None]:
-        """Mean depths [m] of each row around equally spaced points s of each body [m]; None without points."""
+        """Mean depths [m] of each row around equally spaced points s of each body [m]; None: no points."""
         depths = []
         for field, s, offset in zip(fields, points, self.offsets, strict=True):
             half = None if s is None else 0.5 * (s[1] - s[0])

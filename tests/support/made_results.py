@@ -9,8 +9,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from ehlpetsc.base.quantities import FIELDS, of_every_case
 from ehlpetsc.case.loading import load
-from ehlpetsc.effects.quantities import FIELDS, of_every_case
 from ehlpetsc.life.history import LifeFile
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 

@@ -11,6 +11,8 @@ from support import CASES
 from support.driving import Scene
 from support.running import PYTHON, SCRIPT, called
 
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.loading import stored_case
 from ehlpetsc.effects.effect import Effect
 
 PAGE = CASES / "own_laws.md"
@@ -148,3 +150,16 @@ def test_an_effect_changes_the_boundary_friction():
     plain = started("dry_hertz.toml", [], *keys)
     found = started("dry_hertz.toml", [Additive(SimpleNamespace())], *keys)
     np.testing.assert_allclose(found.shear_stress_2, 2.0 * plain.shear_stress_2)
+
+
+def test_module_that_is_missing_is_named(tmp_path):
+    for words in (["explain", CASES / "dry_hertz.toml"], [CASES / "dry_hertz.toml"]):
+        done = called([PYTHON, "-m", "ehlpetsc", *words], tmp_path, SCRIPT | {"EHLPETSC_OWN": "nosuch"})
+        assert done.returncode == 2 and done.stderr.count("\n") == 1
+        assert "EHLPETSC_OWN = nosuch: No module named 'nosuch'; allowed: a module in this" in done.stderr
+
+
+def test_result_of_a_law_of_ones_own_names_the_variable():
+    text = (CASES / "table1_smooth.toml").read_text().replace('law = "roelands"', 'law = "own"')
+    with pytest.raises(CaseError, match='law = "own": .*; if it is of your own, set EHLPETSC_OWN to the'):
+        stored_case(text)

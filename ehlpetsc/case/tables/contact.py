@@ -31,6 +31,10 @@ class Contact(Values):
         return self.model if self.asperity_height is None else "compliant"
 
 
+class Fluid(Values):
+    """`[fluid]`: the oil."""
+
+
 def _complete(contact: Contact) -> dict[str, Any]:
     radii = contact.radius if isinstance(contact.radius, tuple) else (contact.radius, None)
     values = dict(zip(("radius", "radius_across"), radii, strict=True))
@@ -158,4 +162,6 @@ KEYS = {
     ),
     "inlet_film": Key("`h (1 - theta)` at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
 }
-FLUID = KeyTable("fluid", "left out: dry contact", KEYS, complete=lambda fluid: completed(vars(fluid)))
+FLUID = KeyTable(
+    "fluid", "left out: dry contact", KEYS, values=Fluid, complete=lambda fluid: completed(vars(fluid))
+)

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.effects.quantities import FIELDS, STORED
+from ehlpetsc.base.quantities import FIELDS, STORED
 
 DOTTED_KEY = re.compile(r"[A-Za-z_]+(\.[A-Za-z_0-9]+)+")
 MAX_MEMBERS = 10_000  # of a series

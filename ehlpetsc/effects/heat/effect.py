@@ -89,7 +89,7 @@ def _temperature(name: str, over_run: str) -> StepScalar:
     return StepScalar("K", name, over_run=over_run, summary=".5g" if over_run == "max" else "", compared=True)
 
 
-class Heat(Effect):
+class Heat(Effect[HeatRecord]):
     """Film and surface temperatures."""
 
     name = "heat"
@@ -109,7 +109,9 @@ class Heat(Effect):
         "temperature_1_mean": _temperature("temperature of surface 1, mean over the Hertz contact", "last"),
         "temperature_2_max": _temperature("highest temperature of surface 2", "max"),
         "temperature_2_mean": _temperature("temperature of surface 2, mean over the Hertz contact", "last"),
-        "heat": StepScalar("W/m", "heat dissipated", over_run="last", summary=".4g", compared=True),
+        "heat": StepScalar(
+            "W", "heat dissipated", integrated=True, over_run="last", summary=".4g", compared=True
+        ),
         "heat_error": StepScalar(
             "1",
             "imbalance of the heat dissipated with that taken by bodies and oil, over the first",

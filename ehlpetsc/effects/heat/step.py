@@ -246,8 +246,9 @@ class HeatStep:
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], in a point contact [W], and the imbalance with what takes it, over it.
 
-        It is taken by bodies and oil. Next to no heat, as at a start from rest, is not the measure of the imbalance, but the heat that warms
-        the oil by `MIN_TEMPERATURE_RISE`.
+        It is taken by bodies and oil. Next to no heat, as at rest, is not the measure of the imbalance, but the
+        heat that warms by `MIN_TEMPERATURE_RISE` the oil that is stored and carried, or in each row a film of
+        a^2/R at the maximum speed.
         """
         total = (temperatures.shear + source + film.rubbing).sum()
         of_film = film.old, film.stored, film.extrapolated, film.couette
@@ -255,9 +256,11 @@ class HeatStep:
             self.rows, *of_film, self.inlet, temperatures.film, temperatures.extrapolated
         )
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
-        carried = np.abs(film.couette.reshape(self.rows, -1)).max(axis=1).sum() + film.stored.sum()
-        least = MIN_TEMPERATURE_RISE * carried
-        return self.scales.grid.cell_size * total, abs(missing) / max(abs(total), least, 1e-300)
+        s = self.scales
+        flow = np.abs(film.couette.reshape(self.rows, -1)).max(axis=1)
+        moved = np.maximum(flow, self.capacity * s.u_max * s.h / s.dx).sum()
+        least = MIN_TEMPERATURE_RISE * (moved + film.stored.sum())
+        return s.grid.cell_size * total, abs(missing) / max(abs(total), least)
 
 
 def _rubbed(

@@ -13,10 +13,10 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
-from ehlpetsc.results.output_guard import Lock, check_output_path, inputs_of
+from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run.outputs.checkpoint import load, save
@@ -43,7 +43,7 @@ class Recorder:
 
     def __init__(self, simulation: Simulation, output: Path | None) -> None:
         self.simulation, self.comm = simulation, simulation.comm
-        self.output: Any = None if output is None else Path(output)
+        self.output: Any = None if output is None else file_path(output)
         self.restart = self.output and self.output.with_name(f"{self.output.stem}.restart.h5")
         self.totals = Totals()
         self.limits: list[str] = []
