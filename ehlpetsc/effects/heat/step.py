@@ -246,8 +246,8 @@ class HeatStep:
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], in a point contact [W], and the imbalance with what takes it, over it.
 
-        It is taken by bodies and oil. Next to no heat, as at rest, is not the measure of the imbalance, but the
-        heat that warms by `MIN_TEMPERATURE_RISE` the oil that is stored and carried, or in each row a film of
+        Bodies and oil take it. Next to no heat, as at rest, is not the measure of the imbalance, but the heat
+        that warms by `MIN_TEMPERATURE_RISE` the oil that is stored and carried, or in each row a film of
         a^2/R at the maximum speed.
         """
         total = (temperatures.shear + source + film.rubbing).sum()
