@@ -148,7 +148,9 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
     friction = case.contact.boundary_friction if case.motion else None
     if case.motion and case.fluid:
         film = expected_film(case, scales) * scales.h
-        friction = expected_friction(case.fluid, scales.load, scales.a, scales.u1 - scales.u2, film)
+        friction = expected_friction(
+            case.fluid, scales.load_per_length, scales.a, scales.u1 - scales.u2, film
+        )
     return list(isothermal(case, scales, friction))
 
 
