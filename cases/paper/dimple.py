@@ -1,7 +1,7 @@
 """A dimple that passes a ball on glass: centre lines of the film beside optical measurements.
 
 ``ehlpetsc python cases/paper/dimple.py [-o PICTURE]`` computes three dimples in pure rolling and with
-sliding, prints the mean films behind and ahead of each on a/16, on a/32 and measured, and draws the film
+sliding, prints the mean films behind and ahead of each on a/32, on a/64 and measured, and draws the film
 along the direction of motion when the dimple is near the middle.
 """
 
@@ -34,7 +34,8 @@ CASE = {  # Mourier, Mazuyer, Lubrecht and Donnet, Tribol. Int. 39 (2006) 1745
     "motion": {"entrainment_speed": 0.09},
     "mesh": {"inlet": -2.5, "outlet": 1.5, "width": 3.5},
 }
-MESHES = (16, 32)  # nodes per half-width
+MESHES = (32, 64)  # nodes per half-width along the direction of motion, in which the film is advected
+ACROSS = 32  # nodes per half-width across
 RATIOS = (0.0, -1.0)  # slide/roll, 2 (u1 - u2)/(u1 + u2); the article's -0.5 is half of it
 NEAR = 1.0  # widths from the middle of a dimple: nearer points belong to it
 REACH = 100e-6  # m from the middle of the contact, of the means
@@ -82,11 +83,11 @@ def line(dimple: Dimple, ratio: float, at: float, points: int) -> tuple[np.ndarr
     The film is advected by the mean speed; with its Courant number of 1 the leading errors of space and time
     cancel.
 
-    `points`: nodes per half-width.
+    `points`: nodes per half-width along x.
     """
     faster = 1.0 + 0.5 * abs(ratio)
     synthetic = {"kind": "dent", "amplitude": dimple.depth, "wavelength": dimple.width}
-    keys = {"motion.slide_roll_ratio": ratio, "mesh.points_per_half_width": points}
+    keys = {"motion.slide_roll_ratio": ratio, "mesh.points_per_half_width": [points, ACROSS]}
     scales = Simulation(load(CASE, keys)).scales
     distance = 2.0 * dimple.width + 1e-6 * at - scales.a * scales.grid.x[0]  # travelled by the dimple
     time = {"travel": distance / scales.a * faster / (1.0 + 0.5 * ratio), "courant": faster}

@@ -31,37 +31,35 @@ CASE = {
     "motion": {"entrainment_speed": 1.0},
     "mesh": {"inlet": -4.5, "outlet": 1.5, "width": 6.0},
 }
+INDEX = 1.48  # refractive index of the oils at ambient pressure, about
 MESHES = (16, 32)  # nodes per half-width
 RANGE = (0.06, 1.1)  # m/s, of the mean ratio: slower films scatter, faster ones jump by a fringe
 
 
 class Oil(NamedTuple):
-    """Oil of the films at a temperature [degrees C].
+    """Oil by name, title and temperature [degrees C] with its films [m/s, nm].
 
-    `index`, `assumed_index`: refractive index at ambient pressure, and the one of the logged films.
-    `changes`: keys of `[fluid]` that differ from the oil of this name.
+    `logged_index`: refractive index with which the films were logged.
     """
 
     name: str
+    title: str
     temperature: float
-    index: float
-    assumed_index: float
-    changes: dict[str, float | None]
+    logged_index: float
     speeds: tuple[float, ...]
     logged: tuple[float, ...]
 
     @property
     def films(self) -> np.ndarray:
-        """Measured films [nm], by the refractive index at ambient pressure."""
-        return np.array(self.logged) * self.assumed_index / self.index
+        """Measured films [nm], by the refractive index of the oil at ambient pressure."""
+        return np.array(self.logged) * self.logged_index / INDEX
 
 
 FVA3 = Oil(
     "fva3",
+    "FVA 3",
     25.0,
     1.48,
-    1.48,
-    {},
     (
         *(0.0210, 0.02435, 0.02885, 0.03553, 0.04226, 0.05008, 0.06013, 0.07135, 0.08593, 0.1028, 0.1239),
         *(0.1486, 0.1777, 0.2122, 0.2549, 0.3064, 0.3664, 0.4408, 0.5289, 0.6353, 0.7624, 0.9149, 1.098),
@@ -73,17 +71,22 @@ FVA3 = Oil(
         *(945.7, 992.8, 1199.0),
     ),
 )
-"""Steel ball of 19.05 mm driven by the disc, 20 N: logs of github.com/ngocminhdao88/dao_masterarbeit, 2018."""
-
-
-OILS = (FVA3,)
+"""Steel ball of 19.05 mm driven by the disc, 20 N: github.com/ngocminhdao88/dao_masterarbeit (logs, 2018)."""
+SHC320 = Oil(
+    "shc320",
+    "SHC 320",
+    38.8,
+    1.40,
+    (0.1205, 0.1725, 0.2480, 0.4282, 0.6142, 0.8853, 1.064),
+    (191.9, 235.2, 292.0, 390.1, 461.9, 530.7, 576.5),
+)
+OILS = (FVA3, SHC320)
 
 
 def case_of(oil: Oil, speed: float, points: int) -> Case:
     """Case at a speed [m/s], on a mesh of so many nodes per half-width."""
     keys = {"motion.entrainment_speed": speed, "mesh.points_per_half_width": points}
-    changes = {f"fluid.{key}": value for key, value in oil.changes.items()}
-    return load(CASE, {"fluid.oil": oil.name, "fluid.temperature": 273.15 + oil.temperature} | keys | changes)
+    return load(CASE, {"fluid.oil": oil.name, "fluid.temperature": 273.15 + oil.temperature} | keys)
 
 
 def film(oil: Oil, speed: float, points: int) -> float:
@@ -106,45 +109,54 @@ def hamrock_dowson(oil: Oil) -> np.ndarray:
 def index_under_pressure(oil: Oil) -> float:
     r"""Refractive index at p0, :math:`(n^2-1)/(n^2+2)` proportional to the density (Lorentz and Lorenz)."""
     case = case_of(oil, 1.0, MESHES[0])
-    refraction = (oil.index**2 - 1.0) / (oil.index**2 + 2.0) * density(Scales.of(case).p0, case.fluid)[0]
+    refraction = (INDEX**2 - 1.0) / (INDEX**2 + 2.0) * density(Scales.of(case).p0, case.fluid)[0]
     return float(np.sqrt((1.0 + 2.0 * refraction) / (1.0 - refraction)))
 
 
-def draw(oil: Oil, computed: np.ndarray) -> Figure:
-    """Measured and computed films over the speed [nm, m/s]."""
-    figure, panel = style.new_figure(1, 1, (5.2, 4.2))
-    panel.plot(oil.speeds, computed, color=style.SINGLE, lw=1.4, label="computed")
-    panel.plot(oil.speeds, hamrock_dowson(oil), color=style.SECOND, lw=1.0, ls="--", label="Hamrock, Dowson")
-    panel.plot(oil.speeds, oil.films, "o", ms=4, color=style.DARK, label="measured")
-    panel.set(xscale="log", yscale="log", xlabel="mean speed [m/s]", ylabel="central film [nm]")
-    panel.grid(lw=0.3, which="both")
-    panel.legend(**style.SMALL)
-    style.set_title(figure, f"Ball on glass, 20 N, {oil.name}, {oil.temperature:g} °C")
+def draw(computed: dict[str, np.ndarray]) -> Figure:
+    """Films over the speed; `computed` by the name of the oil [nm]."""
+    figure, panels = style.new_figure(1, len(OILS), (9.0, 4.2), sharey=True)
+    for panel, oil in zip(panels, OILS, strict=True):
+        panel.plot(oil.speeds, computed[oil.name], color=style.SINGLE, lw=1.4, label="computed")
+        panel.plot(
+            oil.speeds, hamrock_dowson(oil), color=style.SECOND, lw=1.0, ls="--", label="Hamrock, Dowson"
+        )
+        panel.plot(oil.speeds, oil.films, "o", ms=4, color=style.DARK, label="measured")
+        panel.set(xscale="log", yscale="log", xlabel="mean speed [m/s]")
+        panel.set_title(f"{oil.title}, {oil.temperature:g} °C", fontsize="medium")
+        panel.xaxis.set_major_formatter("{x:g}")
+        panel.yaxis.set_major_formatter("{x:g}")
+        panel.grid(lw=0.3, which="both")
+        panel.legend(**style.SMALL)
+    panels[0].set_ylabel("central film [nm]")
+    style.set_title(figure, "Steel ball of 19 mm on glass, 20 N, rolling")
     return figure
 
 
+def table(oil: Oil) -> np.ndarray:
+    """Print the films of an oil; returns those on the fine mesh [nm]."""
+    computed, published = np.empty((len(oil.speeds), len(MESHES))), hamrock_dowson(oil)
+    for k, (speed, measured) in enumerate(zip(oil.speeds, oil.films, strict=True)):
+        computed[k] = [film(oil, speed, points) for points in MESHES]
+        figures = ", ".join(f"{value:.1f}" for value in (measured, *computed[k], published[k]))
+        print(f"{oil.title}, {speed:g}: {figures}; ratio {measured / computed[k, -1]:.3f}", flush=True)
+    inside = (np.array(oil.speeds) > RANGE[0]) & (np.array(oil.speeds) < RANGE[1])
+    mean, index = float((oil.films / computed[:, -1])[inside].mean()), index_under_pressure(oil)
+    print(f"mean ratio of {inside.sum()} films from {RANGE[0]:g} to {RANGE[1]:g} m/s: {mean:.3f}; ", end="")
+    print(f"with the refractive index {index:.3f} at p0: {mean * INDEX / index:.3f}")
+    return computed[:, -1]
+
+
 def main(words: list[str] | None = None) -> None:
-    """Print the table and write the picture."""
+    """Print the tables and write the picture."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("-o", "--output", default="optical_films.png", help="picture [optical_films.png]")
     chosen = parser.parse_args(words)
-    oil, published = FVA3, hamrock_dowson(FVA3)
-    print(
-        "speed [m/s]: film measured, " + ", ".join(f"on a/{n}" for n in MESHES) + ", Hamrock and Dowson [nm]"
-    )
-    computed = np.empty((len(oil.speeds), len(MESHES)))
-    for k, (speed, measured) in enumerate(zip(oil.speeds, oil.films, strict=True)):
-        computed[k] = [film(oil, speed, points) for points in MESHES]
-        figures = ", ".join(f"{value:.1f}" for value in (measured, *computed[k], published[k]))
-        print(f"{speed:g}: {figures}; ratio {measured / computed[k, -1]:.3f}", flush=True)
-    inside = (np.array(oil.speeds) > RANGE[0]) & (np.array(oil.speeds) < RANGE[1])
-    mean = float((oil.films / computed[:, -1])[inside].mean())
-    print(f"mean ratio of {inside.sum()} films from {RANGE[0]:g} to {RANGE[1]:g} m/s: {mean:.3f}")
-    index = index_under_pressure(oil)
-    print(f"with the refractive index {index:.3f} at p0: {mean * oil.index / index:.3f}")
-    style.save(draw(oil, computed[:, -1]), chosen.output)
+    meshes = ", ".join(f"on a/{points}" for points in MESHES)
+    print(f"oil, speed [m/s]: film measured, {meshes}, Hamrock and Dowson [nm]")
+    style.save(draw({oil.name: table(oil) for oil in OILS}), chosen.output)
     print(chosen.output)
 
 
