@@ -40,6 +40,7 @@ class Oil(NamedTuple):
     """Oil by name, title and temperature [degrees C] with its films [m/s, nm].
 
     `logged_index`: refractive index with which the films were logged.
+    `changes`: keys of `[fluid]` beside the oil.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Oil(NamedTuple):
     logged_index: float
     speeds: tuple[float, ...]
     logged: tuple[float, ...]
+    changes: dict[str, float | None] = {}
 
     @property
     def films(self) -> np.ndarray:
@@ -80,13 +82,18 @@ SHC320 = Oil(
     (0.1205, 0.1725, 0.2480, 0.4282, 0.6142, 0.8853, 1.064),
     (191.9, 235.2, 292.0, 390.1, 461.9, 530.7, 576.5),
 )
-OILS = (FVA3, SHC320)
+THINNING = SHC320._replace(
+    title="SHC 320, Carreau",
+    changes={"fluid.carreau_stress": 0.5e6, "fluid.carreau_exponent": 0.3, "fluid.eyring_stress": None},
+)  # fitted to these films
+OILS = (FVA3, SHC320, THINNING)
 
 
 def case_of(oil: Oil, speed: float, points: int) -> Case:
     """Case at a speed [m/s], on a mesh of so many nodes per half-width."""
     keys = {"motion.entrainment_speed": speed, "mesh.points_per_half_width": points}
-    return load(CASE, {"fluid.oil": oil.name, "fluid.temperature": 273.15 + oil.temperature} | keys)
+    of_oil = {"fluid.oil": oil.name, "fluid.temperature": 273.15 + oil.temperature}
+    return load(CASE, of_oil | keys | oil.changes)
 
 
 def film(oil: Oil, speed: float, points: int) -> float:
@@ -114,13 +121,12 @@ def index_under_pressure(oil: Oil) -> float:
 
 
 def draw(computed: dict[str, np.ndarray]) -> Figure:
-    """Films over the speed; `computed` by the name of the oil [nm]."""
+    """Films over the speed; `computed` by the title of the oil [nm]."""
     figure, panels = style.new_figure(1, len(OILS), (9.0, 4.2), sharey=True)
     for panel, oil in zip(panels, OILS, strict=True):
-        panel.plot(oil.speeds, computed[oil.name], color=style.SINGLE, lw=1.4, label="computed")
-        panel.plot(
-            oil.speeds, hamrock_dowson(oil), color=style.SECOND, lw=1.0, ls="--", label="Hamrock, Dowson"
-        )
+        panel.plot(oil.speeds, computed[oil.title], color=style.SINGLE, lw=1.4, label="computed")
+        published = dict(color=style.SECOND, lw=1.0, ls="--", label="Hamrock, Dowson")
+        panel.plot(oil.speeds, hamrock_dowson(oil), **published)
         panel.plot(oil.speeds, oil.films, "o", ms=4, color=style.DARK, label="measured")
         panel.set(xscale="log", yscale="log", xlabel="mean speed [m/s]")
         panel.set_title(f"{oil.title}, {oil.temperature:g} °C", fontsize="medium")
@@ -156,7 +162,7 @@ def main(words: list[str] | None = None) -> None:
     chosen = parser.parse_args(words)
     meshes = ", ".join(f"on a/{points}" for points in MESHES)
     print(f"oil, speed [m/s]: film measured, {meshes}, Hamrock and Dowson [nm]")
-    style.save(draw({oil.name: table(oil) for oil in OILS}), chosen.output)
+    style.save(draw({oil.title: table(oil) for oil in OILS}), chosen.output)
     print(chosen.output)
 
 
