@@ -12,6 +12,7 @@ from ehlpetsc.api import solve
 from ehlpetsc.case.loading import load
 
 sys.path.append(str(CASES / "paper"))
+import dimple
 import discs
 import optical_films
 
@@ -75,3 +76,13 @@ def test_mean_of_optical_films():
     assert len(ratios) == 17
     assert 0.95 < ratios.mean() < 1.05
     assert np.abs(ratios - 1.0).max() < 0.08
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio, share", [(0.0, (0.96, 1.02)), (-1.0, (1.08, 1.25))])
+def test_film_ahead_of_a_shallow_dimple(ratio, share, monkeypatch):
+    """Equal to the film behind it in pure rolling; with sliding higher, by the oil that left the dimple."""
+    monkeypatch.setattr(dimple, "ACROSS", 16)
+    shallow = dimple.DIMPLES[2]
+    behind, ahead = dimple.sides(shallow, 0.0, *dimple.line(shallow, ratio, 0.0, 16))
+    assert share[0] < ahead / behind < share[1]
