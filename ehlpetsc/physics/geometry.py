@@ -14,7 +14,7 @@ import numpy as np
 
 from ehlpetsc.physics.film_formulas import (
     MIN_OVER_CENTRAL_FILM,
-    hamrock_dowson_ratio,
+    hamrock_dowson_films,
     moes_central_film,
     nijenbanning_central_film,
 )
@@ -141,8 +141,8 @@ def point_films(
     M, L = point_groups(viscosity, speed, alpha, load, radius, modulus)
     two_u = 2.0 * viscosity * speed / (modulus * radius)
     central = radius * math.sqrt(two_u) * nijenbanning_central_film(M, L, ratio)
-    lowest = hamrock_dowson_ratio(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
-    return central, lowest, hertz_ellipse(load, radius, radius * ratio, modulus).p0
+    of_hamrock = hamrock_dowson_films(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
+    return central, of_hamrock[1] / of_hamrock[0], hertz_ellipse(load, radius, radius * ratio, modulus).p0
 
 
 def line_film(scales: Scales) -> float:
