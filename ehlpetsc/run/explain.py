@@ -165,8 +165,10 @@ def _size(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> li
     )
     across = ""
     if case.kind != "line":
-        edge = s.grid.axes[0][-1] / (s.b / s.a if case.kind == "point" else 1.0)
-        across = f" along, {-edge:g} to {edge:g} {'b' if case.kind == 'point' else 'a'} across"
+        edge, unit = 0.5 * s.grid.breadth, "a"  # of a strip, half of its period
+        if case.kind == "point":
+            edge, unit = s.grid.axes[0][-1] * s.a / s.b, "b"
+        across = f" along, {-edge:g} to {edge:g} {unit} across"
     return [
         f"Mesh: {nodes} nodes from {s.x[0]:g} to {s.x[-1]:g} a{across}, spacing {spacing} um; "
         f"{2 * s.grid.n + 1} unknowns",
