@@ -194,8 +194,18 @@ def _value(key: Key, value: Any) -> Any:
     )
     if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
         raise _Wrong
-    items = [_item(key, item) for item in value]
+    items = _numbers(key, value) if key.kind is float else [_item(key, item) for item in value]
     return items if key.many == "list" else tuple(items)
+
+
+def _numbers(key: Key, values: list | tuple) -> list[float]:
+    """Items of a list of numbers, of which a measured map has a million."""
+    if not set(map(type, values)) <= {int, float}:
+        return [_item(key, value) for value in values]
+    extremes = (min(values), max(values)) if len(values) > 2 and all(map(math.isfinite, values)) else values
+    for value in extremes:
+        _item(key, value)
+    return [float(value) for value in values]
 
 
 def _item(key: Key, value: Any) -> Any:

@@ -14,7 +14,7 @@ import time as clock
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import h5py
 import numpy as np
@@ -27,6 +27,9 @@ from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
 
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
@@ -246,10 +249,13 @@ class ResultWriter:
         with self._one_sentence():
             self._file[f"surface/{side}/{name}"][:] = depth
 
-    def means(self) -> dict[str, float]:
-        """Means over the run, see :func:`ehlpetsc.results.means.means`."""
+    def means(self, case: Case | None = None) -> dict[str, float]:
+        """Means over the run, see :func:`ehlpetsc.results.means.means`; the case by default from its text."""
         self.flush()
-        return means(Result(self._file, self.path or Path()))
+        result = Result(self._file, self.path or Path())
+        if case is not None:  # the text of one with a map takes seconds to read
+            result.case = case
+        return means(result)
 
     def close(self, status: str, limits: Sequence[str] = ()) -> None:
         """Write the remaining rows, the status of the run and its limits, and close."""

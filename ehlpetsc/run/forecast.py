@@ -22,15 +22,17 @@ if TYPE_CHECKING:
 START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
 # Newton iterations a step: before roughness enters, with roughness in full film, in mixed lubrication
 SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
-LINE = "line"
-COMPRESSED = 0.7  # of the size of the fields of a plane
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
-WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")  # keys
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
-# of a plane: wall clock time of a step of a mesh of 129 x 129 nodes [s], its growth with the nodes, that of the
-# steady start in steps; memory at the start and for each node [bytes]
-PLANE_NODES, FILM_SECONDS, MIXED_SECONDS, GROWTH, PLANE_START = 129**2, 0.15, 0.5, 1.15, 10
-PLANE_MEMORY, NODE_MEMORY = 220e6, 7e3
+LINE = "line"
+# of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
+PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.15, 0.3, 0.5
+# its growth with the nodes, and what does not grow [s]; steady start in steps
+GROWTH, STEP_SECONDS, PLANE_START = 1.15, 0.03, 10
+PLANE_MEMORY, NODE_MEMORY = 240e6, 9e3  # at the start and for each node [bytes]
+COMPRESSED = 0.6  # of the size of the fields
+# keys of the waves of a surface
+WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
 
 
 def lambda_ratio(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
@@ -50,10 +52,11 @@ def work_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -
 
 def _plane_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
     """Wall clock time of the steps of a plane [s]."""
-    fraction = _rough_fraction(case, s, rough) if _is_mixed(case, s, rough) else 0.0
-    each = (1.0 - fraction) * FILM_SECONDS + fraction * MIXED_SECONDS
+    fraction = _rough_fraction(case, s, rough)
+    each = (1.0 - fraction) * SMOOTH_SECONDS
+    each += fraction * (MIXED_SECONDS if _is_mixed(case, s, rough) else FILM_SECONDS)
     count = (steps(s) * case.time.passes if case.time else 0) + PLANE_START
-    return count * each * (s.grid.n / PLANE_NODES) ** GROWTH
+    return count * (STEP_SECONDS + each * (s.grid.n / PLANE_NODES) ** GROWTH)
 
 
 def memory(s: Scales) -> float:

@@ -61,9 +61,9 @@ def mesh_warnings(
     for side, profile in (rough.sides if rough else {}).items():
         fraction = profile.unresolved_variance(*spacings)
         if fraction > limit:
+            kind = "map" if len(spacings) > 1 else "profile"
             notes.append(
-                f"surface.{side}: the mesh is too coarse for the {'map' if len(spacings) > 1 else 'profile'}: "
-                f"{100 * fraction:.1f} % of its "
+                f"surface.{side}: the mesh is too coarse for the {kind}: {100 * fraction:.1f} % of its "
                 f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest} um); "
                 f"points_per_half_width = {_needed_points(profile, scales, limit)} brings that under "
                 f"{100 * limit:.0f} %"

@@ -167,7 +167,7 @@ class Recorder:
                 for side, depth in zip(("1", "2"), pair, strict=True):
                     if depth is not None:
                         self._writer.put_depth(side, name, depth)
-        self.totals = Totals(self.totals.values, self._writer.means())
+        self.totals = Totals(self.totals.values, self._writer.means(simulation.case))
         figures = self.totals.values | self.totals.means
         friction = max(self._boundary_friction, simulation.case.contact.boundary_friction)
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures, friction)
