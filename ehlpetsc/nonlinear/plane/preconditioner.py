@@ -166,11 +166,12 @@ class Elimination:
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
     def _build(self, derivatives: np.ndarray, with_coarse: bool) -> None:
-        p, self.builds, before = self.problem, self.builds + 1, self.factors
+        p, self.builds = self.problem, self.builds + 1
+        coarse = None if with_coarse or self.factors is None else self.factors.coarse
+        self.factors = None  # frees the last sparse form before the next one
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
         sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
-        coarse = None if before is None or with_coarse else before.coarse
         if coarse is None:
             mask = whole[0] == PRESSURE
             mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
