@@ -219,7 +219,7 @@ class StepScalar(Field):
     compared : bool
         Whether it is compared between runs, unlike scalars of the solution process.
     of : function, optional
-        Its value at an accepted time level; None: an effect returns it from `observe`.
+        Its value at an accepted time level; None: an effect returns it from `observe`, or the simulation.
     """
 
     dims: tuple = ("time",)

@@ -14,6 +14,7 @@ from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
 
@@ -73,7 +74,7 @@ def file_size(case: Case, s: Scales) -> float:
     return fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
 
 
-def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
+def surface_lines(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
     """Both surfaces: size, roughness and travel, a line each."""
     profiles = {side: rough and rough.side(side) for side in ("1", "2")}
     lines = {side: _profile(case, s, one) if one else ["smooth"] for side, one in profiles.items()}
@@ -94,18 +95,16 @@ def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     ]
 
 
-def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
-    """Size, roughness and travel of one profile, a line each."""
+def _profile(case: Case, s: Scales, profile: Profile | MovingTopography) -> list[str]:
+    """Size, roughness and travel of one surface, a line each."""
     from ehlpetsc.surfaces.profile_checks import entry_times
 
     samples, times = profile.given, entry_times(profile, s)
-    lines = [
-        f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}",
-        *samples.notes,
-    ]
+    (mean, ra), (rms, rq), (skewness, rsk) = profile.statistics.items()  # Ra, Rq, Rsk or Sa, Sq, Ssk
+    heights = f"{mean.capitalize()} {ra * 1e6:.4f} um, {rms.capitalize()} {rq * 1e6:.4f} um"
+    lines = [f"{heights}, {skewness.capitalize()} {rsk:.3f}"]
+    lines += [samples.extent_text] * bool(samples.extent_text) + list(samples.notes)
     if samples.measured:
-        points = f"{samples.X.size} points {1e6 * samples.spacing:.4g} um apart"
-        lines.insert(1, f"{1e3 * samples.length:.4g} mm long, {points}")
         if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
         if case.time is not None and times:
@@ -116,7 +115,7 @@ def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
     return lines
 
 
-def _part_in_contact(case: Case, s: Scales, profile: Profile, reaches: float) -> list[str]:
+def _part_in_contact(case: Case, s: Scales, profile: Profile | MovingTopography, reaches: float) -> list[str]:
     """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
     length, slower = profile.given.length, s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower

@@ -64,6 +64,11 @@ class MovingTopography(MovingSurface):
         """Share of the height variance in wavelengths that a mesh of this spacing along x [m] does not resolve."""
         return self.given.unresolved_variance(dx, self._dy)
 
+    @property
+    def statistics(self) -> dict[str, float]:
+        """Sa and Sq [m], Ssk of the whole map."""
+        return self.given.statistics
+
     @cached_property
     def s(self) -> np.ndarray:
         """Body points [m] that enter during the run, at least two, with the spacing of the columns."""
