@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,8 +16,10 @@ from ehlpetsc.results.reader import Result
 OIL_INDEX = 1.5  # refractive index of the oil; of a dry gap 1
 WAVELENGTHS = {"red": 630e-9, "green": 530e-9, "blue": 460e-9}  # m
 BANDWIDTH = 20e-9  # of the colours, full width at half of the maximum [m]
-PIXELS = 600  # along the longer side: films are interpolated, a mesh would alias the fringes outside the contact
-MARGIN = 2.3  # inches above and below the maps
+PIXELS = (
+    600  # along the longer side: films are interpolated, a mesh would alias the fringes outside the contact
+)
+MARGIN = 2.0  # inches above and below the maps
 CHART = 400  # films of the chart of intensities
 
 
@@ -53,23 +56,23 @@ def coloured(film: np.ndarray, index: float) -> np.ndarray:
     return np.stack([intensity(film, length, index, BANDWIDTH) for length in WAVELENGTHS.values()], axis=-1)
 
 
-def draw_fringes(results: list[Result], options: argparse.Namespace) -> Figure:
+def draw_fringes(result: Result, options: argparse.Namespace) -> Figure:
     """Interference of one colour and of three at an instant, each with its chart over the film."""
-    [result], indices = results, frames.choose_frames(results, options.step, options.time)
-    frame = PlaneFrame.of(result, indices[0], frames.view(results, options.window))
-    index = OIL_INDEX if result.case.fluid else 1.0
+    [index] = frames.choose_frames([result], options.step, options.time)
+    frame = PlaneFrame.of(result, index, frames.view([result], options.window))
+    n = OIL_INDEX if result.case.fluid else 1.0
     x, y, film = refined(frame)
     height = map_height(frame)
     figure, axes = style.new_figure(2, 2, (WIDTH, height + MARGIN), height_ratios=(height, 0.12))
-    green, *_ = (f"{1e9 * WAVELENGTHS[name]:.0f}" for name in ("green",))
-    names = f"{green} nm", f"{', '.join(f'{1e9 * v:.0f}' for v in WAVELENGTHS.values())} nm"
-    for column, colours, name in zip(axes.T, (monochromatic, coloured), names, strict=True):
-        draw_map(column[0], x, y, colours(film, index), cmap="gray", vmin=0.0, vmax=1.0)
+    colourings = ("wavelength", monochromatic, ["green"]), ("wavelengths", coloured, list(WAVELENGTHS))
+    for column, (word, colours, names) in zip(axes.T, colourings, strict=True):
+        draw_map(column[0], x, y, colours(film, n), cmap="gray", vmin=0.0, vmax=1.0)
         outline(column[0], frame.half_widths, style.CONTACT)
-        column[0].set_title(f"wavelength {name}" if colours is monochromatic else f"wavelengths {name}", fontsize="small")
-        draw_chart(column[1], colours, index, frame.thickest)
-    note = f"refractive index {index:g}; red: edge of the dry contact"
-    style.set_title(figure, *frames.panel_title(results, indices), note)
+        lengths = ", ".join(f"{1e9 * WAVELENGTHS[name]:.0f}" for name in names)
+        column[0].set_title(f"{word} {lengths} nm", fontsize="small")
+        draw_chart(column[1], colours, n, frame.thickest)
+    note = f"refractive index {n:g}; red: edge of the dry contact"
+    style.set_title(figure, *frames.panel_title([result], [index]), note)
     return figure
 
 
@@ -85,7 +88,9 @@ def refined(frame: PlaneFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return x, y, np.maximum(film, 0.0)
 
 
-def draw_chart(axes: Axes, colours, index: float, thickest: float) -> None:
+def draw_chart(
+    axes: Axes, colours: Callable[[np.ndarray, float], np.ndarray], index: float, thickest: float
+) -> None:
     """Draw the colours over the film up to `thickest` [µm]."""
     film = np.linspace(0.0, thickest, CHART)
     shape = dict(extent=(0.0, thickest, 0.0, 1.0), aspect="auto", cmap="gray", vmin=0.0, vmax=1.0)

@@ -77,9 +77,7 @@ def aspect(result: Result) -> float:
     return float(result.attrs["b"] / result.attrs["a"])
 
 
-def in_view(
-    result: Result, window: Sequence[float]
-) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
+def in_view(result: Result, window: Sequence[float]) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
     """Nodes within limits of x/a, and across as far from the middle in terms of the dry contact, with x/a and y/a."""
     a, b = result.attrs["a"], result.attrs["b"]
     across = 0.5 * (window[1] - window[0]) * (b if np.isfinite(b) else a) / a
@@ -88,10 +86,10 @@ def in_view(
     return part, x[part[1]], y[part[0]]
 
 
-def draw_frame(results: list[Result], options: argparse.Namespace) -> Figure:
+def draw_frame(result: Result, options: argparse.Namespace) -> Figure:
     """Maps of pressure and film at an instant, and their sections through the middle."""
-    [result], indices = results, frames.choose_frames(results, options.step, options.time)
-    frame = PlaneFrame.of(result, indices[0], frames.view(results, options.window))
+    [index] = frames.choose_frames([result], options.step, options.time)
+    frame = PlaneFrame.of(result, index, frames.view([result], options.window))
     height = map_height(frame)
     figure, axes = style.new_figure(
         3, 2, (WIDTH, height + 2 * SECTION_HEIGHT + MARGIN), height_ratios=(height, *2 * [SECTION_HEIGHT])
@@ -107,7 +105,7 @@ def draw_frame(results: list[Result], options: argparse.Namespace) -> Figure:
         panel.set_xlabel("x/a along y = 0")
     for panel in axes[2]:
         panel.set_xlabel("y/a along x = 0")
-    style.set_title(figure, *frames.panel_title(results, indices))
+    style.set_title(figure, *frames.panel_title([result], [index]))
     return figure
 
 
@@ -122,12 +120,20 @@ def draw_maps(figure: Figure, panels: Sequence[Axes], frame: PlaneFrame) -> tupl
     Returns the images of pressure, film and contact.
     """
     highest = float(np.percentile(frame.pressure, COLOUR_PERCENTILE)) or 1.0
-    pressure = draw_map(panels[0], frame.x, frame.y, frame.pressure, cmap=PRESSURE_COLOURS, vmin=0, vmax=highest)
+    pressure = draw_map(
+        panels[0], frame.x, frame.y, frame.pressure, cmap=PRESSURE_COLOURS, vmin=0, vmax=highest
+    )
     film = draw_map(panels[1], frame.x, frame.y, frame.film, cmap=FILM_COLOURS, vmin=0, vmax=frame.thickest)
     for image, panel, label in zip((pressure, film), panels, (frames.PRESSURE, frames.FILM), strict=True):
         figure.colorbar(image, ax=panel, label=label, location="top", extend="max", aspect=30)
     touching = draw_map(
-        panels[1], frame.x, frame.y, touched(frame.contact), cmap=ListedColormap([style.CONTACT]), vmin=0, vmax=1
+        panels[1],
+        frame.x,
+        frame.y,
+        touched(frame.contact),
+        cmap=ListedColormap([style.CONTACT]),
+        vmin=0,
+        vmax=1,
     )
     outline(panels[0], frame.half_widths, "w")
     outline(panels[1], frame.half_widths, "k")
@@ -183,7 +189,9 @@ def draw_section(
     upper.plot(abscissa, hertz, ":", color="0.6", lw=0.9, zorder=1, label="Hertz")
     lower.plot(abscissa, film, color=style.SINGLE, lw=1.0)
     if touching.any():
-        lower.plot(abscissa[touching], film[touching], "v", color=style.CONTACT, ms=3, clip_on=False, zorder=3)
+        lower.plot(
+            abscissa[touching], film[touching], "v", color=style.CONTACT, ms=3, clip_on=False, zorder=3
+        )
     ends = abscissa[[0, -1]]
     upper.set(xlim=ends, ylim=(0.0, 1.05 * max(frame.pressure.max(), frame.p0)), ylabel=frames.PRESSURE)
     lower.set(xlim=ends, ylim=(0.0, frame.thickest), ylabel=frames.FILM)

@@ -19,9 +19,9 @@ CONTACTS_WIDTH, CONTACTS_MARGIN = 4.6, 1.6  # inches
 MOVIE_MARGIN = 2.0  # inches above and below the maps
 
 
-def draw_contacts(results: list[Result], options: argparse.Namespace) -> Figure:
+def draw_contacts(result: Result, options: argparse.Namespace) -> Figure:
     """Share of the time steps of a run in which each node is in contact."""
-    [result], window = results, frames.view(results, options.window)
+    window = frames.view([result], options.window)
     if not result.contact_count.any():
         raise OutputError(f"{result.path}: no node is in contact in any step")
     part, x, y = plane.in_view(result, window)
@@ -31,18 +31,25 @@ def draw_contacts(results: list[Result], options: argparse.Namespace) -> Figure:
     figure, axes = style.new_figure(1, 1, size)
     top = float(np.percentile(share[share > 0.0], over_time.COLOUR_PERCENTILE))
     image = plane.draw_map(axes, x, y, share, cmap="Reds", vmin=0.0, vmax=top)
-    form = PercentFormatter(1.0, symbol="")
-    figure.colorbar(image, ax=axes, label="steps in contact [%]", format=form, extend="max")
+    form = PercentFormatter(1.0, decimals=0, symbol="")
+    figure.colorbar(
+        image, ax=axes, label="steps in contact [%]", format=form, extend="max", location="top", aspect=30
+    )
     plane.outline(axes, (1.0, plane.aspect(result)), "k")
     steps = len(result.steps("time"))
-    lines = style.conditions(results).split(", a = ")
-    style.set_title(figure, f"{result.attrs['title']}: {steps} steps", lines[0], "a = ".join(["", *lines[1:]]))
+    lines = style.conditions([result]).split(", a = ")
+    style.set_title(
+        figure, f"{result.attrs['title']}: {steps} steps", lines[0], "a = ".join(["", *lines[1:]])
+    )
     return figure
 
 
 def save_movie(result: Result, options: argparse.Namespace, path: Path) -> None:
     """Write maps of pressure and film of at most `over_time.MAX_FRAMES` frames with common colours."""
-    chosen, window = style.spread(len(result.time), over_time.MAX_FRAMES), frames.view([result], options.window)
+    chosen, window = (
+        style.spread(len(result.time), over_time.MAX_FRAMES),
+        frames.view([result], options.window),
+    )
     first = plane.PlaneFrame.of(result, 0, window)
     figure, axes = style.new_figure(1, 2, (plane.WIDTH, plane.map_height(first) + MOVIE_MARGIN))
     frame = plane.PlaneFrame.of(result, frames.frame_to_show(result), window)  # which determines the colours
