@@ -18,6 +18,7 @@ from ehlpetsc.base import environment
 from ehlpetsc.base.errors import CaseError, ExitStatus
 from ehlpetsc.results import reader
 from ehlpetsc.results.reader import open_result
+from ehlpetsc.results.section import Section
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,6 +57,14 @@ class Result(reader.Result):
         frames.fill_frame(axes, [self], indices, frames.view([self], window))
         style.set_title(figure, *frames.panel_title([self], indices))
         return figure
+
+    def section(self, y: float = 0.0) -> Result:
+        """As of :class:`ehlpetsc.results.reader.Result`, with :meth:`plot`."""
+        return DrawnSection(self, y)
+
+
+class DrawnSection(Section, Result):
+    """Section of a result, see :class:`ehlpetsc.results.section.Section`."""
 
 
 def read_result(path: str | PathLike) -> Result:
