@@ -29,8 +29,8 @@ def intensity(film: np.ndarray, wavelength: float, index: float, bandwidth: floa
     .. math:: I=\tfrac12\Bigl(1+V\cos\frac{2\pi\delta}\lambda\Bigr),\qquad \delta=2nh,\qquad
        V=\exp\Bigl(-\Bigl(\frac{\pi\,\Delta\lambda}{2\sqrt{\ln2}\,\lambda^2}\,\delta\Bigr)^2\Bigr),
 
-    V the visibility for a line of Gaussian shape (Born and Wolf 1999, section 7.5.8); bright without a film, as with
-    a layer of chromium on the glass, shift of phase on reflection neglected.
+    V the visibility for a line of Gaussian shape (Born and Wolf 1999, section 7.5.8); bright without a film,
+    as with a layer of chromium on the glass, shift of phase on reflection neglected.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def draw_fringes(result: Result, options: argparse.Namespace) -> Figure:
         outline(column[0], frame.half_widths, style.CONTACT)
         lengths = ", ".join(f"{1e9 * WAVELENGTHS[name]:.0f}" for name in names)
         column[0].set_title(f"{word} {lengths} nm", fontsize="small")
-        draw_chart(column[1], colours, n, frame.thickest)
+        draw_chart(column[1], colours, n, frame)
     note = f"refractive index {n:g}; red: edge of the dry contact"
     style.set_title(figure, *frames.panel_title([result], [index]), note)
     return figure
@@ -82,17 +82,17 @@ def refined(frame: PlaneFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
     longer = max(np.ptp(frame.x), np.ptp(frame.y))
     counts = (max(round(PIXELS * np.ptp(axis) / longer), len(axis)) for axis in (frame.x, frame.y))
-    x, y = (np.linspace(*axis[[0, -1]], n) for axis, n in zip((frame.x, frame.y), counts, strict=True))
+    x, y = (np.linspace(axis[0], axis[-1], n) for axis, n in zip((frame.x, frame.y), counts, strict=True))
     order = min(3, len(frame.y) - 1)
     film = RectBivariateSpline(frame.y, frame.x, 1e-6 * frame.film, kx=order)(y, x)
     return x, y, np.maximum(film, 0.0)
 
 
 def draw_chart(
-    axes: Axes, colours: Callable[[np.ndarray, float], np.ndarray], index: float, thickest: float
+    axes: Axes, colours: Callable[[np.ndarray, float], np.ndarray], index: float, frame: PlaneFrame
 ) -> None:
-    """Draw the colours over the film up to `thickest` [µm]."""
-    film = np.linspace(0.0, thickest, CHART)
-    shape = dict(extent=(0.0, thickest, 0.0, 1.0), aspect="auto", cmap="gray", vmin=0.0, vmax=1.0)
+    """Draw the colours over the films of a frame."""
+    film = np.linspace(0.0, frame.thickest, CHART)
+    shape = dict(extent=(0.0, frame.thickest, 0.0, 1.0), aspect="auto", cmap="gray", vmin=0.0, vmax=1.0)
     axes.imshow(colours(1e-6 * film, index)[np.newaxis], **shape)
-    axes.set(yticks=[], xlabel=frames.FILM)
+    axes.set(yticks=[], xlabel=frame.film_label)

@@ -33,6 +33,7 @@ class PlaneFrame:
     `pressure`, `solids`: total and of the solids [GPa], `film` [µm], `contact`: shape (ny, nx).
     `half_widths`: of the dry contact along and across in a, across infinite in a strip.
     `p0`: maximum pressure of the dry contact [GPa].
+    `film_label`: of axes, film or gap.
     """
 
     x: np.ndarray
@@ -43,6 +44,7 @@ class PlaneFrame:
     contact: np.ndarray
     half_widths: tuple[float, float]
     p0: float
+    film_label: str
 
     @classmethod
     def of(cls, result: Result, index: int, window: Sequence[float]) -> PlaneFrame:
@@ -57,12 +59,12 @@ class PlaneFrame:
             solids = 1e-9 * _part(result, "contact_pressure", index, part)
         if "in_contact" in result:
             contact = _part(result, "in_contact", index, part) > 0.0
-        width = a / result.attrs["a"]
-        return cls(x, y, pressure, solids, film, contact, (width, width * aspect(result)), 1e-9 * p0)
+        width, label = a / result.attrs["a"], frames.FILM if result.case.fluid else frames.GAP
+        return cls(x, y, pressure, solids, film, contact, (width, width * aspect(result)), 1e-9 * p0, label)
 
     @property
     def thickest(self) -> float:
-        """Upper end of the scale of film [µm]: above the maximum in the dry contact, or in view if none is in it."""
+        """Upper end of the scale of film [µm], above the maximum in the dry contact, if any is in view."""
         across = self.y[:, np.newaxis] / self.half_widths[1]
         inside = (self.x / self.half_widths[0]) ** 2 + across**2 <= 1.0
         return FILM_ROOM * float(self.film[inside if inside.any() else ...].max()) or 1.0
@@ -78,7 +80,10 @@ def aspect(result: Result) -> float:
 
 
 def in_view(result: Result, window: Sequence[float]) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
-    """Nodes within limits of x/a, and across as far from the middle in terms of the dry contact, with x/a and y/a."""
+    """Nodes within limits of x/a, with x/a and y/a.
+
+    Across, half the width of these limits on both sides of the middle, times b/a of an ellipse.
+    """
     a, b = result.attrs["a"], result.attrs["b"]
     across = 0.5 * (window[1] - window[0]) * (b if np.isfinite(b) else a) / a
     x, y = result.x / a, result.y / a
@@ -124,7 +129,9 @@ def draw_maps(figure: Figure, panels: Sequence[Axes], frame: PlaneFrame) -> tupl
         panels[0], frame.x, frame.y, frame.pressure, cmap=PRESSURE_COLOURS, vmin=0, vmax=highest
     )
     film = draw_map(panels[1], frame.x, frame.y, frame.film, cmap=FILM_COLOURS, vmin=0, vmax=frame.thickest)
-    for image, panel, label in zip((pressure, film), panels, (frames.PRESSURE, frames.FILM), strict=True):
+    for image, panel, label in zip(
+        (pressure, film), panels, (frames.PRESSURE, frame.film_label), strict=True
+    ):
         figure.colorbar(image, ax=panel, label=label, location="top", extend="max", aspect=30)
     touching = draw_map(
         panels[1],
@@ -194,4 +201,4 @@ def draw_section(
         )
     ends = abscissa[[0, -1]]
     upper.set(xlim=ends, ylim=(0.0, 1.05 * max(frame.pressure.max(), frame.p0)), ylabel=frames.PRESSURE)
-    lower.set(xlim=ends, ylim=(0.0, frame.thickest), ylabel=frames.FILM)
+    lower.set(xlim=ends, ylim=(0.0, frame.thickest), ylabel=frame.film_label)

@@ -15,8 +15,8 @@ from ehlpetsc.pictures import frames, over_time, plane, style
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
-CONTACTS_WIDTH, CONTACTS_MARGIN = 4.6, 1.6  # inches
-MOVIE_MARGIN = 2.0  # inches above and below the maps
+CONTACTS_WIDTH, CONTACTS_MARGIN = 4.6, 1.9  # inches
+MOVIE_MARGIN = 1.6  # inches above and below the maps
 
 
 def draw_contacts(result: Result, options: argparse.Namespace) -> Figure:
@@ -27,7 +27,7 @@ def draw_contacts(result: Result, options: argparse.Namespace) -> Figure:
     part, x, y = plane.in_view(result, window)
     share = result.contact_count[part] / len(result.steps("time"))
     ratio = float(np.clip(np.ptp(y) / np.ptp(x), *plane.MAP_RATIOS))
-    size = CONTACTS_WIDTH, (CONTACTS_WIDTH - 1.4) * ratio + CONTACTS_MARGIN
+    size = CONTACTS_WIDTH, (CONTACTS_WIDTH - 0.8) * ratio + CONTACTS_MARGIN
     figure, axes = style.new_figure(1, 1, size)
     top = float(np.percentile(share[share > 0.0], over_time.COLOUR_PERCENTILE))
     image = plane.draw_map(axes, x, y, share, cmap="Reds", vmin=0.0, vmax=top)
@@ -37,10 +37,8 @@ def draw_contacts(result: Result, options: argparse.Namespace) -> Figure:
     )
     plane.outline(axes, (1.0, plane.aspect(result)), "k")
     steps = len(result.steps("time"))
-    lines = style.conditions([result]).split(", a = ")
-    style.set_title(
-        figure, f"{result.attrs['title']}: {steps} steps", lines[0], "a = ".join(["", *lines[1:]])
-    )
+    motion, _, rest = style.conditions([result]).rpartition(", a = ")  # too long for one line
+    style.set_title(figure, f"{result.attrs['title']}: {steps} steps", motion, f"a = {rest}")
     return figure
 
 

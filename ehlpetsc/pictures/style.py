@@ -132,7 +132,7 @@ def speeds_at(result: Result, frame: int) -> tuple[float, float]:
 
 
 def hertz_at(result: Result, frame: int) -> tuple[float, float]:
-    """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame, in a section those there."""
+    """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame, of a section at its y."""
     a, p0 = _whole_hertz_at(result, frame)
     if (place := getattr(result, "place", None)) is None or result.case.kind != "point":
         return a, p0
@@ -185,5 +185,5 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
     texts.append(f"p0 = {1e-9 * p0:.3g} GPa")
     texts.append(f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry")
     if (place := getattr(result, "place", None)) is not None:
-        texts.append(f"section at y = {place / a:.3g} a")
+        texts.append(f"section at y = {place / a + 0.0:.3g} a")
     return texts

@@ -88,7 +88,7 @@ function instantAndMap(frames, maps, along) {
     yaxis: { title: { text: "pressure [GPa]" }, range: [0, 1.05 * highest], domain: [0.54, 1] },
     yaxis2: { title: { text: "film [µm]" }, range: [0, 1.15 * thickest || 1], domain: [0, 0.46] },
   });
-  const map = many && pressure && pressureMap(x, time, pressure, contact);
+  const map = many && pressure && pressureMap(x, time, pressure, contact, along);
   const slider = document.getElementById("slider"), play = document.getElementById("play");
 
   function show(k) {
@@ -112,7 +112,7 @@ function instantAndMap(frames, maps, along) {
   show(frames.first);
 }
 
-function pressureMap(x, time, pressure, contact) {
+function pressureMap(x, time, pressure, contact, along) {
   const n = x.length, sorted = Float32Array.from(pressure).sort();
   const rows = of => Array.from(time, (_, k) => Array.from({ length: n }, (_, i) => of(k * n + i)));
   const about = { type: "heatmap", x, y: time, hovertemplate: "x/a %{x:.3f}, %{y:.2f} µs" };
@@ -125,7 +125,7 @@ function pressureMap(x, time, pressure, contact) {
     hovertemplate: about.hovertemplate + ": in contact<extra></extra>", hoverongaps: false,
   };
   return chart("over-time", 440, [field, contacts], {
-    xaxis: { title: { text: "x/a" } }, yaxis: { title: { text: "time [µs]" } },
+    xaxis: { title: { text: along } }, yaxis: { title: { text: "time [µs]" } },
     shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: time[0], y1: time[0], line: { color: "#fff", width: 1 } }],
   });
 }
