@@ -47,7 +47,7 @@ class Scene:
     @cached_property
     def roughness(self) -> Roughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
-        from ehlpetsc.surfaces.roughness import roughness_of
+        from ehlpetsc.surfaces.contact_roughness import roughness_of
 
         return roughness_of(self.case, self.scales, self.positions)
 

@@ -146,6 +146,13 @@ class NewtonSolver:
             return self._max_it
         return needed or START_FACTOR * self._max_it
 
+    def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
+        """Linearise at a state whose factors every later solve begins with, where its matrices keep any."""
+        self.system.set_initial_guess(state, inputs)
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.system.linearise(self.system.x)
+            self.system.matrices.keep(self.system.jacobian)
+
     def residual(self) -> Rows:
         """Residual of the last solution."""
         return self.system.residual()

@@ -18,7 +18,8 @@ from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
 from ehlpetsc.run.validity import domain_faults, warnings
-from ehlpetsc.surfaces.roughness import Roughness, roughness_of
+from ehlpetsc.surfaces.contact_roughness import roughness_of
+from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case

@@ -64,9 +64,12 @@ class CoarseSpace:
         return np.einsum("kmx,x->km", by_y[:, x.ravel()].reshape(len(by_y), *x.shape), hat)
 
     def chosen(self, mask: np.ndarray) -> tuple[csr_matrix, np.ndarray]:
-        """Functions cut off outside of a mask of nodes, without those that vanish, and their deflections K_c."""
+        """Functions cut off outside of a mask of nodes, and their deflections K_c.
+
+        Only of the coarse nodes in the mask: what is left of others may be linearly dependent.
+        """
         cut = (diags(mask.astype(float)) @ self.functions).tocsc()
-        kept = np.flatnonzero(np.asarray(abs(cut).sum(axis=0)).ravel() > 0.0)
+        kept = np.flatnonzero(mask.reshape(self.shape)[:: self.spacing, :: self.spacing])
         k_y, k_x = np.divmod(kept, self.counts[1])
         distance = np.abs(k_y[:, None] - k_y), np.abs(k_x[:, None] - k_x)
         return cut[:, kept].tocsr(), self.deflections[distance]

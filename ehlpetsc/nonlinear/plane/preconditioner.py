@@ -10,11 +10,14 @@ For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equati
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
    exact.
 
-Both matrices are kept for later iterations and time steps until GMRES takes more than `MAX_KEPT` iterations; the
-sparse one is assembled anew where a node changes its kind.
+Every time step begins with the matrices of the smooth contact (:meth:`Elimination.keep`), on which it depends
+neither before nor after a restart. They are assembled anew, for the rest of the step, when GMRES takes more than
+`MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -27,9 +30,10 @@ from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
 from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
+from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
-MAX_KEPT = 14  # iterations of GMRES up to which the matrices are kept
+MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
 
 
 class EliminatedFilm:
@@ -47,7 +51,7 @@ class EliminatedFilm:
         """Solve for one right-hand side."""
         operator, full = self.operator, np.zeros(self.operator.size)
         full[operator.active] = x.array_r
-        y.array[:] = operator.elimination.solve(full)[operator.active]
+        y.array[:] = operator.elimination.solve(operator, full)[operator.active]
 
 
 class SparseForm:
@@ -87,19 +91,16 @@ class SparseForm:
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         self.pc.setOptionsPrefix(PREFIX)
+        self.pc.setType("ilu" if comm.size == 1 else "asm")
         self.pc.setFromOptions()
         self.pc.setUp()
         self.b, self.u = self.matrix.createVecs()
+        self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
         nodes = block * np.arange(problem.local)
         self.reynolds_rows = nodes + TERMS + (kind == CONTACT)
         self.has_reynolds, self.has_pressure = kind != BOUND, kind != VOID
         self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
         self.deflection_rows = nodes[self.touching] + TERMS
-
-    def destroy(self) -> None:
-        """Free PETSc's objects."""
-        for thing in (self.pc, self.matrix, self.b, self.u):
-            thing.destroy()
 
     def solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes."""
@@ -109,8 +110,16 @@ class SparseForm:
         return np.where(self.has_pressure, u[TERMS :: self.block], 0.0), u[self.reynolds_rows]
 
 
+class Factors(NamedTuple):
+    """Sparse form and coarse correction of one state, and the solution for a unit of h00."""
+
+    sparse: SparseForm
+    coarse: CoarseCorrection
+    of_h00: tuple[np.ndarray, np.ndarray, float] | None = None
+
+
 class Elimination:
-    """Elimination of film and load with its matrices, kept from one solve to the next.
+    """Elimination of film and load with its matrices, kept from one linear system to the next.
 
     PETSc creates a new preconditioner whenever the set of active unknowns changes.
 
@@ -123,19 +132,29 @@ class Elimination:
         self.terms = fitted_terms(problem.deflection, problem.grid.steps)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
-        self.sparse: SparseForm | None = None
-        self.coarse: CoarseCorrection | None = None
+        self.factors: Factors | None = None
+        self.kept: Factors | None = None
+
+    def begin_solve(self) -> None:
+        """Return to the kept factors, or to none."""
+        self.factors, self.applications = self.kept, 0 if self.kept else MAX_KEPT + 1
+
+    def keep(self, operator: PlaneJacobian) -> None:
+        """Factor for the state of an operator, as the first factors of all later solves."""
+        self.applications = MAX_KEPT + 1
+        self.prepare(operator)
+        self.kept = self.factors
 
     def prepare(self, operator: PlaneJacobian) -> None:
         """Assemble and factor anew where the kept matrices no longer serve."""
-        self.operator, owned = operator, self.problem.owned
+        owned = self.problem.owned
         inactive = np.zeros(len(self.problem.window), dtype=bool)
         inactive[owned.start + operator.inactive_nodes] = True
         self.reduction = reduction_of(operator.state, inactive)
         slow = self._any(self.applications > MAX_KEPT)
-        if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.sparse.kind)):
+        if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
             with events.FACTOR:
-                self._build(with_coarse=slow)
+                self._build(operator.reynolds_derivatives, slow or self.factors is self.kept)
         self.applications = 0
 
     def _any(self, condition: bool) -> bool:
@@ -146,27 +165,28 @@ class Elimination:
         """Values of all nodes from those of the local ones, first axis."""
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def _build(self, with_coarse: bool) -> None:
+    def _build(self, derivatives: np.ndarray, with_coarse: bool) -> None:
         p, self.builds = self.problem, self.builds + 1
-        if self.sparse is not None:
-            self.sparse.destroy()
+        coarse = None if with_coarse or self.factors is None else self.factors.coarse
+        self.factors = None  # frees the last sparse form before the next one
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
-        derivatives = self.operator.reynolds_derivatives
-        self.sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
-        if with_coarse:
+        sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
+        if coarse is None:
             mask = whole[0] == PRESSURE
             mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
-            rows = (self._gathered(by) for by in (self.sparse.by_pressure, self.sparse.by_separation))
-            self.coarse = CoarseCorrection(self.coarse_space, *rows, mask)
-        self.of_h00 = self._pressures(-self.sparse.border)
+            rows = (self._gathered(by) for by in (sparse.by_pressure, sparse.by_separation))
+            coarse = CoarseCorrection(self.coarse_space, *rows, mask)
+        self.factors = Factors(sparse, coarse)
+        self.factors = Factors(sparse, coarse, self._pressures(-sparse.border))
 
     def _pressures(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """Pressures and Reynolds unknowns of the local nodes, and the load."""
-        p, sparse, rows = self.problem, self.sparse, self.sparse.reynolds_rows
+        p, (sparse, coarse, _) = self.problem, self.factors
+        rows = sparse.reynolds_rows
         with events.BACK_SOLVE:
             reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
-            pressure, separation = self.coarse(self._gathered(reynolds))
+            pressure, separation = coarse(self._gathered(reynolds))
             local, nothing = slice(p.first, p.last), np.zeros(len(p.window))
             pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
             for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
@@ -178,9 +198,9 @@ class Elimination:
         load = p.deflection.cell * pressure.sum()
         return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
 
-    def solve(self, full: np.ndarray) -> np.ndarray:
+    def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
-        p, operator, sparse = self.problem, self.operator, self.sparse
+        p, (sparse, _, of_h00) = self.problem, self.factors
         exchange, local, scale = operator.exchange, n_dofs(p.local), p.deflection.row_scale
         self.applications += 1
         b_g, b_load = full[0:local:2] / scale, full[-1] if operator.size > local else 0.0
@@ -192,8 +212,8 @@ class Elimination:
         b[sparse.reynolds_rows[sparse.has_reynolds]] = (full[1:local:2] - by_g)[sparse.has_reynolds]
         b[sparse.deflection_rows] = full[0:local:2][sparse.touching]
         pressure, r, load = self._pressures(b)
-        approach = (b_load - load) / self.of_h00[2]
-        pressure, r = pressure + approach * self.of_h00[0], r + approach * self.of_h00[1]
+        approach = (b_load - load) / of_h00[2]
+        pressure, r = pressure + approach * of_h00[0], r + approach * of_h00[1]
         sums = exchange.sums(pressure)
         separation = sums.deflection + approach + b_g
         kind, back = sparse.kind, self.reduction.back[:, p.owned]
