@@ -55,7 +55,7 @@ def heights_on_rows(
     surface: MovingTopography, scales: Scales, length: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Abscissas [m] up to a length, and mean heights [m] of the rows of the mesh there, shape (ny, n)."""
-    topography, dy, ny = surface.given, *(each[0] for each in (scales.grid.spacings, scales.grid.shape))
+    topography, dy, ny = surface.given, scales.grid.spacings[0], scales.grid.shape[0]
     rows = topography.row_means(topography.middle + dy * (np.arange(ny + 1) - 0.5 * ny)).T
     X = np.linspace(topography.X[0], topography.X[0] + length, min(MAX_PIXELS, len(topography.X)))
     z = np.stack([np.interp(X, topography.X, row) for row in rows])

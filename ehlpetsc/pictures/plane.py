@@ -94,22 +94,25 @@ def in_view(result: Result, window: Sequence[float]) -> tuple[tuple[slice, slice
 def draw_frame(result: Result, options: argparse.Namespace) -> Figure:
     """Maps of pressure and film at an instant, and their sections through the middle."""
     [index] = frames.choose_frames([result], options.step, options.time)
-    frame = PlaneFrame.of(result, index, frames.view([result], options.window))
-    height = map_height(frame)
-    figure, axes = style.new_figure(
-        3, 2, (WIDTH, height + 2 * SECTION_HEIGHT + MARGIN), height_ratios=(height, *2 * [SECTION_HEIGHT])
-    )
+    return fill_figure(Figure(layout="constrained"), result, index, frames.view([result], options.window))
+
+
+def fill_figure(figure: Figure, result: Result, index: int, window: Sequence[float]) -> Figure:
+    """Draw maps and sections of a frame into an empty figure, which gets its size."""
+    frame = PlaneFrame.of(result, index, window)
+    heights = (map_height(frame), SECTION_HEIGHT, SECTION_HEIGHT)
+    figure.set_size_inches(WIDTH, sum(heights) + MARGIN)
+    axes = figure.subplots(3, 2, height_ratios=heights)
     draw_maps(figure, axes[0], frame)
     row, column = np.argmin(np.abs(frame.y)), np.argmin(np.abs(frame.x))
-    a, p0 = frame.half_widths[0], frame.p0
-    draw_section(axes[1], frame, frame.x, np.s_[row, :], hertz_pressure(frame.x, a, p0))
+    for panels, abscissa, nodes, width, label in (
+        (axes[1], frame.x, np.s_[row, :], frame.half_widths[0], "x/a along y = 0"),
+        (axes[2], frame.y, np.s_[:, column], frame.half_widths[1], "y/a along x = 0"),
+    ):
+        draw_section(panels, frame, abscissa, nodes, hertz_pressure(abscissa, width, frame.p0))
+        for panel in panels:
+            panel.set_xlabel(label)
     axes[1, 0].legend(loc="upper left", frameon=False, handlelength=1.2, **style.SMALL)
-    across = hertz_pressure(frame.y, frame.half_widths[1], p0)
-    draw_section(axes[2], frame, frame.y, np.s_[:, column], across)
-    for panel in axes[1]:
-        panel.set_xlabel("x/a along y = 0")
-    for panel in axes[2]:
-        panel.set_xlabel("y/a along x = 0")
     style.set_title(figure, *frames.panel_title([result], [index]))
     return figure
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def frames_on_page(result: Result, window: Sequence[float]) -> int:
     return max(1, MAX_VALUES // int(nodes))
 
 
-def maps(result: Result, chosen: Sequence[int], window: Sequence[float]) -> dict:
+def maps(result: Result, chosen: np.ndarray, window: Sequence[float]) -> dict:
     """Pressure [GPa], film [µm] and contacts of chosen frames, of each block of nodes the extreme."""
     found = [plane.PlaneFrame.of(result, k, window) for k in chosen]
     first = found[0]
@@ -49,6 +49,6 @@ def maps(result: Result, chosen: Sequence[int], window: Sequence[float]) -> dict
     return page
 
 
-def blocks(values: np.ndarray, width: tuple[int, int], reduce: np.ufunc) -> np.ndarray:
+def blocks(values: np.ndarray, width: Sequence[int], reduce: Callable[..., np.ndarray]) -> np.ndarray:
     """Blocks of (rows, columns) of a field of shape (ny, nx) reduced as by :func:`.report.binned`."""
     return binned(binned(values, width[1], reduce).T, width[0], reduce).T

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,9 +19,9 @@ from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
+from ehlpetsc.surfaces.contact_roughness import roughness_of
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times
-from ehlpetsc.surfaces.roughness import roughness_of
 
 if TYPE_CHECKING:
     from ehlpetsc.surfaces.areal_roughness import MovingTopography
@@ -40,7 +40,7 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    draw = _draw_profiles if case.kind == "line" else _draw_maps
+    draw: Callable[..., Figure] = _draw_profiles if case.kind == "line" else _draw_maps
     figure = draw({side: rough.side(side) for side in sides}, case, scales)
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.conditions is not None:

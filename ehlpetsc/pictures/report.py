@@ -6,6 +6,7 @@ import base64
 import html
 import json
 import re
+from collections.abc import Callable
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
@@ -169,7 +170,7 @@ def damage(result: Result) -> dict | None:
     }
 
 
-def binned(values: np.ndarray, width: int, reduce: np.ufunc) -> np.ndarray:
+def binned(values: np.ndarray, width: int, reduce: Callable[..., np.ndarray]) -> np.ndarray:
     """Groups of `width` values along the last axis reduced by `reduce(values, axis=-1)`."""
     values = np.asarray(values)
     if width == 1:

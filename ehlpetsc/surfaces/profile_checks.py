@@ -11,6 +11,7 @@ from ehlpetsc.surfaces.profile import WAVE_NODES
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.areal_roughness import MovingTopography
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
     from ehlpetsc.surfaces.samples import Samples
@@ -74,7 +75,7 @@ def _needed_points(profile: Profile, scales: Scales, limit: float) -> int:
     return int(np.ceil(points))
 
 
-def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
+def entry_times(profile: Profile | MovingTopography, scales: Scales) -> tuple[float, float] | None:
     """Travel of the faster surface [half-widths] when a profile reaches and fills the contact.
 
     Its first point is then at the near edge of the Hertz contact; its full heights, ramp included, at the far
