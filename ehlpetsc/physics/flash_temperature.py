@@ -97,7 +97,7 @@ def expected_friction(fluid: Fluid, load: float, a: float, sliding: float, film:
 
 
 def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Solid] = (STEEL, STEEL)) -> float:
-    """Blok's flash temperature [K] of a contact with a coefficient of friction."""
+    """Blok's flash temperature [K] of a contact with a coefficient of friction, of a point in its middle."""
     effusivities = [solid.effusivity for solid in solids]
-    conditions = scales.load, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
+    conditions = scales.load_per_length, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
     return blok_flash_temperature(friction, *conditions, effusivities)

@@ -23,13 +23,13 @@ def write_xdmf(path: Path) -> Path:
 
 def _frame(result: Result, index: int) -> str:
     (x, dx), (y, dy) = ((axis[0], axis[1] - axis[0]) for axis in (result.x, result.y))
-    shape = f"{len(result.y)} {len(result.x)}"
-    item = '<DataItem Dimensions="2" NumberType="Float" Precision="8" Format="XML">'
+    shape = f"1 {len(result.y)} {len(result.x)}"  # z, y, x: VTK would lay two dimensions into y and z
+    item = '<DataItem Dimensions="3" NumberType="Float" Precision="8" Format="XML">'
     lines = [
         f'<Grid Name="frame {result.step[index]}"><Time Value="{result.time[index]:.9g}"/>',
-        f'<Topology TopologyType="2DCoRectMesh" Dimensions="{shape}"/>',
-        f'<Geometry GeometryType="ORIGIN_DXDY">{item}{y:.12g} {x:.12g}</DataItem>',
-        f"{item}{dy:.12g} {dx:.12g}</DataItem></Geometry>",
+        f'<Topology TopologyType="3DCoRectMesh" Dimensions="{shape}"/>',
+        f'<Geometry GeometryType="ORIGIN_DXDYDZ">{item}0 {y:.12g} {x:.12g}</DataItem>',
+        f"{item}1 {dy:.12g} {dx:.12g}</DataItem></Geometry>",
         *(_field(result, name, index, shape) for name in result.fields),
         "</Grid>\n",
     ]
@@ -43,7 +43,7 @@ def _field(result: Result, name: str, index: int, shape: str) -> str:
     all_frames = " ".join(map(str, data.shape))
     return (
         f'<Attribute Name="{name}" Center="Node"><DataItem ItemType="HyperSlab" Dimensions="{shape}">'
-        f'<DataItem Dimensions="3 3" Format="XML">{index} 0 0 1 1 1 1 {shape}</DataItem>'
+        f'<DataItem Dimensions="3 3" Format="XML">{index} 0 0 1 1 1 {shape}</DataItem>'
         f'<DataItem Dimensions="{all_frames}" NumberType="{kind}" Precision="{data.dtype.itemsize}" '
         f'Format="HDF">{result.path.name}:/{name}</DataItem></DataItem></Attribute>'
     )

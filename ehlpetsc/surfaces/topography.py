@@ -139,6 +139,14 @@ class Topography:
 
     def unresolved_variance(self, dx: float, dy: float) -> float:
         """Fraction of the height variance in waves shorter than `WAVE_NODES` spacings of the mesh [m]."""
+        power, in_y, in_x = self._spectrum
+        short = np.logical_or.outer(in_y * WAVE_NODES * dy > 1.0, in_x * WAVE_NODES * dx > 1.0)
+        total = power.sum()
+        return float(power[short].sum() / total) if total > 0 else 0.0
+
+    @cached_property
+    def _spectrum(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Power of the heights and its wave numbers across and along [1/m]."""
         from scipy.fft import dctn
 
         z = self.z
@@ -149,6 +157,4 @@ class Topography:
         power[0, 0] = 0.0
         lengths = (2 * max(n - 1, 1) * step for n, step in zip(z.shape, (self.dy, self.dx), strict=True))
         in_y, in_x = (np.arange(n) / length for n, length in zip(z.shape, lengths, strict=True))
-        short = np.logical_or.outer(in_y * WAVE_NODES * dy > 1.0, in_x * WAVE_NODES * dx > 1.0)
-        total = power.sum()
-        return float(power[short].sum() / total) if total > 0 else 0.0
+        return power, in_y, in_x
