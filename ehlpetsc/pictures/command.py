@@ -47,6 +47,7 @@ OTHERS = {  # that are no pictures: endings of their files, help
     "movie": ((".gif",), "pressure and film over time, as a GIF"),
 }
 OF_ONE = ("over_time", "map", "temperatures", "report", *MAPS)  # kinds of a single result
+OF_SCALARS = ("over_time", "stribeck", "traction")  # kinds that show no field
 IN_PLANE = (None, "movie", "report", *MAPS)  # kinds that show a point contact or strip in both directions
 
 
@@ -107,7 +108,10 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
         raise OutputError(f"{results[0].path}: a line contact; allowed: --{word} of a point contact or strip")
     if len(results) == 1 and planes and options.section is None and options.kind in IN_PLANE:
         return draw_plane(results[0], options, output)
-    results = [section_of(result, options.section or 0.0) for result in results]
+    if options.kind not in OF_SCALARS:
+        results = [section_of(result, options.section or 0.0) for result in results]
+    elif options.section is not None:
+        raise OutputError(f"--section: of pictures over x, not of --{options.kind.replace('_', '-')}")
     low, high = frames.view(results, options.window)
     for result in results:
         if not len(result.time):

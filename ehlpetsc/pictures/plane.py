@@ -19,7 +19,8 @@ from ehlpetsc.results.reader import Result
 
 WIDTH, SECTION_HEIGHT, MARGIN = 7.0, 1.6, 2.0  # inches: of the figure, of a row of sections, around the maps
 MAP_WIDTH = 2.9  # inches
-MAP_RATIOS = (0.4, 2.5)  # height over width of a map: beyond, lengths along and across are not to one scale
+PANEL_RATIOS = (0.4, 1.6)  # height over width of the panel of a map
+TO_SCALE = (0.2, 5.0)  # height over width of a map: beyond, lengths along and across are not to one scale
 PRESSURE_COLOURS, FILM_COLOURS = "viridis", "Blues"
 COLOUR_PERCENTILE = 99.9  # upper end of the colours of pressure, without a few sharp peaks
 FILM_ROOM = 1.15  # upper end of film over the maximum inside the dry contact
@@ -112,14 +113,14 @@ def fill_figure(figure: Figure, result: Result, index: int, window: Sequence[flo
         draw_section(panels, frame, abscissa, nodes, hertz_pressure(abscissa, width, frame.p0))
         for panel in panels:
             panel.set_xlabel(label)
-    axes[1, 0].legend(loc="upper left", frameon=False, handlelength=1.2, **style.SMALL)
+    axes[1, 0].legend(loc="best", frameon=False, handlelength=1.2, **style.SMALL)
     style.set_title(figure, *frames.panel_title([result], [index]))
     return figure
 
 
 def map_height(frame: PlaneFrame) -> float:
-    """Height [inches] of a map of `MAP_WIDTH`."""
-    return MAP_WIDTH * float(np.clip(np.ptp(frame.y) / np.ptp(frame.x), *MAP_RATIOS))
+    """Height [inches] of the panel of a map, `MAP_WIDTH` wide."""
+    return MAP_WIDTH * float(np.clip(np.ptp(frame.y) / np.ptp(frame.x), *PANEL_RATIOS))
 
 
 def draw_maps(figure: Figure, panels: Sequence[Axes], frame: PlaneFrame) -> tuple[AxesImage, ...]:
@@ -162,7 +163,7 @@ def draw_map(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray, **col
     """Draw a field of shape (ny, nx) over equally spaced x/a and y/a."""
     dx, dy = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])
     extent = (x[0] - dx, x[-1] + dx, y[0] - dy, y[-1] + dy)
-    is_compact = MAP_RATIOS[0] <= np.ptp(y) / np.ptp(x) <= MAP_RATIOS[1]
+    is_compact = TO_SCALE[0] <= np.ptp(y) / np.ptp(x) <= TO_SCALE[1]
     shape = dict(origin="lower", extent=extent, aspect="equal" if is_compact else "auto")
     image = axes.imshow(values, interpolation="nearest", **shape, **colours)
     axes.set(xlabel=style.ACROSS, ylabel="y/a")

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
-from matplotlib.ticker import PercentFormatter
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, over_time, plane, style
@@ -25,16 +24,13 @@ def draw_contacts(result: Result, options: argparse.Namespace) -> Figure:
     if not result.contact_count.any():
         raise OutputError(f"{result.path}: no node is in contact in any step")
     part, x, y = plane.in_view(result, window)
-    share = result.contact_count[part] / len(result.steps("time"))
-    ratio = float(np.clip(np.ptp(y) / np.ptp(x), *plane.MAP_RATIOS))
+    percent = 100.0 * result.contact_count[part] / len(result.steps("time"))
+    ratio = float(np.clip(np.ptp(y) / np.ptp(x), *plane.PANEL_RATIOS))
     size = CONTACTS_WIDTH, (CONTACTS_WIDTH - 0.8) * ratio + CONTACTS_MARGIN
     figure, axes = style.new_figure(1, 1, size)
-    top = float(np.percentile(share[share > 0.0], over_time.COLOUR_PERCENTILE))
-    image = plane.draw_map(axes, x, y, share, cmap="Reds", vmin=0.0, vmax=top)
-    form = PercentFormatter(1.0, decimals=0, symbol="")
-    figure.colorbar(
-        image, ax=axes, label="steps in contact [%]", format=form, extend="max", location="top", aspect=30
-    )
+    top = float(np.percentile(percent[percent > 0.0], over_time.COLOUR_PERCENTILE))
+    image = plane.draw_map(axes, x, y, percent, cmap="Reds", vmin=0.0, vmax=top)
+    figure.colorbar(image, ax=axes, label="steps in contact [%]", extend="max", location="top", aspect=30)
     plane.outline(axes, (1.0, plane.aspect(result)), "k")
     steps = len(result.steps("time"))
     motion, _, rest = style.conditions([result]).rpartition(", a = ")  # too long for one line

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ehlpetsc.pictures import plane
-from ehlpetsc.pictures.report import binned, packed
+from ehlpetsc.pictures.page_values import binned, packed
 from ehlpetsc.results.reader import Result
 
 MAX_NODES = 160  # of a map along either side
@@ -50,5 +50,5 @@ def maps(result: Result, chosen: np.ndarray, window: Sequence[float]) -> dict:
 
 
 def blocks(values: np.ndarray, width: Sequence[int], reduce: Callable[..., np.ndarray]) -> np.ndarray:
-    """Blocks of (rows, columns) of a field of shape (ny, nx) reduced as by :func:`.report.binned`."""
+    """Blocks of (rows, columns) of a field of shape (ny, nx) reduced as by `binned`."""
     return binned(binned(values, width[1], reduce).T, width[0], reduce).T

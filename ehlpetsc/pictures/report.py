@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 import re
-from collections.abc import Callable
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
@@ -18,6 +16,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show, travel_of, view
+from ehlpetsc.pictures.page_values import binned, packed
 from ehlpetsc.pictures.style import hertz_at
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
@@ -168,19 +167,3 @@ def damage(result: Result) -> dict | None:
             for side, rows in decades.items()
         },
     }
-
-
-def binned(values: np.ndarray, width: int, reduce: Callable[..., np.ndarray]) -> np.ndarray:
-    """Groups of `width` values along the last axis reduced by `reduce(values, axis=-1)`."""
-    values = np.asarray(values)
-    if width == 1:
-        return values
-    missing = -values.shape[-1] % width
-    padded = np.concatenate([values, np.repeat(values[..., -1:], missing, axis=-1)], axis=-1)
-    return reduce(padded.reshape(*values.shape[:-1], -1, width), axis=-1)
-
-
-def packed(values: np.typing.ArrayLike, kind: type = np.float32) -> str:
-    """Numbers as little-endian bytes in base64."""
-    raw = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<"))
-    return base64.b64encode(raw).decode("ascii")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import textwrap
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -32,6 +33,7 @@ DPI = 160
 ACROSS = "x/a"
 SMALL = dict(fontsize="small", title_fontsize="small")  # of legends
 LEGEND_ENTRIES = 12
+LETTERS = 12.0  # of a title in an inch, in the usual size
 FULL_WIDTH, MIN_FONT = 6.0, 0.65  # width [inches] below which text shrinks with it, down to this fraction
 
 
@@ -58,12 +60,22 @@ def save(
     """Write a figure, in the format of each file name; `chosen` are the options of the command."""
     if chosen:
         dpi = chosen.dpi
-        figure.set_size_inches(chosen.size or figure.get_size_inches())
+        if chosen.size:
+            figure.set_size_inches(chosen.size)
+            for title in figure.texts:
+                title.set_text(folded(title.get_text(), chosen.size[0]))
         if chosen.no_title:
             figure.suptitle("")
     for path in paths:
         with replacing(Path(path)) as temporary:
             figure.savefig(temporary, dpi=dpi)
+
+
+def folded(text: str, width: float) -> str:
+    """Text whose lines are broken after commas to fit a width [inches] in the font of :func:`fonts`."""
+    letters = int(LETTERS * width / min(1.0, max(MIN_FONT, width / FULL_WIDTH)))
+    kept = [line.replace(" ", "\xa0").replace(",\xa0", ", ") for line in text.splitlines()]
+    return "\n".join(textwrap.fill(line, letters, break_long_words=False) for line in kept)
 
 
 def shades(count: int) -> list:
@@ -185,5 +197,5 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
     texts.append(f"p0 = {1e-9 * p0:.3g} GPa")
     texts.append(f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry")
     if (place := getattr(result, "place", None)) is not None:
-        texts.append(f"section at y = {place / a + 0.0:.3g} a")
+        texts.append(f"section at y = {place / a:.3g} a" if place else "section at y = 0")
     return texts

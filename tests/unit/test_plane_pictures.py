@@ -129,7 +129,7 @@ def test_fringes_name_wavelengths_and_resolve_the_film(point):
 def test_contacts_are_shares_of_all_steps(point):
     with read_result(point) as r:
         shown = plane_over_time.draw_contacts(r, OPTIONS).axes[0].images[0].get_array()
-        assert shown.max() == r.contact_count.max() / 5 > 0.0
+        assert shown.max() == 100.0 * r.contact_count.max() / 5 > 0.0
 
 
 def test_movie_has_every_frame_with_common_colours(point, monkeypatch):
@@ -178,6 +178,7 @@ def test_case_picture_shows_rows_of_the_mesh(tmp_path, capsys):
     [
         (make_result, ["--fringes"], ["a line contact; allowed: --fringes of a point contact or strip"]),
         (make_result, ["--section", 0], ["a line contact; allowed: --section of a point contact or strip"]),
+        (make_plane, ["--section", 0, "--over-time"], ["--section: of pictures over x, not of --over-time"]),
         (make_plane, ["--section", 9], ["section: y = ", "; allowed: on the mesh"]),
     ],
 )
@@ -204,7 +205,7 @@ def test_lines_load_no_module_of_planes(tmp_path):
 
 def test_text_of_a_narrow_picture_fits(point, tmp_path):
     out = tmp_path / "column.png"
-    assert draw(point, "--size", 3.4, 5.0, "--no-title", "-o", out) == 0
+    assert draw(point, "--size", 3.4, 5.0, "-o", out) == 0
     with image.open(out) as picture:
         edge = np.asarray(picture.convert("L"))[:, [0, 1, -2, -1]]
     assert edge.min() == 255  # nothing runs out of the picture
