@@ -14,6 +14,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image as image
 from support import is_line_with
+from support.browser import BROWSER, visited
 from support.made_results import P0, A, make_plane, make_result
 
 from ehlpetsc import read_result
@@ -160,6 +161,32 @@ def test_page_holds_maps_of_every_frame(point, monkeypatch):
             assert maps["pressure"]["unit"] * shown.max() == pytest.approx(1e-9 * found.max(), rel=1e-4)
     assert maps["aspect"] == 2.0
     assert len(np.frombuffer(base64.b64decode(maps["y"]), "<f4")) <= 21
+
+
+VISITOR = """
+addEventListener("load", async () => {
+  const wait = ms => new Promise(done => setTimeout(done, ms)), slider = document.getElementById("slider");
+  const shown = () => document.querySelector("#instant .js-plotly-plot");
+  await wait(1500);
+  slider.value = 2;
+  slider.dispatchEvent(new Event("input"));
+  await wait(500);
+  const found = { pressure: shown().data[0].z, edge: shown().layout.shapes[0].y1 };
+  document.body.appendChild(document.createElement("output")).textContent = JSON.stringify(found);
+});
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(BROWSER is None, reason="no browser is installed; the other tests read text and data")
+def test_slider_of_the_page_changes_the_maps(point):
+    assert draw(point, "--report") == 0
+    found = visited(point.with_suffix(".html"), VISITOR)
+    with read_result(point) as r:
+        columns = (r.x / A >= -1.6) & (r.x / A <= 1.4)
+        expected = 1e-9 * r.frame("pressure", 2)[np.abs(r.y / A) <= 3.0][:, columns]
+    np.testing.assert_allclose(found["pressure"], expected, atol=1e-4)
+    assert found["edge"] == pytest.approx(2.0)
 
 
 def test_case_picture_shows_rows_of_the_mesh(tmp_path, capsys):
