@@ -39,6 +39,8 @@ class Result(reader.Result):
     ) -> Figure:
         """Pressure and film over x/a at the frame nearest to a step or a time [s], contacts marked.
 
+        Of a point contact or strip maps and sections.
+
         By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`; `window` limits x/a.
 
         Examples
@@ -53,6 +55,11 @@ class Result(reader.Result):
         from ehlpetsc.pictures import frames, style
 
         indices = frames.choose_frames([self], step, time)
+        if self.y is not None:
+            from ehlpetsc.pictures.plane import fill_figure
+
+            figure = pyplot.figure(layout="constrained")
+            return fill_figure(figure, self, indices[0], frames.view([self], window))
         figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
         frames.fill_frame(axes, [self], indices, frames.view([self], window))
         style.set_title(figure, *frames.panel_title([self], indices))
