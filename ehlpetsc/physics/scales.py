@@ -103,11 +103,6 @@ class Scales:
         return 2.0 * self.p0 * self.R / (np.pi * self.E * self.a)
 
     @property
-    def load_per_length(self) -> float:
-        """Load per length of the middle row of the dry contact [N/m]; of a line contact the load."""
-        return 0.5 * np.pi * self.p0 * self.a
-
-    @property
     def u_max(self) -> float:
         """Speed of the faster surface [m/s], whichever way it moves."""
         return max(abs(self.u1), abs(self.u2))
