@@ -40,7 +40,8 @@ def moes_central_film(M: float, L: float) -> float:
 
 
 def nijenbanning_central_film(M: float, L: float, ratio: float) -> float:
-    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes (1994).
+    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes
+    (1994).
 
     .. math:: H=\left\{\left[H_{RI}^{3/2}+(H_{EI}^{-4}+H_{00}^{-4})^{-3/8}\right]^{2s/3}+
        (H_{RP}^{-8}+H_{EP}^{-8})^{-s/8}\right\}^{1/s},\qquad s=1.5\,(1+e^{-1.2H_{EI}/H_{EP}})

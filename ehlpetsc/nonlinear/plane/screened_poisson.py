@@ -5,11 +5,11 @@ The deflection, :math:`2\pi C/|k|` over the wave numbers k, is a full matrix; th
 .. math:: \frac{2\pi C}{|k|}\approx\sum_j\frac{c_j}{k^2+s_j^2},\qquad
    D\,p\approx\sum_jc_ju_j,\quad(-\nabla^2+s_j^2)\,u_j=p
 
-is a sparse one, of three more unknowns a node that obey screened Poisson equations (five-point stencils, zero beyond
-the mesh). The weights are positive and fit to 10 to 20 %.
+is a sparse one, of three more unknowns a node that obey screened Poisson equations (five-point stencils,
+zero beyond the mesh). The weights are positive and fit to 10 to 20 %.
 
-Unknowns of a node, in this order: u_1, u_2, u_3, v, and r where solids touch anywhere. v is the pressure, in a
-cavity the unknown of the Reynolds equation.
+Unknowns of a node, in this order: u_1, u_2, u_3, v, and r where solids touch anywhere. v is the pressure, in
+a cavity the unknown of the Reynolds equation.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ MAX_ROW = 6 * (TERMS + 2)  # entries of a Reynolds row
 def fitted_terms(stiffness: float, spacings: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients c_j and squares of s_j for C of the deflection, shape (TERMS,) each.
 
-    Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, of the logarithm of a
-    strip above all, swings about it and through zero.
+    Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, of the
+    logarithm of a strip above all, swings about it and through zero.
     """
     from scipy.optimize import nnls
 
@@ -72,8 +72,8 @@ def fill(
     `scales`: of the deflection rows; dy; dx.
     `mesh`: n_x, nodes, first, last, whether periodic, unknowns of a node.
     `csr`: row pointers, columns, values.
-    `by_pressure`, `by_separation`: of the local Reynolds rows by v and by the separation at the nodes of their
-        stencil, (last - first, 6).
+    `by_pressure`, `by_separation`: of the local Reynolds rows by v and by the separation at the nodes of
+        their stencil, (last - first, 6).
     `border`: of the local rows by h00.
     """
     (kind, r_p, r_s, h_p, h_s, s_p), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales
