@@ -35,7 +35,7 @@ def test_uniform_flux(steps):
 
 
 def body(speed, spacing, nodes, dt=None):
-    scales = SimpleNamespace(nx=nodes, dx=spacing)
+    scales = SimpleNamespace(grid=SimpleNamespace(n=nodes), dx=spacing)
     return Body(STEEL, speed, scales, dt or 0.5 * spacing / speed)
 
 
