@@ -25,6 +25,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.law import Law
 from ehlpetsc.physics.scales import Scales
 
+LINE = "line"  # the kind of contact whose surfaces are profiles
 DICT_NAME = "case"  # name of a case without a file in messages
 SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
 OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
@@ -205,9 +206,12 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     for side in SIDES:
         table = surface.get(side) if isinstance(surface, dict) else None
         spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
-        of_maps = areal_keys(spec) if spec else []
+        of_maps = areal_keys(spec) if spec and case and case.kind == LINE else []
         reason = "of maps, and a line contact has profiles; leave it out"
         faults += [Fault("", f"surface.{side}.{key}: {reason}") for key in of_maps]
+        if case and case.kind != LINE:
+            faults += _map_faults(folder, spec, case, f"surface.{side}")
+            continue
         if spec is None or spec.synthetic or of_maps:  # smooth, or its faults are reported with its keys
             continue
         try:
@@ -216,6 +220,20 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
             key = "z" if "z" in table else "file"
             faults.append(Fault("", f"surface.{side}.{key} = {show(table[key])}: {error}"))
     return case, faults
+
+
+def _map_faults(folder: Path, spec: Values | None, case: Case, place: str) -> list[Fault]:
+    """Faults of a surface on a contact in the plane."""
+    from ehlpetsc.surfaces.areal_samples import areal_samples
+
+    if spec is None:
+        return []
+    grid = Scales.of(case).grid
+    try:
+        areal_samples(folder, spec, grid.spacings[0] * grid.shape[0], grid.periodic)
+    except ProfileError as error:
+        return [Fault("", f"{place}: {error}")]
+    return []
 
 
 def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:

@@ -47,9 +47,9 @@ class Scene:
     @cached_property
     def roughness(self) -> Roughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
-        from ehlpetsc.surfaces.roughness import Roughness
+        from ehlpetsc.surfaces.contact_roughness import roughness_of
 
-        return Roughness.of(self.case, self.scales, self.positions)
+        return roughness_of(self.case, self.scales, self.positions)
 
     @property
     def rq(self) -> float:

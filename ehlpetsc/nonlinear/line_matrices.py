@@ -25,6 +25,8 @@ class LineMatrices:
     `near_field`: nodes of deflection on either side in the assembled matrix.
     """
 
+    linear_atol = 1e-2
+
     def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
         self.problem, self.exchange, self.ranks, self.near_field = problem, exchange, ranks, near_field
         self.factors: Factors | None = None
@@ -43,6 +45,9 @@ class LineMatrices:
 
     def attach(self, ksp: PETSc.KSP) -> None:
         """See :class:`.two_fields.Matrices`; the options name the preconditioner."""
+
+    def keep(self, jacobian: JacobianOperator) -> None:
+        """See :class:`.two_fields.Matrices`; a band is factored in less time than it takes to keep it."""
 
     def begin_solve(self) -> None:
         """See :class:`.two_fields.Matrices`."""

@@ -22,7 +22,6 @@ from ehlpetsc.discretisation.unknowns import Rows, Unknowns
 from ehlpetsc.nonlinear.options import RunOptions, raise_refusal
 from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 
-LINEAR_ATOL = 1e-2  # absolute tolerance of the linear residual over that of Newton's method
 LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton iteration allowed
 START_FACTOR = 7  # iteration limit of a steady start over that of a time step
 MAX_ROUNDING_FACTOR = 10.0  # limit of the factor by which rounding may raise Newton's absolute tolerance
@@ -144,6 +143,13 @@ class NewtonSolver:
             return self._max_it
         return needed or START_FACTOR * self._max_it
 
+    def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
+        """Linearise at a state whose factors every later solve begins with, where its matrices keep any."""
+        self.system.set_initial_guess(state, inputs)
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.system.linearise(self.system.x)
+            self.system.matrices.keep(self.system.jacobian)
+
     def residual(self) -> Rows:
         """Residual of the last solution."""
         return self.system.residual()
@@ -208,7 +214,7 @@ class NewtonSolver:
     def _set_tolerances(self, snes: PETSc.SNES, max_it: int) -> None:
         system = self.system
         if "ksp_atol" not in self._options.given:
-            snes.ksp.setTolerances(atol=LINEAR_ATOL * self._atol)
+            snes.ksp.setTolerances(atol=system.matrices.linear_atol * self._atol)
         system.matrices.begin_solve()
         self.tolerance = min(max(self._atol, system.rounding()), MAX_ROUNDING_FACTOR * self._atol)
         snes.setTolerances(max_it=max_it, atol=self.tolerance)

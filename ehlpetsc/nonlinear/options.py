@@ -30,14 +30,20 @@ DEFAULTS = {
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
-# of a contact in the plane; on several ranks slabs of rows with a few of their neighbours'
+# of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its pressures
 PLANE = {
-    "ksp_rtol": "1e-3",
-    "pc_type": "asm",
+    "ksp_rtol": "1e-2",  # a convolution an iteration: tighter saves no Newton iteration
+    "pc_type": "python",
+    "pc_python_type": "ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm",
+}
+INNER_PREFIX = "pressure_"
+INNER = {  # of incomplete LU, on several ranks in slabs of rows with a few of their neighbours'
+    "pc_factor_levels": "1",
     "pc_asm_overlap": "4",
     "sub_pc_type": "ilu",
     "sub_pc_factor_levels": "1",
 }
+OF_PRECONDITIONERS = ("pc_", "sub_", "mg_")
 # options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
 GMRES_OPTIONS = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
 # PETSc's LU and ILU do not pivot, and pivots of the deflection rows may be zero by chance
@@ -127,6 +133,7 @@ class RunOptions:
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
         defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PLANE, *PETSC_FACTORISATION, "snes_atol"}
+        defaults |= {INNER_PREFIX + name for name in (*INNER, *PETSC_FACTORISATION)}
         of_run = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
@@ -134,7 +141,7 @@ class RunOptions:
         in_table = table.getAll()
         self.given = wanted = self._of_case | in_table | self._of_call
         check_options(wanted)
-        wanted = self._defaults | self._linear_solver(wanted) | wanted
+        wanted = self._defaults | self._linear_solver(wanted)
         self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [
             name for name, value in wanted.items() if name not in in_table or in_table[name] != value
@@ -155,21 +162,23 @@ class RunOptions:
             table.hasName(name)  # marks it as read, for -options_left
 
 
-def _linear_solver(wanted: dict) -> dict:
-    """Defaults of KSP and PC: this program's types unless the options of the user exclude them."""
+def _line_solver(wanted: dict) -> dict:
+    """Options with those of KSP and PC: this program's types unless the options of the user exclude them."""
     if any(wanted.get(name, value) != value for name, value in PRECONDITIONER.items()):
-        return PETSC_FACTORISATION
+        return PETSC_FACTORISATION | wanted
     if any(name.startswith("ksp_") and name not in GMRES_OPTIONS for name in wanted):
-        return PRECONDITIONER
-    return PRECONDITIONER | KRYLOV
+        return PRECONDITIONER | wanted
+    return PRECONDITIONER | KRYLOV | wanted
 
 
 def _plane_solver(wanted: dict) -> dict:
-    """Defaults in the plane: PETSc's preconditioner for the pressures, exact rows of the deflection around it."""
-    return PLANE | PETSC_FACTORISATION
+    """As :func:`_line_solver`, in the plane: options of preconditioners are those of the pressures."""
+    inner = {name: value for name, value in wanted.items() if name.startswith(OF_PRECONDITIONERS)}
+    inner = {INNER_PREFIX + name: value for name, value in (INNER | PETSC_FACTORISATION | inner).items()}
+    return PLANE | inner | wanted | {name: PLANE[name] for name in ("pc_type", "pc_python_type")}
 
 
-LINEAR_SOLVERS = {"line": _linear_solver, "strip": _plane_solver, "point": _plane_solver}
+LINEAR_SOLVERS = {"line": _line_solver, "strip": _plane_solver, "point": _plane_solver}
 
 
 def unused() -> list[str]:
@@ -180,6 +189,8 @@ def unused() -> list[str]:
 
 def was_read(name: str) -> bool:
     """Whether an option has been read (PetscOptionsUsed, which petsc4py lacks)."""
+    if name.startswith(OF_PRECONDITIONERS) and was_read(INNER_PREFIX + name):
+        return True
     answer = ctypes.c_int(1)
     ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(answer))
     return bool(answer.value)

@@ -7,17 +7,28 @@ from typing import TYPE_CHECKING, Any
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.nonlinear.line_matrices import line_system
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
-from ehlpetsc.nonlinear.plane.system import plane_system
-from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 
-SYSTEMS = {"line": line_system, "strip": plane_system, "point": plane_system}
+
+def _line(*parts: Any) -> TwoFields:
+    from ehlpetsc.nonlinear.line_matrices import line_system
+
+    return line_system(*parts)
+
+
+def _plane(*parts: Any) -> TwoFields:
+    from ehlpetsc.nonlinear.plane.system import plane_system
+
+    return plane_system(*parts)
+
+
+SYSTEMS = {"line": _line, "strip": _plane, "point": _plane}  # a kind loads no module of another one
 ALLOWED = ("newton", "sweep")
 
 

@@ -31,7 +31,12 @@ FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the 
 
 
 class Matrices(Protocol):
-    """Jacobian and preconditioner of a kind of contact."""
+    """Jacobian and preconditioner of a kind of contact.
+
+    `linear_atol`: absolute tolerance of the linear residual over that of Newton's method.
+    """
+
+    linear_atol: float
 
     def jacobian(self, ksp: PETSc.KSP) -> Any:
         """Matrix-free Jacobian, context of a Python matrix, for a Krylov solver with its options."""
@@ -44,6 +49,9 @@ class Matrices(Protocol):
 
     def begin_solve(self) -> None:
         """Called at the start of each nonlinear solve."""
+
+    def keep(self, jacobian: Any) -> None:
+        """Factor for the state of a Jacobian, as the first factors of all later solves."""
 
 
 class TwoFields:

@@ -74,8 +74,8 @@ class Grid:
 
     @property
     def cell_size(self) -> float:
-        """Size of a cell [m, m^2]."""
-        return math.prod(self.spacings)
+        """Weight of a node in a sum over the contact: length or area of its cell, in a strip per length across."""
+        return self.spacings[-1] / self.shape[0] if self.periodic else math.prod(self.spacings)
 
     @cached_property
     def coordinates(self) -> tuple[np.ndarray, ...]:

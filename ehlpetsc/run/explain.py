@@ -18,6 +18,7 @@ from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
 from ehlpetsc.run.validity import domain_faults, warnings
+from ehlpetsc.surfaces.contact_roughness import roughness_of
 from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def explain(case: Case) -> str:
     Raises :class:`ehlpetsc.base.errors.ProfileError`.
     """
     scales = Scales.of(case)
-    rough = Roughness.of(case, scales)
+    rough = roughness_of(case, scales)
     sections = [
         [case.title],
         _series(case) if case.series else [],

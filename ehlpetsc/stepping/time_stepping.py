@@ -68,7 +68,7 @@ class TimeStepping:
     ):
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
-        self.baseline, self.ramp_time = baseline, 0.0
+        self.baseline, self.ramp_time, self._is_prepared = baseline, 0.0, False
         time = scene.case.time
         self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
@@ -216,11 +216,22 @@ class TimeStepping:
         nodes = [(entrained - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
+    def _prepare(self, dt: float) -> None:
+        """Prepare the solver, once, for time steps of `dt` [s] from the smooth contact."""
+        if self._is_prepared or self.problem.fluid is None:
+            return
+        self._is_prepared = True
+        q, w = self.baseline
+        m, unit = self.problem.mass_per_area(q, w), self.scales.u / self.scales.a
+        history = FilmHistory(m, m, dt * unit, dt * unit)
+        self.solver.prepare(Unknowns(q, w, 0.0), self.problem.inputs(history=history, dt=dt))
+
     def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:
         """State after one time step of `dt` [s], by default of the step control; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
         dt = dt or next_step(state.dt, state.retries, nominal, left)
+        self._prepare(nominal)
         retries = newton = 0
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)

@@ -35,6 +35,12 @@ class Transposition(Protocol):
     def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
         """Inverse of `to_waves`."""
 
+    def local(self, nodes: int) -> slice:
+        """Nodes of this rank, of all `nodes`."""
+
+    def gathered(self, local: np.ndarray) -> np.ndarray:
+        """Values of all nodes from those of each rank."""
+
 
 class OneRank:
     """Transposition of one rank, which has everything."""
@@ -47,6 +53,12 @@ class OneRank:
 
     def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
         return waves
+
+    def local(self, nodes: int) -> slice:
+        return slice(0, nodes)
+
+    def gathered(self, local: np.ndarray) -> np.ndarray:
+        return local
 
 
 class PressureSums(NamedTuple):
@@ -101,7 +113,7 @@ class Deflection:
     `stiffness`: C of the module.
     `film_scale`: of the row scale, in a^2/R.
     `periodic`: across.
-    `local`: nodes of this rank, whole rows.
+    `owned`: local nodes in the window.
 
     `kernel`: C K, shape (n_y, n_x).
     `row_scale`: coefficient of the separation in a row; that of h00 is its negative.
@@ -115,8 +127,10 @@ class Deflection:
         stiffness: float,
         film_scale: float,
         periodic: bool,
+        owned: slice,
         ranks: Transposition | None = None,
     ):
+        self.owned = owned
         (n_y, n_x), (dy, dx) = shape, spacings
         self.cell, self.periodic = dx * dy, periodic
         self.row_scale = np.sqrt(self.cell) / film_scale
@@ -129,8 +143,8 @@ class Deflection:
         return PressureSums(self.convolution(pressure), np.array([self.cell * pressure.sum()]))
 
     def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
-        """Local rows, from the separation at the local nodes."""
-        return self.row_scale * (separation - approach - sums.deflection)
+        """Local rows, from the separation at the nodes of the window."""
+        return self.row_scale * (separation[self.owned] - approach - sums.deflection)
 
     @cached_property
     def largest_eigenvalue(self) -> float:
@@ -138,5 +152,6 @@ class Deflection:
         return float(np.abs(self.integral(np.ones(self.convolution.n_y * self.convolution.n_x))).max())
 
     def integral(self, pressure: np.ndarray) -> np.ndarray:
-        """Elastic deflection at every node of the mesh, in a^2/R; on one rank."""
-        return self.convolution(pressure)
+        """Elastic deflection at every node of the mesh, in a^2/R, by the pressures there; collective."""
+        ranks = self.convolution.ranks
+        return ranks.gathered(self.convolution(pressure[ranks.local(len(pressure))]))

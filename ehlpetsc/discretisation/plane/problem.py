@@ -32,7 +32,8 @@ def plane_problem(
     """
     grid, film_scale = scales.grid, film_scale_of(case, scales, film_scale)
     model = contact_model(case, scales, film_scale, bound_tolerance)
-    deflection = Deflection(grid.shape, grid.steps, scales.stiffness, film_scale, grid.periodic, ranks)
+    constants = scales.stiffness, film_scale, grid.periodic
+    deflection = Deflection(grid.shape, grid.steps, *constants, share.owned, ranks)
     shape = (share.last - share.first) // grid.shape[-1], grid.shape[-1]
     if case.fluid is None:
         reynolds: NoOil | Reynolds = NoOil(shape, share.owned)

@@ -42,7 +42,7 @@ class RankTransposition:
     """
 
     def __init__(self, cuts: Sequence[int], ranks: MPI.Comm):
-        self.ranks, self.rows = ranks, np.diff(cuts)
+        self.ranks, self.cuts, self.rows = ranks, cuts, np.diff(cuts)
 
     def _cuts(self, count: int) -> np.ndarray:
         return np.array([count * k // self.ranks.size for k in range(self.ranks.size + 1)])
@@ -69,6 +69,15 @@ class RankTransposition:
         self._all_to_all(np.ascontiguousarray(waves), self.rows * number, received, mine * np.diff(cuts))
         parts = np.split(received, (mine * cuts[1:-1]).astype(int))
         return np.hstack([part.reshape(mine, -1) for part in parts])
+
+    def local(self, nodes: int) -> slice:
+        """See :class:`.deflection.Transposition`."""
+        n_x, (begin, end) = nodes // self.cuts[-1], self.cuts[self.ranks.rank : self.ranks.rank + 2]
+        return slice(begin * n_x, end * n_x)
+
+    def gathered(self, local: np.ndarray) -> np.ndarray:
+        """See :class:`.deflection.Transposition`."""
+        return np.concatenate(self.ranks.allgather(local))
 
     def _all_to_all(
         self, sent: np.ndarray, counts: np.ndarray, received: np.ndarray, back: np.ndarray

@@ -20,7 +20,7 @@ import numpy as np
 from ehlpetsc.discretisation.contact.node_state import NodeState
 
 PRESSURE, VOID, CONTACT, BOUND = 0, 1, 2, 3
-STIFF_SLOPE = 1.0  # p0 per a^2/R: from this slope of the asperities' pressure on it counts in a cavity
+STIFF_SLOPE = 1e-3  # p0 per a^2/R: from this slope of the asperities' pressure on it counts in a cavity
 
 
 class Reduction(NamedTuple):

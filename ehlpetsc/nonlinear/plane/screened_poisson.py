@@ -45,6 +45,19 @@ def fitted_terms(deflection: Deflection, spacings: tuple[float, float]) -> tuple
 
 
 @compiled
+def end_row(pointers: np.ndarray, columns: np.ndarray, values: np.ndarray, row: int, count: int) -> int:
+    """End a row of a sparse matrix after `count` entries, its columns sorted; return the next row."""
+    for k in range(pointers[row] + 1, count):
+        column, value, to = columns[k], values[k], k
+        while to > pointers[row] and columns[to - 1] > column:
+            columns[to], values[to] = columns[to - 1], values[to - 1]
+            to -= 1
+        columns[to], values[to] = column, value
+    pointers[row + 1] = count
+    return row + 1
+
+
+@compiled
 def fill(
     reduction: tuple,
     derivatives: np.ndarray,
@@ -90,8 +103,7 @@ def fill(
                     near = near % n
                 columns[count], values[count] = block * near + j, -dy / dx if k < 2 else -dx / dy
                 count += 1
-            row += 1
-            pointers[row] = count
+            row = end_row(pointers, columns, values, row, count)
         touches = kind[i] == CONTACT or kind[i] == BOUND
         if touches:  # the row of the deflection is that of v
             columns[count], values[count] = block * i + TERMS, row_scale * s_p[i]
@@ -100,14 +112,12 @@ def fill(
                 columns[count], values[count] = block * i + j, -row_scale * c[j]
                 count += 1
             border[row] = -row_scale
-            row += 1
-            pointers[row] = count
+            row = end_row(pointers, columns, values, row, count)
         if kind[i] == BOUND:
             if block > TERMS + 1:
                 columns[count], values[count] = block * i + TERMS + 1, 1.0
                 count += 1
-                row += 1
-                pointers[row] = count
+                row = end_row(pointers, columns, values, row, count)
             continue
         by = derivatives[i - first]
         edge = 0.0
@@ -136,11 +146,9 @@ def fill(
             by_pressure[i - first, k], by_separation[i - first, k] = by_v, gamma
             edge += gamma
         border[row] = edge
-        row += 1
-        pointers[row] = count
+        row = end_row(pointers, columns, values, row, count)
         if block > TERMS + 1 and kind[i] != CONTACT:
             columns[count], values[count] = block * i + TERMS + 1, 1.0
             count += 1
-            row += 1
-            pointers[row] = count
+            row = end_row(pointers, columns, values, row, count)
     return count

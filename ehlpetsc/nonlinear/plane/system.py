@@ -11,7 +11,7 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.plane.problem import plane_problem
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.preconditioner import EliminatedFilm
+from ehlpetsc.nonlinear.plane.preconditioner import Elimination
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
@@ -22,26 +22,31 @@ if TYPE_CHECKING:
 class PlaneMatrices:
     """Matrix-free Jacobian; the preconditioner around that of the user's options."""
 
+    linear_atol = 0.1  # an iteration costs a convolution
+
     def __init__(self, problem: EHLProblem, exchange: PlaneExchange, ranks: MPI.Comm):
         self.problem, self.exchange, self.ranks = problem, exchange, ranks
-        self.preconditioner: EliminatedFilm | None = None
+        self.elimination: Elimination | None = None
 
     def jacobian(self, ksp: PETSc.KSP) -> PlaneJacobian:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
-        operator = PlaneJacobian(self.problem, self.exchange, self.ranks)
-        self.preconditioner = EliminatedFilm(self.problem, operator, self.ranks, ksp.comm)
-        return operator
+        self.elimination = Elimination(self.problem, self.ranks, ksp.comm)
+        return PlaneJacobian(self.problem, self.exchange, self.ranks, self.elimination)
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; none."""
 
     def attach(self, ksp: PETSc.KSP) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
-        ksp.pc.setType("python")
-        ksp.pc.setPythonContext(self.preconditioner)
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; the options name the preconditioner."""
 
     def begin_solve(self) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; factors are kept from step to step."""
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        if self.elimination.factors:
+            self.elimination.begin_solve()
+
+    def keep(self, jacobian: PlaneJacobian) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        self.elimination.keep(jacobian)
 
 
 def plane_system(

@@ -1,0 +1,115 @@
+"""Jacobian of contacts in the plane against differences of the residual; its preconditioner."""
+
+import numpy as np
+import petsc4py
+import pytest
+from support.points import point
+
+petsc4py.init([])
+
+from petsc4py import PETSc
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.step_inputs import FilmHistory
+from ehlpetsc.discretisation.unknowns import Unknowns
+from ehlpetsc.nonlinear.newton import NewtonSolver
+from ehlpetsc.nonlinear.options import RunOptions
+from ehlpetsc.nonlinear.plane.system import plane_system
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
+
+SLIDING = {"motion.slide_roll_ratio": 0.3}
+EYRING = SLIDING | {"fluid.eyring_stress": 4e6, "fluid.eyring_stress_pressure": 1e-9}
+LAYER = {"contact.boundary_film": None, "contact.asperity_height": 20e-9}
+STRIP = {"contact.radius": 0.0125, "contact.load": 2e5, "mesh.width": 0.6}
+SCENES = {
+    "rolling": {},
+    "eyring": EYRING,
+    "eyring, rolling": {"fluid.eyring_stress": 4e6},
+    "carreau": SLIDING | {"fluid.carreau_stress": 4e6, "fluid.carreau_exponent": 0.5},
+    "layer": EYRING | LAYER,
+    "yielding": {"contact.yield_pressure": 0.25e9},
+    "yielding layer": LAYER | {"contact.yield_pressure": 0.25e9},
+    "starved": {"fluid.inlet_film": 2e-7},
+    # of a film without thickness the extrapolation of the storage has a kink
+    "direct": {"contact.model": "direct", "contact.boundary_film": None, "contact.minimum_film": 1e-9},
+    "dry": {"fluid": None, "motion": None},
+    "strip": STRIP | EYRING,
+}
+
+
+def scene(name):
+    """System of a coarse mesh, a state with cavities and contacts, inputs of a time step."""
+    changes = dict(SCENES[name])
+    tables = point(50.0, 5.0, 8, {k: v for k, v in changes.items() if "." in k})
+    for key in ("fluid", "motion"):
+        if key in changes:
+            tables.pop(key)
+    case = load(tables)
+    scales = Scales.of(case)
+    film = expected_film(case, scales)
+    system = plane_system(case, scales, film, PETSc.COMM_SELF)
+    problem, grid, rng = system.problem, scales.grid, np.random.default_rng(3)
+    p = np.sqrt(np.maximum(1.0 - grid.distance**2, 0.0)) + 1e-3
+    q = np.where(rng.random(grid.n) < 0.1, -0.3 * rng.random(grid.n), p * (0.8 + 0.2 * rng.random(grid.n)))
+    h = film * (1.0 + 0.3 * rng.random(grid.n)) + np.maximum(grid.distance - 1.0, 0.0) ** 1.5
+    touching = (grid.distance < 0.8) & (rng.random(grid.n) < 0.15)
+    q[touching] = np.abs(q[touching])  # no void between solids
+    w = problem.model.w_from_state(np.where(touching, 0.0, h), np.where(touching, 0.3, 0.0))
+    history = None
+    if case.fluid is not None:
+        m = problem.mass_per_area(np.abs(q), np.abs(w) + film)
+        history = FilmHistory(m, 0.9 * m, 0.02, 0.02)
+    inputs = problem.inputs(history=history)
+    return system, Unknowns(q, w, -0.8), inputs
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_product_equals_differences(name):
+    system, state, inputs = scene(name)
+    with RunOptions(kind="point"):
+        NewtonSolver(system, RunOptions(kind="point"))
+    system.set_initial_guess(state, inputs)
+    vector, rng = system.x.array.copy(), np.random.default_rng(1)
+    system.linearise(system.x)
+    direction, product = (
+        rng.standard_normal(len(vector)) * np.maximum(np.abs(vector), 1e-3),
+        system.x.duplicate(),
+    )
+    change = system.x.duplicate()
+    change.array[:] = direction
+    system.operator.mult(change, product)
+    found, rows = [], product.array.copy()
+    for step in (4e-6, 8e-6):
+        ends = []
+        for sign in (1.0, -1.0):
+            system.x.array[:] = vector + sign * step * direction
+            ends.append(system.evaluate(system.x).residual.copy())
+        found.append((ends[0] - ends[1]) / (2.0 * step))
+    expected = (4.0 * found[0] - found[1]) / 3.0
+    scale = np.abs(expected).reshape(-1)[: 2 * system.n].reshape(-1, 2).max(axis=0)
+    error = np.abs(rows - expected)[: 2 * system.n].reshape(-1, 2) / scale
+    assert error.max() < (
+        3e-7 if name == "carreau" else 1e-7
+    )  # the table interpolates derivatives by themselves
+    assert rows[-1] == pytest.approx(expected[-1], rel=1e-7)
+
+
+@pytest.mark.parametrize("name", ("rolling", "eyring", "layer", "strip"))
+def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name):
+    system, state, inputs = scene(name)
+    options = RunOptions(given={"pc_type": "lu", "ksp_rtol": "1e-6"}, kind="point")
+    with options:
+        solver = NewtonSolver(system, options)
+        system.set_initial_guess(state, inputs)
+        system.linearise(system.x)
+        system.operator.assemble()
+        ksp = solver.snes.ksp
+        ksp.setOperators(system.operator)
+        b, x = system.x.duplicate(), system.x.duplicate()
+        b.array[:] = np.random.default_rng(2).standard_normal(len(b.array))
+        ksp.solve(b, x)
+        assert 0 < ksp.getIterationNumber() <= 40
+        residual = b.duplicate()
+        system.operator.mult(x, residual)
+    assert (residual - b).norm() < 1.01e-6 * b.norm()
