@@ -27,8 +27,8 @@ MAX_ROW = 6 * (TERMS + 2)  # entries of a Reynolds row
 def fitted_terms(stiffness: float, spacings: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients c_j and squares of s_j for C of the deflection, shape (TERMS,) each.
 
-    Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, of the logarithm of
-    a strip above all, swings about it and through zero.
+    Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, most of all of the
+    logarithm of a strip, swings about it and through zero.
     """
     from scipy.optimize import nnls
 
