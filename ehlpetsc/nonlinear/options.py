@@ -34,8 +34,7 @@ KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.Fle
 # pressures
 PLANE = {
     "ksp_rtol": "1e-2",  # a convolution an iteration: tighter saves no Newton iteration
-    # stiff asperities: without it the basis loses its orthogonality, and the residual found is not the true
-    # one
+    # with stiff asperities the basis else loses its orthogonality, and the residual found is not the true one
     "ksp_gmres_cgs_refinement_type": "refine_ifneeded",
     "pc_type": "python",
     "pc_python_type": "ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm",

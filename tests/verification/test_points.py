@@ -28,7 +28,7 @@ def radius_ratio(ellipticity):
 
 
 def dry(changes, ellipticity, points):
-    """Errors of the pressure over p0, within 0.9 of the ellipse and mean; relative error of the approach."""
+    """Errors of the pressure in p0, within 0.9 of the ellipse and mean; relative error of the approach."""
     tables = point(50.0, 5.0, points, changes)
     tables = {key: tables[key] for key in ("title", "contact")}
     tables["mesh"] = DRY_MESH | {"points_per_half_width": points}
@@ -81,7 +81,7 @@ def smooth(M, L, points, changes=None):
 
 @pytest.mark.parametrize("M, L, central, lowest, pressure, approach", FILMS)
 def test_smooth_films_with_their_order(M, L, central, lowest, pressure, approach):
-    """Against two independent programs; 33^2, 65^2, 129^2, on which the spike of pressure has no limit."""
+    """On 33^2, 65^2 and 129^2 nodes, against limits from finer meshes."""
     found = []
     for points in (8, 16, 32):
         simulation, state, film, p = smooth(M, L, points)
