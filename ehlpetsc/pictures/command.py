@@ -17,8 +17,6 @@ import contextlib
 import re
 from pathlib import Path
 
-import numpy as np
-
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
@@ -102,6 +100,12 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
     """Draw one picture or movie into a file."""
     if options.kind in OF_ONE and len(results) > 1:
         raise OutputError(f"{len(results)} results; allowed: --{options.kind.replace('_', '-')} of one")
+    low, high = frames.view(results, options.window)
+    for result in results:
+        if not len(result.time):
+            raise OutputError(f"{result.path}: no frame in it")
+        if frames.nodes_in_view(result, (low, high)) < 2:
+            raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
     planes = [result for result in results if result.y is not None]
     if not planes and (options.kind in MAPS or options.section is not None):
         word = "section" if options.section is not None else options.kind
@@ -112,13 +116,6 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
         results = [section_of(result, options.section or 0.0) for result in results]
     elif options.section is not None:
         raise OutputError(f"--section: of pictures over x, not of --{options.kind.replace('_', '-')}")
-    low, high = frames.view(results, options.window)
-    for result in results:
-        if not len(result.time):
-            raise OutputError(f"{result.path}: no frame in it")
-        x = result.x / result.attrs["a"]
-        if np.count_nonzero((x >= low) & (x <= high)) < 2:
-            raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
     if options.kind == "movie":
         save_movie(results, options, output)
     elif options.kind == "report":

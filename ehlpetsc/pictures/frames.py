@@ -94,6 +94,15 @@ def view(results: list[Result], chosen: Sequence[float] | None = None) -> Sequen
     return chosen or (max(low, WINDOW[0]), min(high, WINDOW[1]))
 
 
+def nodes_in_view(result: Result, window: Sequence[float]) -> int:
+    """Nodes along x within limits of x/a, in a plane those across in its view if they are fewer."""
+    x = result.x / result.attrs["a"]
+    count = int(np.count_nonzero((x >= window[0]) & (x <= window[1])))
+    if result.y is None:
+        return count
+    return min(count, int(np.count_nonzero(np.abs(result.y) <= style.reach_across(result, window))))
+
+
 def instant(results: list[Result], indices: Sequence[int]) -> str:
     """Text with the travel of stored frames, and step and time if they are equal; "" if steady."""
     first, index = results[0], indices[0]

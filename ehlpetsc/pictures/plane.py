@@ -64,6 +64,12 @@ class PlaneFrame:
         return cls(x, y, pressure, solids, film, contact, (width, width * aspect(result)), 1e-9 * p0, label)
 
     @property
+    def hertz(self) -> np.ndarray:
+        """Pressure of the dry contact [GPa], shape (ny, nx)."""
+        distance = np.hypot(self.x / self.half_widths[0], self.y[:, np.newaxis] / self.half_widths[1])
+        return hertz_pressure(distance, 1.0, self.p0)
+
+    @property
     def thickest(self) -> float:
         """Upper end of the scale of film [µm], above the maximum in the dry contact, if any is in view."""
         across = self.y[:, np.newaxis] / self.half_widths[1]
@@ -83,10 +89,10 @@ def aspect(result: Result) -> float:
 def in_view(result: Result, window: Sequence[float]) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
     """Nodes within limits of x/a, with x/a and y/a.
 
-    Across, half the width of these limits on both sides of the middle, times b/a of an ellipse.
+    Across, as far from the middle as :func:`.style.reach_across`.
     """
-    a, b = result.attrs["a"], result.attrs["b"]
-    across = 0.5 * (window[1] - window[0]) * (b if np.isfinite(b) else a) / a
+    a = result.attrs["a"]
+    across = style.reach_across(result, window) / a
     x, y = result.x / a, result.y / a
     part = style.in_view(y, (-across, across)), style.in_view(x, window)
     return part, x[part[1]], y[part[0]]
@@ -106,11 +112,12 @@ def fill_figure(figure: Figure, result: Result, index: int, window: Sequence[flo
     axes = figure.subplots(3, 2, height_ratios=heights)
     draw_maps(figure, axes[0], frame)
     row, column = np.argmin(np.abs(frame.y)), np.argmin(np.abs(frame.x))
-    for panels, abscissa, nodes, width, label in (
-        (axes[1], frame.x, np.s_[row, :], frame.half_widths[0], "x/a along y = 0"),
-        (axes[2], frame.y, np.s_[:, column], frame.half_widths[1], "y/a along x = 0"),
+    at = f"{frame.x[column]:.2g} a" if np.abs(frame.x[column]) > np.diff(frame.x).max() else "0"
+    for panels, abscissa, nodes, label in (
+        (axes[1], frame.x, np.s_[row, :], "x/a along y = 0"),
+        (axes[2], frame.y, np.s_[:, column], f"y/a along x = {at}"),
     ):
-        draw_section(panels, frame, abscissa, nodes, hertz_pressure(abscissa, width, frame.p0))
+        draw_section(panels, frame, abscissa, nodes)
         for panel in panels:
             panel.set_xlabel(label)
     axes[1, 0].legend(loc="best", frameon=False, handlelength=1.2, **style.SMALL)
@@ -188,7 +195,6 @@ def draw_section(
     frame: PlaneFrame,
     abscissa: np.ndarray,
     nodes: tuple,
-    hertz: np.ndarray,
 ) -> None:
     """Draw pressure and film along one line of nodes."""
     upper, lower = panels
@@ -197,7 +203,7 @@ def draw_section(
         solid_area = dict(color=style.SOLIDS, lw=0, zorder=1.5, label="of the solids")
         upper.fill_between(abscissa, 0.0, solids, **solid_area)
     upper.plot(abscissa, frame.pressure[nodes], color=style.SINGLE, lw=1.0, label="pressure")
-    upper.plot(abscissa, hertz, ":", color="0.6", lw=0.9, zorder=1, label="Hertz")
+    upper.plot(abscissa, frame.hertz[nodes], ":", color="0.6", lw=0.9, zorder=1, label="Hertz")
     lower.plot(abscissa, film, color=style.SINGLE, lw=1.0)
     if touching.any():
         lower.plot(

@@ -119,6 +119,15 @@ def in_view(x: np.ndarray, window: Sequence[float]) -> slice:
     return slice(nodes[0], nodes[-1] + 1)
 
 
+def reach_across(result: Result, window: Sequence[float]) -> float:
+    """Distance from the middle of a plane to the edge of its view across [m].
+
+    Half the width of the limits of x/a, times b, of a strip times a.
+    """
+    b = result.attrs["b"]
+    return 0.5 * (window[1] - window[0]) * float(b if np.isfinite(b) else result.attrs["a"])
+
+
 UNITS = {
     "fluid.viscosity": "viscosity [Pa s]",
     "motion.entrainment_speed": "entrainment speed [m/s]",

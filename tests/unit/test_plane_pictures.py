@@ -94,6 +94,14 @@ def test_sections_through_the_middle_follow_both_axes(point):
         np.testing.assert_allclose(hertz.get_ydata(), expected)
 
 
+def test_section_across_is_in_view(point, drawn):
+    assert draw(point, "--window", 0.6, 1.6) == 0
+    axes = drawn[0].axes[4]
+    assert axes.get_xlabel() == "y/a along x = 0.64 a"
+    hertz = next(line for line in axes.lines if line.get_linestyle() == ":")
+    assert hertz.get_ydata().max() == pytest.approx(1e-9 * P0 * (1.0 - 0.6429**2) ** 0.5, rel=1e-3)
+
+
 def test_hertz_pressure_of_a_section_is_that_at_its_place(point, drawn):
     assert draw(point, "--section", 1.2) == 0
     hertz = next(line for line in drawn[0].axes[0].lines if line.get_linestyle() == ":")
@@ -206,6 +214,8 @@ def test_case_picture_shows_rows_of_the_mesh(tmp_path, capsys):
         (make_result, ["--fringes"], ["a line contact; allowed: --fringes of a point contact or strip"]),
         (make_result, ["--section", 0], ["a line contact; allowed: --section of a point contact or strip"]),
         (make_plane, ["--section", 0, "--over-time"], ["--section: of pictures over x, not of --over-time"]),
+        (make_plane, ["--window", 3, 4], ["fewer than two nodes from 3 a to 4 a"]),
+        (make_plane, ["--window", 0, 0.1, "--fringes"], ["fewer than two nodes from 0 a to 0.1 a"]),
         (make_plane, ["--section", 9], ["section: y = ", "; allowed: on the mesh"]),
     ],
 )
