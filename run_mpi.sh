@@ -7,7 +7,9 @@ usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [options]         run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh COMMAND ...                            as ehlpetsc COMMAND, see below
+./run_mpi.sh python SCRIPT.py                       run a script in which import ehlpetsc works
 ./run_mpi.sh test [TESTS]                           run the test suite, serial and under mpirun
+./run_mpi.sh docs [FOLDER]                          open the pages as one site, or build it in a folder
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
 ./run_mpi.sh --commands FOLDER                      link the command ehlpetsc into a folder, one of your PATH
 
@@ -113,11 +115,12 @@ needed:  Python 3.11 or newer with ${run_modules// /, }, and the mpirun of their
 
 set_environment() {
     export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 # threads of BLAS would compete with the ranks for the cores
-    [ -t 1 ] || export TERM=dumb                    # mpirun gives every rank a terminal, also without one here
+    # mpirun gives every rank a terminal, also without one here
+    if [ -t 1 ]; then export EHLPETSC_TERMINAL=1; else export TERM=dumb; fi
     [ -z "${OMPI_COMM_WORLD_SIZE-}${PMI_SIZE-}${PMIX_RANK-}" ] || return 0 # under mpirun, which has set the rest
     # Open MPI 4 | 5; another MPI does not read them. No binding, as runs side by side would share a core.
     export OMPI_MCA_hwloc_base_binding_policy=none PRTE_MCA_hwloc_default_binding_policy=none
-    export OMPI_MCA_orte_execute_quiet=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     export OMPI_MCA_ess_singleton_isolated=1 # no daemon for a rank without mpirun
     [ "$(nodes)" = 1 ] || return 0
     # shared memory alone, by copies that a container allows, and no wait for a network or munge
@@ -147,17 +150,35 @@ settings_of_ranks() {
         export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 }
 
-# Leave out the comment of Open MPI 5 on an exit status that the run has explained, and that of Open MPI 6 on the
-# names of the settings above
+# Leave out the comments of Open MPI on an exit status that the run has explained, on signals that it passes on, and
+# on the names of the settings above. Its other comments become their first sentence, once, with the names in them;
+# status 2 where there is nothing else: the launcher has refused.
 without_comment() {
     trap '' INT TERM HUP USR1
-    local left_out='prterun[ \n]+(detected|noticed)|Deprecated variable: +(hwloc|rmaps)_default_'
-    exec awk -v left_out="$left_out" '/^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ { next }
-        /^-+$/ && length > 70 && held == "" { held = $0 "\n"; next }
-        /^-+$/ && length > 70 { if (held !~ left_out) printf "%s%s\n", held, $0; held = ""; next }
-        held != "" { held = held $0 "\n"; next }
-        { print; fflush() }
-        END { printf "%s", held }'
+    local left_out='(prterun|mpirun[.a-z]*)[ \n]+(detected|noticed)|^Primary job|Deprecated variable: +(hwloc|rmaps)_default_'
+    left_out+='|(MPI_INIT|orte_init) failed|internal error has occurred in ORTE' # the reason comes before them
+    exec awk -v left_out="$left_out" '
+        function sentence(text, words, named, names, n, k, line) {
+            n = split(text, line, "\n")
+            for (k = 1; k <= n; k++) if (line[k] ~ /^ *[A-Z][a-z]+: +[^ ]/) names = names ", " line[k]
+            sub(/\n *\n.*/, "", text); gsub(/[ \n]+/, " ", text); sub(/\. .*/, "", text); sub(/[.:] *$/, "", text)
+            gsub(/ +/, " ", names)
+            if (text ~ /not enough slots/) names = names "; try -n 1, or ask the batch system for more tasks"
+            return "run_mpi.sh: mpirun: " text names
+        }
+        /^\[[^ ]*\] PMIX ERROR: PMIX_ERR_UNREACH/ || /^mpirun[.a-z]*: Forwarding signal/ { next }
+        /^-+$/ && length > 50 && !inside { inside = 1; held = ""; next }
+        /^-+$/ && length > 50 {
+            inside = 0
+            if (held ~ left_out) next
+            line = sentence(held)
+            if (!said[line]++) { print line; refused = 1; fflush() }
+            next
+        }
+        inside { held = held $0 "\n"; next }
+        /^\[[^ ]*:[0-9]+\] / { of_mpi = of_mpi $0 "\n"; next }
+        { print; others = 1; fflush() }
+        END { if (inside) printf "%s", held; if (!refused) printf "%s", of_mpi; exit refused && !others ? 2 : 0 }'
 }
 
 # mpirun loses what comes before its ranks are there; the run takes the same request twice as one
@@ -175,7 +196,7 @@ stopped_early() {
 # SIGTERM to mpirun kills the ranks within a second; SIGUSR1 it passes on, and they stop after the current step.
 # Hence a session of its own, which Ctrl-C does not reach, and a death signal should this script be killed.
 run_ranks() {
-    local status=0 asked="" job comments filter
+    local status=0 asked="" refused=0 job comments filter
     settings_of_ranks "$ranks"
     exec {comments}> >(without_comment >&2)
     filter=$!
@@ -188,7 +209,8 @@ run_ranks() {
         status=0
         wait $job || status=$?
     done
-    wait $filter || true
+    wait $filter || refused=$?
+    if [ $status = 1 ] && [ $refused = 2 ]; then exit 2; fi
     # of SIGUSR1 only mpirun and a Python die that have hardly begun: the run takes it as a request
     if [ -n "$asked" ] && [ $status = 138 ]; then stopped_early; fi
     exit $status
@@ -206,6 +228,17 @@ run_tests() {
     done
 }
 
+# The pages with search and typeset equations
+build_site() {
+    local target=${1-${XDG_CACHE_HOME:-$HOME/.cache}/ehlpetsc/docs} scratch
+    scratch=$(mktemp -d)
+    trap "rm -r '$scratch'" EXIT
+    "$python" -m sphinx -q -W --keep-going -d "$scratch" -c "$here/.github/site" "$here" "$target" ||
+        { say "$target: the site was not built"; exit 2; }
+    echo "$target/README.html"
+    [ -n "${1-}" ] || "$python" -m webbrowser "file://$target/README.html"
+}
+
 # A link to this script, which by its name knows that it is a command
 write_command() {
     mkdir -p -- "$1" && [ ! -e "$1/ehlpetsc" ] || [ -L "$1/ehlpetsc" ] || { say "$1/ehlpetsc: is not such a link"; exit 2; }
@@ -215,7 +248,7 @@ write_command() {
 }
 
 ranks=""
-if [ "${0##*/}" = ehlpetsc ]; then # by the link of write_command
+if [ "${0##*/}" = ehlpetsc ] && [ "${1-}" != -n ] && [ "${1-}" != python ]; then # by the link of write_command
     prepare "$run_modules" "$drawing"
     exec "$python" -m ehlpetsc "$@"
 elif [ "${1-}" = -n ]; then
@@ -229,7 +262,8 @@ case ${1-} in
     --install) prepare "$run_modules $drawing" ;;
     --commands) write_command "${2-}" ;;
     test) prepare "$run_modules $testing"; run_tests "${@:2}" ;;
-    docs) prepare "$run_modules $drawing $site"; exec "$python" -m ehlpetsc "$@" ;;
+    docs) prepare "$run_modules $drawing $site"; build_site "${@:2}" ;;
+    python) prepare "$run_modules" "$drawing"; exec "$python" "${@:2}" ;;
     -[!-]*) say "$1: a case or a command comes first, see -h"; exit 2 ;;
     *)
         trap stopped_early INT TERM HUP USR1

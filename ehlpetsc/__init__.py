@@ -1,7 +1,8 @@
 """Transient mixed lubrication and contact of rough line contacts on PETSc.
 
 ``load`` a case, ``solve`` it, or iterate over the accepted states of a ``Simulation``; ``read_result`` opens
-a file. ``gears`` computes paths of contact of gears. They are imported at first use.
+a file. ``gears`` computes paths of contact of gears, ``post`` stresses and damage. They are imported at first
+use.
 """
 
 import importlib
@@ -16,6 +17,7 @@ _HOMES = {
     "read_result": "ehlpetsc.api",
     "Result": "ehlpetsc.api",
     "gears": "ehlpetsc.gears",
+    "post": "ehlpetsc.post",
     "CaseError": "ehlpetsc.base.errors",
     "NotConverged": "ehlpetsc.base.errors",
     "OutputError": "ehlpetsc.base.errors",

@@ -1,18 +1,18 @@
 """The program: ``ehlpetsc CASE.toml`` runs a case, ``ehlpetsc plot RESULT.h5`` draws, and so on: `COMMANDS`.
 
-``mpirun -n N python3 -m ehlpetsc CASE.toml`` takes the same words on N ranks. A command imports only what it
-needs, and names the packages that are missing.
+``ehlpetsc -n N CASE.toml``, or ``mpirun -n N python3 -m ehlpetsc CASE.toml``, runs it on N ranks. A command
+imports only what it needs, and names the packages that are missing.
 """
 
 import difflib
 import importlib
 import os
+import shutil
 import signal
 import sys
 import traceback
 import warnings
 from pathlib import Path
-from typing import NoReturn
 
 import ehlpetsc.base.environment as packages
 from ehlpetsc import __version__
@@ -20,6 +20,7 @@ from ehlpetsc.base.environment import NUMERICS, READING
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.run.stop import StopRequest
 
+MAX_RANKS = 99999
 DRAWING, FORECAST = (*NUMERICS, "matplotlib"), (*READING, "h5py")
 
 
@@ -28,14 +29,12 @@ COMMANDS = {  # module and its function, by default main, packages that it needs
     "plot": ("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
     "summary": ("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),
-    "ensemble": ("ehlpetsc.analysis.ensemble", NUMERICS, "means over runs of several seeds"),
     "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
     "surface": ("ehlpetsc.pictures.surface", DRAWING, "roughness parameters of a profile or map file"),
     "explain": ("ehlpetsc.run.explain", FORECAST, "film, run time and effects of a case, before it runs"),
     "keys": ("ehlpetsc.case.keys", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": ("ehlpetsc.case.keys:template_command", READING, "a commented case to begin with"),
-    "docs": ("ehlpetsc.base.docs", (), "these pages as one site, opened in a browser"),
 }
 
 
@@ -51,6 +50,8 @@ def main(words: list[str] | None = None) -> int:
         raise
     except CaseError as error:  # laws and effects of the user, as a command imports them
         status = refuse(str(error))
+    except UsageError as error:  # of a command whose modules cannot be imported
+        status = refuse(f"ehlpetsc: {error}")
     except BrokenPipeError:  # the reader has gone, as `head -1` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = ExitStatus.STOPPED
@@ -72,8 +73,8 @@ def _start(words: list[str]) -> int:
         return _print(help_text())
     if first in COMMANDS:
         return _start_command(first, words[1:])
-    if first == "python":
-        return _run_script(words[1:])
+    if first in ("-n", "-np"):
+        return _start_ranks(words[1:])
     if first and not (first.startswith("-") or first.endswith(".toml") or Path(first).exists()):
         close = difflib.get_close_matches(first, [*COMMANDS, *(path.stem for path in Path().glob("*.toml"))])
         meant = " or ".join(name if name in COMMANDS else f"{name}.toml" for name in close)
@@ -90,11 +91,20 @@ def _start_command(name: str, words: list[str]) -> int:
     return getattr(importlib.import_module(module), function or "main")(words)
 
 
-def _run_script(words: list[str]) -> NoReturn:
-    """Run a script, or Python itself, with ehlpetsc and PETSc on the path."""
-    packages.prepare()
-    os.environ["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
-    os.execv(sys.executable, [sys.executable, *words])
+def _start_ranks(words: list[str]) -> int:
+    """Start a case on a number of ranks, by run_mpi.sh in a clone, otherwise by mpirun."""
+    ranks = words[0] if words else ""
+    if not (ranks.isdecimal() and 0 < int(ranks) <= MAX_RANKS):
+        return refuse(f"ehlpetsc: -n {ranks}: allowed: a whole number of ranks, at least 1")
+    if any(name in os.environ for name in packages.MPIRUN_VARIABLES):
+        return refuse(f"ehlpetsc: -n {ranks} under mpirun, which has started the ranks; leave it out")
+    if packages.SCRIPT.exists():
+        os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+        os.execv(packages.SCRIPT, [str(packages.SCRIPT), "-n", *words])
+    mpirun = shutil.which("mpirun")
+    if mpirun is None:
+        return refuse(f"ehlpetsc: -n {ranks}: there is no mpirun on the PATH; install that of mpi4py's MPI")
+    os.execv(mpirun, [mpirun, "-n", ranks, sys.executable, "-m", "ehlpetsc", *words[1:]])
 
 
 def _run(words: list[str]) -> int:
@@ -122,10 +132,9 @@ def help_text() -> str:
     from ehlpetsc.run.cli import run_parser
 
     lines = [
-        "usage: ehlpetsc CASE.toml [options]    run a case, under mpirun on any number of ranks",
+        "usage: ehlpetsc [-n RANKS] CASE.toml [options]    run a case",
         "       ehlpetsc COMMAND ...            each with -h:",
         *(f"  {name:9s} {text}" for name, (*_, text) in COMMANDS.items()),
-        "  python    SCRIPT.py: run a script in which import ehlpetsc works",
         "Options of a run, also as -ehl_output ...; and --version:",
         run_parser().format_help().partition("\n")[2],
         "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",

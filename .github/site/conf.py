@@ -1,9 +1,13 @@
-"""Configuration of Sphinx: all pages as one site, equations by the installed MathJax, no network."""
+"""Configuration of Sphinx: all pages as one site, equations by Debian's MathJax without network.
+
+Where that is missing, as with Sphinx from PyPI, browsers load the MathJax of Sphinx's default address.
+"""
 
 import shutil
 from pathlib import Path
 
 from ehlpetsc import __version__
+from ehlpetsc.base.environment import missing
 
 FRONT = "README"
 SECTIONS = {
@@ -43,32 +47,34 @@ MATHJAX_FILES = (
     "jax/output/SVG/autoload",
     "jax/output/SVG/fonts/TeX",
 )  # glyphs as paths: no fonts, which a browser does not load from files everywhere
-mathjax2_config = {
-    "jax": ["input/TeX", "output/SVG"],
-    "extensions": ["tex2jax.js"],
-    "TeX": {"extensions": ["AMSmath.js", "AMSsymbols.js", "noErrors.js", "noUndefined.js"]},
-    "tex2jax": {
-        "inlineMath": [["\\(", "\\)"]],
-        "displayMath": [["\\[", "\\]"]],
-        "ignoreClass": ".*",
-        "processClass": "math",
-    },
-    "showMathMenu": False,
-    "messageStyle": "none",
-    "SVG": {"font": "TeX"},  # at its own size, by which equation numbers are placed
-}
 
 project, author, release = "ehlpetsc", "", __version__
 html_title, html_theme, html_show_copyright, html_show_sphinx = f"ehlpetsc {release}", "furo", False, False
 html_copy_source = html_show_sourcelink = False
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+autodoc_mock_imports = missing(("h5py", "mpi4py", "petsc4py", "matplotlib"))
 autodoc_typehints, autodoc_member_order = "signature", "bysource"
 root_doc = FRONT
 include_patterns = [f"{page}.md" for page in PAGES]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4  # levels with anchors, which have the names of Git hosts
-myst_update_mathjax = False  # for MathJax 3
-mathjax_path = "mathjax/MathJax.js"
+if MATHJAX.exists():
+    myst_update_mathjax = False  # for MathJax 3
+    mathjax_path = "mathjax/MathJax.js"
+    mathjax2_config = {
+        "jax": ["input/TeX", "output/SVG"],
+        "extensions": ["tex2jax.js"],
+        "TeX": {"extensions": ["AMSmath.js", "AMSsymbols.js", "noErrors.js", "noUndefined.js"]},
+        "tex2jax": {
+            "inlineMath": [["\\(", "\\)"]],
+            "displayMath": [["\\[", "\\]"]],
+            "ignoreClass": ".*",
+            "processClass": "math",
+        },
+        "showMathMenu": False,
+        "messageStyle": "none",
+        "SVG": {"font": "TeX"},  # at its own size, by which equation numbers are placed
+    }
 smartquotes = False
 pygments_style, highlight_language = "friendly", "none"  # blocks without a language are terminals
 
@@ -85,7 +91,7 @@ def _copy_site_files(app, failure):
     """Copy MathJax, and the front page to index.html."""
     if failure is None:
         shutil.copy(Path(app.outdir, f"{FRONT}.html"), Path(app.outdir, "index.html"))
-        for name in MATHJAX_FILES:
+        for name in MATHJAX_FILES if MATHJAX.exists() else ():
             target = Path(app.outdir, "_static", "mathjax", name)
             target.parent.mkdir(parents=True, exist_ok=True)
             if (MATHJAX / name).is_dir():

@@ -1,8 +1,9 @@
 """Collisions of asperities in a series: figures 1 to 4 and 6 of Holmes et al. (2005).
 
-``ehlpetsc python cases/paper/collisions.py fig4.series.json`` lists the collisions and the dependence of film
-and pressure on the varied value. ``--draw 18 28`` draws pressure and film at these collisions in all members
-(figures 1 to 3 and 6), ``--points`` film and pressure at contact points over the varied value (figure 4).
+``./run_mpi.sh python cases/paper/collisions.py fig4.series.json`` lists the collisions and the dependence of
+film and pressure on the varied value. ``--draw 18 28`` draws pressure and film at these collisions in all
+members (figures 1 to 3 and 6), ``--points`` film and pressure at contact points over the varied value (figure
+4).
 
 Members have the same roughness, kinematics and, except for halved steps, times: an asperity pair is in the
 same position in all of them at the same time. Contact nodes of all members are entered in one map over x and

@@ -1,8 +1,9 @@
 """Contacts per millisecond along the contact: figure 7 of Holmes et al. (2005).
 
-``ehlpetsc python cases/paper/contacts.py fig7.series.json [-o PICTURE]`` prints contacts per millisecond and
-node (Q, mean of abs(x) < a, of its inlet quarter and exit half), length in contact and maximum pressure, and
-draws Q with the paper's polynomial of order 8. Each time step in contact counts: Q rises with their number.
+``./run_mpi.sh python cases/paper/contacts.py fig7.series.json [-o PICTURE]`` prints contacts per millisecond
+and node (Q, mean of abs(x) < a, of its inlet quarter and exit half), length in contact and maximum pressure,
+and draws Q with the paper's polynomial of order 8. Each time step in contact counts: Q rises with their
+number.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Damage at several slide/roll ratios: figures 9, 11 and 12 of Holmes et al. (2005).
 
-``ehlpetsc python cases/paper/damage.py A.post.h5 B.post.h5 [...] [-o FOLDER]`` draws damage near the main
+``./run_mpi.sh python cases/paper/damage.py A.post.h5 B.post.h5 [...] [-o FOLDER]`` draws damage near the main
 surface on one scale, and its distributions over the asperities at each depth.
 """
 

@@ -1,6 +1,7 @@
 """Oil trapped between two contacts, a pressure maximum there: figure 5 of Holmes et al. (2005).
 
-``ehlpetsc python cases/paper/entrapment.py fig5.h5 [-o PICTURE]`` draws the strongest one at four instants.
+``./run_mpi.sh python cases/paper/entrapment.py fig5.h5 [-o PICTURE]`` draws the strongest one at four
+instants.
 """
 
 from __future__ import annotations

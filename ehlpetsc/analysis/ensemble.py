@@ -1,6 +1,4 @@
-"""Ensembles of runs that differ in seeds alone: means and deviations as CSV.
-
-``ehlpetsc ensemble OUTPUT.series.json [-o TABLE.csv]``
+"""Ensembles of runs that differ in seeds alone: means and deviations, ``ehlpetsc summary --ensemble``.
 
 A scalar of a run is the mean over the time in which the roughness of both surfaces fills the contact (over
 the whole run if it ends before) or, for minimum films and maximum pressures, the extreme. Members whose cases
@@ -10,15 +8,11 @@ by one. If RESULT.post.h5 exists, quantiles of damage are included.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 
 import numpy as np
 
-from ehlpetsc.analysis.summary import put_table, table_parser
-from ehlpetsc.base.command_parser import exit_status
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.effects.quantities import STEP_SCALARS
 from ehlpetsc.results.index import groups
 from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.results.post_result import PostResult, damage_beside
@@ -79,13 +73,13 @@ def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
     return found
 
 
-def table(results: list[Result], _chosen: argparse.Namespace | None = None) -> list[Sequence]:
+def table(results: list[Result]) -> list[Sequence]:
     """Names of the columns, then a row for each scalar of each ensemble."""
     found = ensembles(results)
     if len(found) == len(results) > 1:
         raise OutputError(
             f"{len(results)} results of as many conditions: no two differ in their seeds alone; "
-            "ehlpetsc summary lists single runs"
+            "without --ensemble single runs are listed"
         )
     rows: list[Sequence] = [COLUMNS]
     for ensemble, scalars in found.items():
@@ -93,12 +87,6 @@ def table(results: list[Result], _chosen: argparse.Namespace | None = None) -> l
             deviation = values.std(ddof=1) if values.size > 1 else np.nan
             reduced = values.mean(), deviation, values.min(), values.max()
             others = "K" if name.startswith("flash_temperature") else "1"
-            unit = STEP_SCALARS[name].units if name in STEP_SCALARS else others
+            unit = results[0].unit(f"steps/{name}") if name in results[0].scalars else others
             rows.append((ensemble, name, unit, values.size, *(f"{v:.6g}" for v in reduced)))
     return rows
-
-
-def main(words: Sequence[str]) -> int:
-    """Run the command; returns its exit status: 0 done, 2 bad input."""
-    chosen = table_parser("ensemble", __doc__).parse_args(words)
-    return exit_status("ensemble", lambda: put_table(chosen, table), output=chosen.output)

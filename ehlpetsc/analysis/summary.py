@@ -4,7 +4,8 @@
 
 One line for each result and scalar, over the time in which both surfaces fill the contact, or over the whole
 run if it ends before (column ``from_s``). SI units. Means and percentiles are weighted by the time step.
-``--steps`` prints the scalars of every step of one result, ``--frame STEP`` its fields at a stored step.
+``--steps`` prints the scalars of every step of one result, ``--frame STEP`` its fields at a stored step,
+``--ensemble`` mean and deviation of each scalar over results that differ only in their seeds.
 """
 
 from __future__ import annotations
@@ -13,14 +14,15 @@ import argparse
 import contextlib
 import csv
 import io
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from ehlpetsc.analysis import ensemble
 from ehlpetsc.base.command_parser import CommandParser, exit_status
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.effects.quantities import STEP_SCALARS
+from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.results.index import distinguishing_names, in_order, open_all
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import atomic_write, check_derived
@@ -43,7 +45,7 @@ def statistics(result: Result) -> list[tuple]:
             v, w = values[usable], weights[usable]
             percentiles = weighted_percentiles(v, w, PERCENTILES)
             reduced = (mean(result, name, weights), *percentiles, v.min(), v.max(), v[-1])
-            unit = result[f"steps/{name}"].attrs.get("units", STEP_SCALARS[name].units)
+            unit = result.unit(f"steps/{name}")
             begin = (time - dt)[usable][0]
             rows.append((name, unit, *(f"{x:.6g}" for x in reduced), f"{begin:.6g}", int(usable.sum())))
     return rows
@@ -61,7 +63,7 @@ def table(results: list[Result]) -> list[tuple]:
 def steps_table(result: Result) -> list[Sequence]:
     """Names with units of the scalars of the steps, in the order of progress, then a row for every step."""
     names = [name for name in STEP_SCALARS if name in result.scalars]
-    return _columns({f"{name} [{STEP_SCALARS[name].units}]": result.steps(name) for name in names})
+    return _columns({f"{name} [{result.unit(f'steps/{name}')}]": result.steps(name) for name in names})
 
 
 def frame_table(result: Result, step: int) -> list[Sequence]:
@@ -70,8 +72,11 @@ def frame_table(result: Result, step: int) -> list[Sequence]:
     if result.step[frame] != step:
         stored = f"{result.step[0]} to {result.step[-1]}, next to it {result.step[frame]}"
         raise UsageError(f"--frame {step}: {result.path} stores no such step; allowed: one of {stored}")
-    fields = {f"{name} [{result[name].attrs['units']}]": result[name][frame] for name in result.fields}
-    return _columns({"x [m]": result.x} | fields)
+    fields = {f"{name} [{result.unit(name)}]": result[name][frame] for name in result.fields}
+    if result.y is None:
+        return _columns({"x [m]": result.x} | fields)
+    y, x = np.meshgrid(result.y, result.x, indexing="ij")
+    return _columns({name: values.ravel() for name, values in {"x [m]": x, "y [m]": y, **fields}.items()})
 
 
 def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:
@@ -81,30 +86,23 @@ def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:
 
 def main(words: Sequence[str]) -> int:
     """Run the command; returns its exit status: 0 done, 2 bad input."""
-    parser = table_parser("summary", __doc__)
+    parser = CommandParser("summary", __doc__, "output")
+    parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
+    parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--steps", action="store_true", help="scalars of every step of one result, over time")
     kinds.add_argument("--frame", type=int, metavar="STEP", help="fields of one result at a stored step")
+    kinds.add_argument("--ensemble", action="store_true", help="mean and deviation over seeds")
     chosen = parser.parse_args(words)
-    return exit_status("summary", lambda: put_table(chosen, _rows), output=chosen.output)
+    return exit_status("summary", lambda: _put_table(chosen), output=chosen.output)
 
 
-def table_parser(name: str, description: str) -> CommandParser:
-    """Parser of a command that makes a table from results."""
-    parser = CommandParser(name, description, "output")
-    parser.add_argument("results", nargs="+", metavar="RESULT", help="result files, or the index of a series")
-    parser.add_argument("-o", "--output", type=Path, help="CSV file [standard output]")
-    return parser
-
-
-def put_table(
-    chosen: argparse.Namespace, rows_of: Callable[[list[Result], argparse.Namespace], Iterable[Sequence]]
-) -> None:
+def _put_table(chosen: argparse.Namespace) -> None:
     """Print the rows of a table of results as CSV, or write them to the file of ``-o``."""
     with contextlib.ExitStack() as stack:
         results = in_order(open_all(chosen.results, stack))
         text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(rows_of(results, chosen))
+        csv.writer(text, lineterminator="\n").writerows(_rows(results, chosen))
         if not chosen.output:
             print(text.getvalue(), end="")
             return
@@ -115,6 +113,8 @@ def put_table(
 
 
 def _rows(results: list[Result], chosen: argparse.Namespace) -> Iterable[Sequence]:
+    if chosen.ensemble:
+        return ensemble.table(results)
     if not chosen.steps and chosen.frame is None:
         return table(results)
     if len(results) > 1:

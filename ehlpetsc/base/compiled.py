@@ -4,21 +4,32 @@ The solver requires numba. Post-processing works without numba: the functions th
 with bitwise equal results.
 """
 
+from __future__ import annotations
+
 import contextlib
 import hashlib
 import json
 import os
 import re
+import time as clock
 from collections.abc import Callable, Container, Iterable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from llvmlite.ir import IRBuilder, Value
+    from numba.core.base import BaseContext
+    from numba.core.typing import Context, Signature
+    from numba.types import Type
 
 os.environ.setdefault(
     "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING", "1"
 )  # no colour codes at the end of the output
+# full optimisation takes a third more time to compile, and the code is as fast
+os.environ.setdefault("NUMBA_OPT", "1")
 try:
     import numba
     from llvmlite import ir
@@ -31,7 +42,7 @@ except ImportError:
     COMPILED = False
 # type of indices that are not negative, with which loops take half the time
 unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
-ZERO = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
+ZERO: Any = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
 def drop_stale_code(package: Path) -> None:
@@ -88,6 +99,35 @@ if COMPILED:
     drop_stale_code(Path(__file__).parents[1])
 
 
+COMPILING = "note: compiling for this processor and this version, once: half a minute to a minute"
+MIN_COMPILATION = 1.0  # s: shorter ones are not announced
+
+
+def announce_compilation(show: Callable[[str], None]) -> None:
+    """Call `show` with a note once if functions are compiled, rather than loaded from the cache."""
+    if not COMPILED:
+        return
+    from numba.core import event
+
+    class Announcement(event.Listener):
+        depth, spent, begun, is_shown = 0, 0.0, 0.0, False
+
+        def on_start(self, event: Any) -> None:
+            now = clock.monotonic()
+            self.begun = now if self.depth == 0 else self.begun
+            self.depth += 1
+            if not self.is_shown and self.spent + now - self.begun > MIN_COMPILATION:
+                self.is_shown = True
+                show(COMPILING)
+
+        def on_end(self, event: Any) -> None:
+            self.depth -= 1
+            if self.depth == 0:
+                self.spent += clock.monotonic() - self.begun
+
+    event.register("numba:compile", Announcement())
+
+
 def compiled(function: Callable | None = None, **options: Any) -> Any:
     """Compile `function` at its first call, once for all runs if the code can be cached.
 
@@ -123,13 +163,13 @@ def address_of(law: Callable, count: int, state: int) -> int:
     pointer = numba.types.CPointer(real)
     if state == 1:
 
-        def call(p: float, T: float, constants: Any, found: Any) -> None:
+        def call(p: float, T: float, constants: Value, found: Value) -> None:
             values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
             values[0], values[1] = function(p, *given)
 
     else:
 
-        def call(p: float, T: float, constants: Any, found: Any) -> None:
+        def call(p: float, T: float, constants: Value, found: Value) -> None:
             values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
             values[0], values[1], values[2] = function(p, T, *given)
 
@@ -145,10 +185,14 @@ def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:
 if COMPILED:
 
     @intrinsic
-    def call_at(typing: Any, address: Any, p: Any, T: Any, constants: Any) -> tuple[Any, Callable]:
+    def call_at(
+        typing: Context, address: Type, p: Type, T: Type, constants: Type
+    ) -> tuple[Signature, Callable]:
         """Three results of the function at an address, of two numbers and a tuple of constants."""
 
-        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def code(
+            context: BaseContext, builder: IRBuilder, signature: Signature, arguments: list[Value]
+        ) -> Value:
             address, p, T, constants = arguments
             real = ir.DoubleType()
             given = cgutils.alloca_once_value(builder, constants)
@@ -162,11 +206,19 @@ if COMPILED:
 
     @intrinsic
     def call_allgather(
-        typing: Any, function: Any, send: Any, number: Any, received: Any, count: Any, communicator: Any
-    ) -> tuple[Any, Callable]:
+        typing: Context,
+        function: Type,
+        send: Type,
+        number: Type,
+        received: Type,
+        count: Type,
+        communicator: Type,
+    ) -> tuple[Signature, Callable]:
         """``function(send, count, number, received, count, number, communicator)`` of C in compiled loops."""
 
-        def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        def code(
+            context: BaseContext, builder: IRBuilder, signature: Signature, arguments: list[Value]
+        ) -> Value:
             function, send, number, received, count, communicator = arguments
             word, integer = ir.IntType(64), ir.IntType(32)
             kind = ir.FunctionType(integer, [word, integer, word, word, integer, word, word])

@@ -17,7 +17,10 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from types import SimpleNamespace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from ehlpetsc.stepping.observables import Observation
 
 
 class Refused(ValueError):
@@ -38,6 +41,8 @@ class Key:
         Meaning, for the page of keys and for messages; symbols and equations in backticks.
     unit
         SI unit of the stored value; "": a pure number.
+    point_unit
+        Unit in a point contact, where it is another one.
     is_difference
         Whether a value in K is a difference of temperatures: 17 degC is then 17 K.
     kind
@@ -82,6 +87,7 @@ class Key:
     below: str = ""
     equation: str = ""
     is_difference: bool = False
+    point_unit: str = ""
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
 
@@ -173,18 +179,22 @@ class Field:
     long_name : str
         Name for axes and headings.
     dims : tuple of str
-        Names of the dimension scales, each in the group of the dataset or in one above it.
+        Names of the dimension scales, each in the group of the dataset or in one above it; "nodes": the axes
+        of the grid.
     dtype : str
         Type on disk; fields may be stored as float32 on request.
     only : str
         Cases with the quantity, a key of `SCENES`; "": all.
+    integrated : bool
+        Whether it is an integral over the contact: per metre of width where that has no ends.
     """
 
     units: str
     long_name: str
-    dims: tuple = ("time", "x")
+    dims: tuple = ("time", "nodes")
     dtype: str = "f8"
     only: str = ""
+    integrated: bool = False
 
 
 class Column(NamedTuple):
@@ -211,6 +221,8 @@ class StepScalar(Field):
         Column in the lines of progress.
     compared : bool
         Whether it is compared between runs, unlike scalars of the solution process.
+    of : function, optional
+        Its value at an accepted time level; None: an effect returns it from `observe`, or the simulation.
     """
 
     dims: tuple = ("time",)
@@ -220,3 +232,4 @@ class StepScalar(Field):
     label: str = ""
     progress: Column | None = None
     compared: bool = False
+    of: Callable[[Observation], float] | None = None

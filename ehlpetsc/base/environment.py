@@ -16,12 +16,14 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+SCRIPT = Path(__file__).parents[2] / "run_mpi.sh"  # in a clone
 DEBIAN = Path("/usr/lib/petscdir")
 NUMERICS = ("numpy", "scipy", "h5py")
 READING = ("numpy", "scipy", "numba")  # of a case file
 SOLVER = ("mpi4py", "petsc4py")
 NEEDED = (*NUMERICS, "numba", *SOLVER)
-RANK_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
+MPIRUN_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
+RANK_VARIABLES = (*MPIRUN_VARIABLES, "SLURM_PROCID")  # the last one also in the script of a batch job
 OLDEST_PYTHON = (3, 11)
 
 
@@ -70,14 +72,15 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
     """
     command = " ".join(arguments) or "CASE.toml"
     reason = f"ehlpetsc: this Python ({sys.executable}) does not have {', '.join(lacks)}\n"
-    if Path(__file__).parents[2].joinpath("run_mpi.sh").exists():
+    if SCRIPT.exists():
         return (
             f"{reason}type: ./run_mpi.sh {command}   (installs what is missing on Debian 12 and newer and "
             f"runs Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {command}"
         )
     return (
         f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}   (builds PETSc from source if "
-        "that is missing), or take Debian's packages and a virtual environment with --system-site-packages"
+        "that is missing), or take Debian's packages and a virtual environment with --system-site-packages; "
+        "the section Install of the page README.md lists all ways"
     )
 
 

@@ -28,6 +28,7 @@ from ehlpetsc.physics.viscosity_laws import (
 )
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
 
@@ -141,7 +142,7 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
     return []
 
 
-def with_layer_stiffness(case: Values) -> Values:
+def with_layer_stiffness(case: Case) -> Case:
     """Case whose layer has the stiffness of its longest wave, unless it is given."""
     contact = case.contact
     if contact is None or contact.law != "compliant" or contact.asperity_stiffness is not None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.quantities import register
 from ehlpetsc.effects.effect import RoughSurfaces
 from ehlpetsc.effects.heat.effect import Heat
 from ehlpetsc.effects.plastic_deformation import PlasticDeformation
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 
 EFFECTS: list[type[Effect]] = [RoughSurfaces, PlasticDeformation, Wear, Heat]
+for effect in EFFECTS:
+    register(effect)
 
 
 def effects_of(scene: Scene, records: Collection[str] = ()) -> list[Effect]:

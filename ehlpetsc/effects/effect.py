@@ -7,10 +7,10 @@ The record is saved in restart files by its field names; only the effect reads i
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 
@@ -19,7 +19,8 @@ from ehlpetsc.base.declarations import KeyTable
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
-    from ehlpetsc.physics.operation import Conditions, ConstantOperation
+    from ehlpetsc.physics import Operation
+    from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.body_field import MeshOnBodies
     from ehlpetsc.surfaces.roughness import Roughness, SurfacePositions
@@ -31,11 +32,11 @@ class Scene:
 
     case: Case
     scales: Scales
-    operation: ConstantOperation
+    operation: Operation
     positions: SurfacePositions
 
     @classmethod
-    def of_pass(cls, case: Case, scales: Scales, operation: ConstantOperation, number: int) -> Scene:
+    def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: int) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
         from ehlpetsc.surfaces.roughness import SurfacePositions
 
@@ -46,7 +47,7 @@ class Scene:
     @cached_property
     def roughness(self) -> Roughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
-        from ehlpetsc.surfaces.roughness import roughness_of
+        from ehlpetsc.surfaces.contact_roughness import roughness_of
 
         return roughness_of(self.case, self.scales, self.positions)
 
@@ -88,20 +89,25 @@ class NoRecord(NamedTuple):
     """Empty record of an effect without a state."""
 
 
-class Effect:
+R = TypeVar("R")  # record of an effect
+
+
+class Effect(Generic[R]):
     """Base class of effects: no influence, no quantities.
 
     `name`: name of the record in the state and in restart files.
     `record`: type of the record, a NamedTuple.
     `table`: table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
+    `contacts`: kinds of contact that it serves; others are refused.
     `moves_with_surfaces`: whether its contribution to the gap moves with the surfaces from the first step on.
-    `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.effects.quantities`: fields
+    `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.base.quantities`: fields
     over the nodes, scalars of every time step, depths along each surface at the end of the run.
     """
 
     name = ""
     record: type = NoRecord
     table: KeyTable | None = None
+    contacts: Collection[str] = ("line", "strip", "point")
     moves_with_surfaces = False
     fields: dict = {}
     scalars: dict = {}
@@ -111,45 +117,45 @@ class Effect:
         self.scene = scene
 
     @classmethod
-    def is_in(cls, case: Any) -> bool:
+    def is_in(cls, case: Case) -> bool:
         """Whether a case has this effect: by default its table of keys."""
         return cls.table is not None and getattr(case, cls.table.name) is not None
 
-    def start(self, before: Any | None = None) -> Any:
+    def start(self, before: R | None = None) -> R:
         """Record at time 0.
 
         `before`: record at the end of the previous pass.
         """
         return self.record()
 
-    def inputs(self, record: Any, inputs: StepInputs, step: Step) -> StepInputs:
+    def inputs(self, record: R, inputs: StepInputs, step: Step) -> StepInputs:
         """Inputs of the solve with the contribution of the effect.
 
         `record`: record at the beginning of the step.
         """
         return inputs
 
-    def accept(self, record: Any, solution: Solution, step: Step) -> Any:
+    def accept(self, record: R, solution: Solution, step: Step) -> R:
         """Record at the end of an accepted step.
 
         `record`: record at the beginning of the step.
         """
         return record
 
-    def is_settled(self, before: Any | None, after: Any) -> bool:
+    def is_settled(self, before: R | None, after: R) -> bool:
         """Whether a steady solution is consistent with the record after it; otherwise it is solved again."""
         return True
 
-    def film_shear(self, record: Any, solution: Solution, shear: np.ndarray | None) -> np.ndarray | None:
+    def film_shear(self, record: R, solution: Solution, shear: np.ndarray | None) -> np.ndarray | None:
         """Mean shear stress of the film [Pa] by `shear`, that without this effect; None: isothermal."""
         return shear
 
-    def observe(self, record: Any, solution: Solution, step: Step) -> tuple[dict, dict]:
+    def observe(self, record: R, solution: Solution, step: Step) -> tuple[dict, dict]:
         """Values of `fields` and `scalars` by name, in SI units."""
         return {}, {}
 
     def on_surfaces(
-        self, record: Any, points: Sequence[np.ndarray | None]
+        self, record: R, points: Sequence[np.ndarray | None]
     ) -> dict[str, Sequence[np.ndarray | None]]:
         """Values of the quantities `surface` at points of surfaces 1 and 2.
 
@@ -158,25 +164,25 @@ class Effect:
         return {}
 
 
-class RoughSurfaces(Effect):
+class RoughSurfaces(Effect[NoRecord]):
     """Heights of both profiles, means over the cells of the mesh, subtracted from the gap."""
 
     name = "roughness"
     moves_with_surfaces = True
 
     @classmethod
-    def is_in(cls, case: Any) -> bool:
+    def is_in(cls, case: Case) -> bool:
         """Whether one of the surfaces has a profile."""
         return bool(case.surface.body_1 or case.surface.body_2)
 
-    def inputs(self, record: Any, inputs: StepInputs, step: Step) -> StepInputs:
+    def inputs(self, record: NoRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Add the roughness at the end of the step to the gap."""
         scales = self.scene.scales
         heights = self.scene.roughness.phi_after(scales.x * scales.a, step.travelled, scales.dx)
         return replace(inputs, phi=inputs.phi + heights / scales.h)
 
 
-def flat(record: Any, name: str) -> dict[str, Any]:
+def flat(record: NamedTuple, name: str) -> dict[str, Any]:
     """Fields of a record, and of records in it, by dotted names."""
     values: dict[str, Any] = {}
     for key, value in record._asdict().items():

@@ -6,7 +6,7 @@ the surfaces: to the softer surface, or half to each if both have the same yield
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ehlpetsc.effects.body_depth import BodyDepth
 from ehlpetsc.surfaces.body_field import BodyFields
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.discretisation.ehl_problem import Solution
     from ehlpetsc.effects.effect import Scene, Step
 
@@ -27,21 +28,29 @@ class PlasticRecord(NamedTuple):
     hidden: BodyFields
 
 
-class PlasticDeformation(BodyDepth):
+class PlasticDeformation(BodyDepth[PlasticRecord]):
     """Depth of the plastic deformation, added to the gap and kept in the bodies."""
 
     name = "plastic_deformation"
     record = PlasticRecord
     scalars = {
         "yielding": StepScalar(
-            "1", "nodes that yield", dtype="i4", over_run="sum", summary="d", compared=True
+            "1",
+            "nodes that yield",
+            dtype="i4",
+            over_run="sum",
+            summary="d",
+            compared=True,
+            of=lambda o: np.count_nonzero(o.state.records["plastic_deformation"].added),
         ),
         "set_volume": StepScalar(
-            "m^2",
+            "m^3",
             "plastic deformation of both solids since the first pass",
+            integrated=True,
             over_run="last",
             summary=".4g",
             compared=True,
+            of=lambda o: o.scene.mesh_on_bodies.volume(o.state.records["plastic_deformation"].depth),
         ),
     }
     surface = {"set": Field("m", "depth of the plastic deformation at the end", ("s",))}
@@ -53,11 +62,11 @@ class PlasticDeformation(BodyDepth):
         self._fractions = (0.5, 0.5) if is_equal else (float(yield_1 < yield_2), float(yield_2 < yield_1))
 
     @classmethod
-    def is_in(cls, case: Any) -> bool:
+    def is_in(cls, case: Case) -> bool:
         """Whether the solids yield."""
         return case.contact.yield_pressure is not None
 
-    def start(self, before: PlasticRecord | None = None, **entries: Any) -> PlasticRecord:
+    def start(self, before: PlasticRecord | None = None, **entries: np.ndarray) -> PlasticRecord:
         """No deformation, or the deformation of the previous pass."""
         return super().start(before, added=np.zeros(self.scene.scales.grid.n), **entries)
 
@@ -70,7 +79,3 @@ class PlasticDeformation(BodyDepth):
         depths = [fraction * total for fraction in self._fractions]
         depth = self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths)
         return PlasticRecord(depth, total, record.hidden)
-
-    def observe(self, record: PlasticRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Number of yielding nodes, volume."""
-        return {}, {"yielding": np.count_nonzero(record.added), "set_volume": record.depth.volume}

@@ -50,7 +50,7 @@ class WearRecord(NamedTuple):
     hidden: BodyFields
 
 
-class Wear(BodyDepth):
+class Wear(BodyDepth[WearRecord]):
     """Wear depth, added to the gap and kept in the bodies."""
 
     name = "wear"
@@ -58,11 +58,13 @@ class Wear(BodyDepth):
     record = WearRecord
     scalars = {
         "wear_volume": StepScalar(
-            "m^2",
+            "m^3",
             "worn volume of both surfaces since the first pass",
+            integrated=True,
             over_run="last",
             summary=".4g",
             compared=True,
+            of=lambda o: o.scene.mesh_on_bodies.volume(o.state.records["wear"].depth),
         )
     }
     surface = {"wear": Field("m", "wear depth at the end", ("s",))}
@@ -74,7 +76,3 @@ class Wear(BodyDepth):
         pressure, sliding = self.scene.scales.p0 * solution.loads.contact_pressure, step.conditions.sliding
         depths = [wear_depth(k, pressure, sliding, step.dt) for k in self.scene.case.wear.coefficient]
         return record._replace(depth=self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))
-
-    def observe(self, record: WearRecord, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Worn volume."""
-        return {}, {"wear_volume": record.depth.volume}

@@ -1,6 +1,6 @@
 """Surfaces over their life: wear against fatigue in many passes, of which a few are solved.
 
->>> from ehlpetsc.life import run_life, read_life, run_regimes
+>>> from ehlpetsc.life import run_life, read_life
 """
 
 from importlib import import_module
@@ -9,14 +9,11 @@ from typing import Any
 from ehlpetsc.api import need_solver
 from ehlpetsc.life.history import LifeHistory, read_life
 
-__all__ = ["LifeHistory", "read_life", "run_life", "run_regimes"]
-
-
-SOLVING = {"run_life": "driver", "run_regimes": "regimes"}  # modules that import PETSc, unlike reading a life
+__all__ = ["LifeHistory", "read_life", "run_life"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in SOLVING:
+    if name != "run_life":
         raise AttributeError(f"module 'ehlpetsc.life' has no attribute {name!r}")
-    need_solver()
-    return getattr(import_module(f"ehlpetsc.life.{SOLVING[name]}"), name)
+    need_solver()  # unlike reading a life
+    return import_module("ehlpetsc.life.driver").run_life

@@ -2,8 +2,7 @@
 
 Wear and fatigue damage of a solved pass are multiplied over the passes in which the surfaces hardly change,
 see the table [life] of the case; the next pass is solved with the changed surfaces. The same command
-continues a life. A case with [series] runs a life for each member and writes the index
-``OUT.life.series.json``. Under mpirun each rank solves a position of surface 2, or a life.
+continues a life. Under mpirun each rank solves a position of surface 2.
 """
 
 from __future__ import annotations
@@ -13,9 +12,10 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life.history import read_life
-from ehlpetsc.results.output_guard import PICTURES, check_derived, inputs_of
+from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path, inputs_of
 
 
 def arguments() -> CommandParser:
@@ -36,10 +36,10 @@ def main(words: list[str]) -> int:
 
 
 def _run(chosen: Namespace) -> None:
-    """Run a life or a series of them, where a case is given; draw a life on the first rank."""
+    """Run a life, where a case is given, and draw it on the first rank."""
     path = Path(chosen.case)
     if path.suffix != ".h5":
-        _run_lives(chosen)
+        _run_life(chosen)
     elif not chosen.no_picture:
         _draw(_picture(path, [path]), path)
 
@@ -58,9 +58,9 @@ def _draw(target: Path, path: Path) -> None:
     print(target)
 
 
-def _run_lives(chosen: Namespace) -> None:
-    """Run a life and draw it, or a series of lives."""
-    from ehlpetsc.life import run_life, run_regimes
+def _run_life(chosen: Namespace) -> None:
+    """Run a life and draw it."""
+    from ehlpetsc.life import run_life
 
     case = load(chosen.case, chosen.set)
     from mpi4py import MPI
@@ -69,12 +69,12 @@ def _run_lives(chosen: Namespace) -> None:
     from ehlpetsc.run.stop import StopRequest
 
     comm = MPI.COMM_WORLD
-    output = Path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
+    output = file_path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
     show = partial(print, flush=True) if comm.rank == 0 else lambda text: None
+    if comm.rank == 0:
+        announce_compilation(show)
     options = {"overwrite": chosen.overwrite, "unresolved": chosen.unresolved}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
-    if case.series:
-        return show(str(run_regimes(case, output, **options)))
     draws = output.name and not chosen.no_picture
     target = on_root(comm, _picture, output, inputs_of(case)) if draws else None
     run_life(case, output, **options)

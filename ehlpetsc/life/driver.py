@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.base.errors import CaseError, NotConverged
+from ehlpetsc.base.progress_line import ProgressLine, duration
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
@@ -25,9 +26,9 @@ from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
-from ehlpetsc.run.outputs.progress import duration
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
@@ -51,7 +52,7 @@ def run_life(
     unresolved: bool = False,
     comm: MPI.Comm | None = None,
     show: Callable | None = None,
-    stop: Callable | None = None,
+    stop: StopRequest | None = None,
     most: int | None = None,
 ) -> LifeHistory:
     """Run the life of a case's surfaces, or continue it.
@@ -100,8 +101,9 @@ class _Life:
         show: Callable | None,
         unresolved: bool,
     ) -> None:
-        self.case, self.path, self.comm, self.history = case, path, comm, history
-        self.reports, self.show = show is not None, show or (lambda text: None)
+        self.case, self.path, self.comm, self.history, self._show = case, path, comm, history, show
+        self._line = ProgressLine("life", 1.0) if show and comm.rank == 0 else None
+        self._passes = 0  # of this round, solved by this rank
         self.scales = Scales.of(case)
         self.positions = Positions(case, self.scales)
         self.jumps = Jumps(case.life, self.positions.rq)
@@ -112,7 +114,21 @@ class _Life:
             advice = "the life would depend on the mesh; allowed also: a longer short_cutoff, --unresolved"
             raise CaseError([f"{case.path}: {fault}; {advice}" for fault in faults])
 
-    def run(self, stop: Callable | None, max_rounds: int | None) -> LifeHistory:
+    def show(self, text: str) -> None:
+        """Show a line of text in place of the line of progress."""
+        if self._line:
+            self._line.clear()
+        if self._show:
+            self._show(text)
+
+    def _show_share(self, of_pass: float) -> None:
+        """Show the share of the life that is done, with a share of the pass of this rank."""
+        if self._line:
+            solved = self.history.solved + self.ranks.groups * (self._passes + of_pass)
+            shares = solved / self.case.life.max_solved, self.history.done / self.jumps.passes
+            self._line.reach(min(max(shares), 1.0))
+
+    def run(self, stop: StopRequest | None, max_rounds: int | None) -> LifeHistory:
         """Solve rounds until the end of the life."""
         try:
             self._run(stop, max_rounds)
@@ -120,12 +136,14 @@ class _Life:
             self.file.close("not converged")
             raise
         finally:
+            if self._line:
+                self._line.clear()
             self.file.close("done" if self.history.done >= self.jumps.passes else "stopped")
         if self.history.done < self.jumps.passes and self.history.solved >= self.case.life.max_solved:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
         return self.history
 
-    def _run(self, stop: Callable | None, max_rounds: int | None) -> None:
+    def _run(self, stop: StopRequest | None, max_rounds: int | None) -> None:
         rounds = 0
         if not self.history.rows:
             for line in mesh_warnings(self._scene.roughness, self.scales):
@@ -134,13 +152,13 @@ class _Life:
             steps, count = self._scene.operation.step_count(self.scales.dt), self.positions.count
             self.show(f"passes of a round: {count}, each of {steps} steps and {seconds} on one rank")
         while not self._is_over and rounds != max_rounds:
-            begun = clock.monotonic()
+            begun, self._passes = clock.monotonic(), 0
             solved_round = self._solve(stop)
             if self.history.rows:
                 bodies = self.history.bodies[-1]
             else:
                 bodies = tuple(map(self.positions.new_body, solved_round.passes[0].bodies, range(2)))
-            if self.reports and not self.history.rows:
+            if self._show and not self.history.rows:
                 for line in on_root(self.comm, self._band):
                     self.show(line)
             self._jump(solved_round, bodies)
@@ -156,7 +174,7 @@ class _Life:
     def _is_over(self) -> bool:
         return self.history.done >= self.jumps.passes or self.history.solved >= self.case.life.max_solved
 
-    def _solve(self, stop: Callable | None) -> Round:
+    def _solve(self, stop: StopRequest | None) -> Round:
         """The next round: of a single position while passes yield, as each changes the next."""
         solve = partial(self._solve_pass, self._plastic())
         every, rows = list(range(self.positions.count)), self.history.rows
@@ -171,13 +189,16 @@ class _Life:
         return solved_round
 
     def _solve_pass(
-        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: Callable | None
+        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: StopRequest | None
     ) -> Pass:
         records = {}
         if self.history.rows:
             records = self.positions.records(self.history.bodies[-1], position, plastic)
         simulation = Simulation(self.case, comm, pass_number=position + 1, records=records)
-        return run_pass(simulation, records, pass_file(self.path, position, self.positions.count), stop)
+        file = pass_file(self.path, position, self.positions.count)
+        solved = run_pass(simulation, records, file, stop, self._show_share)
+        self._passes += 1
+        return solved
 
     def _plastic(self) -> PlasticRecord | None:
         """Record of the plastic deformation after the last row; None without."""

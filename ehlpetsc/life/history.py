@@ -17,7 +17,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import OutputError, not_written
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_for_reading, plain
+from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_for_reading, open_hdf5, plain
 from ehlpetsc.results.output_guard import replacing
 
 BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
@@ -62,7 +62,7 @@ class LifeFile:
 
     def _create(self, history: LifeHistory) -> None:
         with replacing(self.path) as temporary:
-            file = self._file = h5py.File(temporary, "w", libver=LIBVER)
+            file = self._file = open_hdf5(temporary, "w", libver=LIBVER)
             attributes = {"kind": KIND, "case": history.case, "title": history.title}
             status = np.array(b"running", "S16")  # of fixed length, to be overwritten at the end
             file.attrs.update(attributes | {"format_version": FORMAT, "status": status})

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,9 +15,12 @@ from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.ranks import on_root
-from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
+
+if TYPE_CHECKING:
+    from ehlpetsc.run.stop import StopRequest
 
 
 class OfBody(NamedTuple):
@@ -56,16 +60,36 @@ SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
-def run_pass(simulation: Simulation, before: dict[str, tuple], file: Path, stop: Any = None) -> Pass:
+class PassProgress:
+    """Output that calls `show` with the share of a pass that is done."""
+
+    def __init__(self, simulation: Simulation, show: Callable[[float], None]) -> None:
+        self._simulation, self._show = simulation, show
+
+    def write(self, state: AcceptedState) -> None:
+        """Show the step."""
+        self._show(float(state.time) / self._simulation.end)
+
+    def close(self, status: ExitStatus) -> None:
+        """Do nothing: the pass is evaluated next."""
+
+
+def run_pass(
+    simulation: Simulation,
+    before: dict[str, tuple],
+    file: Path,
+    stop: StopRequest | None = None,
+    show: Callable[[float], None] = lambda share: None,
+) -> Pass:
     """Solve a pass to its end and evaluate it.
 
-    `before`: records of the bodies, after the previous pass. `file`: result file, replaced. Raises
-    `NotConverged`, `Stopped`, `OutputError`, `PostError`.
+    `before`: records of the bodies, after the previous pass. `file`: result file, replaced. `show`: receives
+    the share of the pass that is done. Raises `NotConverged`, `Stopped`, `OutputError`, `PostError`.
     """
     recorder = Recorder(simulation, file)
     with simulation.options, recorder:
         recorder.lock_output(overwrite=True)
-        status, failure = solve_run(simulation, [recorder], stop)
+        status, failure = solve_run(simulation, [recorder, PassProgress(simulation, show)], stop)
     if failure:
         raise failure
     if status is ExitStatus.STOPPED:

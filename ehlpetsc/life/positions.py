@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.tables import Case
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.effects.plastic_deformation import PlasticRecord
@@ -88,8 +89,21 @@ class Positions:
         first += self._offset(position, k) - self._offset(0, k)
         return first, first + length
 
+    def _too_short(self, ramp: float, k: int) -> str:
+        """Fault of a pass in which body k gets no column behind the ramp of its profile [m]."""
+        reason = f"surface {k + 1}: no stretch of it passed the whole contact behind the ramp of its profile"
+        if self.case.conditions is not None:
+            return f"{reason}; the conditions must last longer"
+        scales = self.scales
+        ratio = scales.u_max / abs((scales.u1, scales.u2)[k])
+        travel = self.case.time.travel + ratio * (ramp / scales.a + 1.0)  # a stretch of one half-width
+        return f"{reason}; time.travel = {self.case.time.travel:g}, allowed: {travel:.2g} or more"
+
     def new_body(self, of_pass: OfBody, k: int) -> LifeBody:
-        """Columns of a body after a pass in position 0, of body 2 in all of its positions."""
+        """Columns of a body after a pass in position 0, of body 2 in all of its positions.
+
+        Raises `PostError` if no stretch of it passed the contact at its full height.
+        """
         s, dx, offset = of_pass.s, self.scales.dx, self._offset(0, k)
         roughness = self.scenes[0].roughness
         profile = roughness and roughness.side("12"[k])
@@ -97,6 +111,8 @@ class Positions:
             inlet, outlet = self.scales.x[0] * self.scales.a, self.scales.x[-1] * self.scales.a
             X = inlet - s if profile.speed > 0 else s - outlet
             s = s[X >= profile.ramp * (1.0 - 1e-9)]
+            if len(s) < 2:
+                raise PostError(self._too_short(profile.ramp, k))
         if k == 1 and self.count > 1:
             extra = dx * np.arange(1, self._columns_more + 1)
             s = np.append(s, s[-1] + extra) if self._sign > 0 else np.append(s[0] - extra[::-1], s)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -16,18 +16,25 @@ from ehlpetsc.life.one_pass import Pass
 from ehlpetsc.run.ranks import WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
+if TYPE_CHECKING:
+    from ehlpetsc.run.stop import StopRequest
+
 FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
 
 
 class Ranks:
-    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks."""
+    """Ranks of a life, in groups: of one rank each if there are at least as many positions as ranks.
+
+    `groups`: number of passes that are solved at the same time.
+    """
 
     def __init__(self, comm: MPI.Comm, positions: int) -> None:
         self.comm, self.each = comm, max(1, comm.size // positions)
         is_shared = positions > 1 and comm.size > 1
+        self.groups = min(positions, comm.size)
         self._group = comm.Split(comm.rank // self.each, comm.rank) if is_shared else comm
 
-    def solve(self, positions: list[int], solve: Callable, stop: Any = None) -> list[Pass]:
+    def solve(self, positions: list[int], solve: Callable, stop: StopRequest | None = None) -> list[Pass]:
         """Passes of a round in the order of `positions`, on every rank.
 
         `solve` solves the pass of a position on a group of ranks. Raises one of `FAULTS`.
@@ -36,7 +43,7 @@ class Ranks:
             return [solve(position, self.comm, stop) for position in positions]
         outcomes: dict = {}
 
-        def outcome(position: int, group: MPI.Comm, stop: Any) -> Any:
+        def outcome(position: int, group: MPI.Comm, stop: StopRequest | None) -> Any:
             try:
                 return solve(position, group, stop)
             except FAULTS as fault:

@@ -78,6 +78,9 @@ class GaussSeidelSolver:
         """Limit of the evaluations of a steady start."""
         return needed or MAX_EVALUATIONS
 
+    def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
+        """There is nothing to factor."""
+
     def residual(self) -> Rows:
         """Residual of the last solution."""
         return self.rows

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.nonlinear.jacobian import jacobian_product
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import solve
 from ehlpetsc.nonlinear.ranks import exchange
@@ -84,7 +84,7 @@ def iterations(
     # columns of the triangular matrix; cosines and sines; rotated right-hand side, last number the residual
     numbers = np.zeros((max_it, max_it + 1)), np.zeros((max_it, 2)), np.zeros(max_it + 1)
     v[0] = b
-    new = 0
+    new = ZERO
     while True:
         if new > 0:
             solve(factors, v[new - 1], z[new - 1])

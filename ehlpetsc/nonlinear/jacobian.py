@@ -15,7 +15,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE, deflection_rows
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
@@ -222,7 +222,7 @@ def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out:
     directional_derivative(by[0], v[:local].reshape(len(pressure), 2), form[0], pressure)
     nodes, h00, curvature, load = exchange_unknowns(*halo, (v, pressure, False))
     for k in range(3):
-        directional_derivative(by[k + 1], nodes, 0, change[k])
+        directional_derivative(by[k + 1], nodes, ZERO, change[k])
     deflection_rows(change[2], h00, curvature, load, form, out[0:local:2])
     reynolds_product(derivatives, change[0], change[1], form[0], out[1:local:2])
     if len(out) > local:

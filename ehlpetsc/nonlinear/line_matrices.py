@@ -46,6 +46,9 @@ class LineMatrices:
     def attach(self, ksp: PETSc.KSP) -> None:
         """See :class:`.two_fields.Matrices`; the options name the preconditioner."""
 
+    def keep(self, jacobian: JacobianOperator) -> None:
+        """See :class:`.two_fields.Matrices`; a band is factored in less time than it takes to keep it."""
+
     def begin_solve(self) -> None:
         """See :class:`.two_fields.Matrices`."""
         if self.factors:

@@ -45,6 +45,8 @@ class NewtonSolver:
         Absolute tolerance of the last solve.
     bounded : bool
         Whether SNES enforces the bound of the contact model.
+    linear_iterations : int
+        GMRES iterations of all solves so far.
     """
 
     def __init__(self, system: TwoFields, options: RunOptions | None = None):
@@ -59,6 +61,7 @@ class NewtonSolver:
         self.snes: Any = None
         self._unconstrained_snes: Any = None
         self.tolerance: float = None
+        self.linear_iterations = 0
         self._create()
         snes: Any = self.snes
         self.bounded = snes.getType() == "vinewtonrsls"
@@ -97,6 +100,11 @@ class NewtonSolver:
                 "allowed: vinewtonrsls, and types without bounds where nothing touches"
             )
         snes.setLineSearchPreCheck(weakly(self._before_step))
+        # an error inside of PETSc could not be followed by a shorter step: a reason of the same meaning
+        snes.setErrorIfNotConverged(False)
+        if snes.ksp.getErrorIfNotConverged():
+            snes.ksp.setErrorIfNotConverged(False)
+            snes.setMaxLinearSolveFailures(1)
         return snes
 
     def _set_jacobian(self, snes: PETSc.SNES) -> None:
@@ -137,6 +145,13 @@ class NewtonSolver:
         if "snes_max_it" in self._options.given:
             return self._max_it
         return needed or START_FACTOR * self._max_it
+
+    def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
+        """Linearise at a state whose factors every later solve begins with, where its matrices keep any."""
+        self.system.set_initial_guess(state, inputs)
+        with np.errstate(over="ignore", invalid="ignore"):
+            self.system.linearise(self.system.x)
+            self.system.matrices.keep(self.system.jacobian)
 
     def residual(self) -> Rows:
         """Residual of the last solution."""
@@ -213,6 +228,7 @@ class NewtonSolver:
 
     def _solution(self, snes: PETSc.SNES) -> tuple[Unknowns, int]:
         reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
+        self.linear_iterations += snes.getLinearSolveIterations()
         # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
         self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:

@@ -30,15 +30,23 @@ DEFAULTS = {
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
-# of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its pressures; on
-# several ranks slabs of rows with a few of their neighbours'
+# of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its
+# pressures
 PLANE = {
     "ksp_rtol": "1e-2",  # a convolution an iteration: tighter saves no Newton iteration
+    # stiff asperities: without it the basis loses its orthogonality, and the residual found is not the true
+    # one
+    "ksp_gmres_cgs_refinement_type": "refine_ifneeded",
     "pc_type": "python",
     "pc_python_type": "ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm",
 }
 INNER_PREFIX = "pressure_"
-INNER = {"pc_type": "asm", "pc_asm_overlap": "4", "sub_pc_type": "ilu", "sub_pc_factor_levels": "1"}
+INNER = {  # of incomplete LU, on several ranks in slabs of rows with a few of their neighbours'
+    "pc_factor_levels": "1",
+    "pc_asm_overlap": "4",
+    "sub_pc_type": "ilu",
+    "sub_pc_factor_levels": "1",
+}
 OF_PRECONDITIONERS = ("pc_", "sub_", "mg_")
 # options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
 GMRES_OPTIONS = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")

@@ -7,17 +7,28 @@ from typing import TYPE_CHECKING, Any
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.nonlinear.line_matrices import line_system
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
-from ehlpetsc.nonlinear.plane.system import plane_system
-from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
 
-SYSTEMS = {"line": line_system, "strip": plane_system, "point": plane_system}
+
+def _line(*parts: Any) -> TwoFields:
+    from ehlpetsc.nonlinear.line_matrices import line_system
+
+    return line_system(*parts)
+
+
+def _plane(*parts: Any) -> TwoFields:
+    from ehlpetsc.nonlinear.plane.system import plane_system
+
+    return plane_system(*parts)
+
+
+SYSTEMS = {"line": _line, "strip": _plane, "point": _plane}  # a kind loads no module of another one
 ALLOWED = ("newton", "sweep")
 
 
@@ -40,6 +51,10 @@ def solver_of(
         bounded = options.value("snes_type", "vinewtonrsls") == "vinewtonrsls"
         tolerance = options.real("snes_vi_zero_tolerance", ZERO_TOLERANCE) if bounded else 0.0
         return NewtonSolver(SYSTEMS[case.kind](case, scales, film_scale, comm, tolerance), options)
+    if case.kind != "line":
+        raise UsageError(
+            f"-ehl_scheme sweep: the paper's sweeps solve line contacts, not a {case.kind}; leave it out"
+        )
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:

@@ -50,6 +50,9 @@ class Matrices(Protocol):
     def begin_solve(self) -> None:
         """Called at the start of each nonlinear solve."""
 
+    def keep(self, jacobian: Any) -> None:
+        """Factor for the state of a Jacobian, as the first factors of all later solves."""
+
 
 class TwoFields:
     """System of the pairs (q, w) at every node, w bounded below in direct contact.

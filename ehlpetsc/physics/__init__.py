@@ -1,9 +1,19 @@
 """Laws of physics as functions."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.operation import ConstantOperation
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.physics.variable_operation import VariableOperation
+
+    Operation = ConstantOperation | VariableOperation
 
 
-def operation_of(case: Any, scales: Any) -> Any:
+def operation_of(case: Case, scales: Scales) -> Operation:
     """Operation of a case: constant, or from its table of conditions."""
     from ehlpetsc.physics.operation import Conditions, ConstantOperation
 

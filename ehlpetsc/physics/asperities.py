@@ -53,12 +53,17 @@ to the shortest wave too, the real area hardly on the Hurst exponent (abstract o
 2014, Tribol. Lett. 53, 433).
 """
 
+from __future__ import annotations
+
 import math
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Contact
 
 EXPONENTIAL = 30.0  # separation over the decay length beyond which the law is an exponential in all digits
 MAX_RATIO = 1e10  # of prefactor to pressure up to which the law differs from it
@@ -79,7 +84,7 @@ class LayerLaw(NamedTuple):
     full_contact: float = 0.0  # film in full contact
 
 
-def layer_law(contact: Any, modulus: float, pressure: float = 1.0, film: float = 1.0) -> LayerLaw:
+def layer_law(contact: Contact, modulus: float, pressure: float = 1.0, film: float = 1.0) -> LayerLaw:
     """Law of the table [contact] for E* [Pa], in units of `pressure` [Pa] and `film` [m]."""
     prefactor, hardness = contact.asperity_stiffness * modulus, contact.asperity_hardness
     closed = 0.0 if hardness is None else (prefactor / hardness) ** 3

@@ -7,11 +7,13 @@ u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Fluid
     from ehlpetsc.physics.geometry import Geometry
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
@@ -38,7 +40,8 @@ def moes_central_film(M: float, L: float) -> float:
 
 
 def nijenbanning_central_film(M: float, L: float, ratio: float) -> float:
-    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes (1994).
+    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes
+    (1994).
 
     .. math:: H=\left\{\left[H_{RI}^{3/2}+(H_{EI}^{-4}+H_{00}^{-4})^{-3/8}\right]^{2s/3}+
        (H_{RP}^{-8}+H_{EP}^{-8})^{-s/8}\right\}^{1/s},\qquad s=1.5\,(1+e^{-1.2H_{EI}/H_{EP}})
@@ -76,7 +79,7 @@ def hamrock_dowson_films(U: float, G: float, W: float, ratio: float) -> tuple[fl
     return central, 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1.0 - math.exp(-0.68 * k))
 
 
-def smooth_films(scales: Scales, fluid: Any, conditions: Conditions) -> tuple[float, float]:
+def smooth_films(scales: Scales, fluid: Fluid, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
     .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
@@ -93,7 +96,7 @@ def smooth_films(scales: Scales, fluid: Any, conditions: Conditions) -> tuple[fl
 
 
 def contact_films(
-    geometry: Geometry, modulus: float, radius_ratio: float, fluid: Any, conditions: Conditions
+    geometry: Geometry, modulus: float, radius_ratio: float, fluid: Fluid, conditions: Conditions
 ) -> tuple[float, float]:
     """Films of :func:`smooth_films` of a kind of contact; E' [Pa] and the ratio of its radii."""
     from ehlpetsc.physics.laws import density
@@ -157,7 +160,7 @@ def _grubin(film: float, inlet: float) -> float:
     return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
 
 
-def expected_film(case: Any, scales: Scales) -> float:
+def expected_film(case: Case, scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0

@@ -1,9 +1,9 @@
-"""Flash temperature of a line contact by Blok's formula, and the friction expected of a case."""
+"""Flash temperature of a contact by Blok's formula, and the friction expected of a case."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.traction import wall_shear
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
     from ehlpetsc.physics.scales import Scales
 
 
@@ -79,7 +80,7 @@ def blok_flash_temperature(
     return 1.11 * friction * load * abs(sliding) / (np.maximum(carried, TINY) * (2.0 * a) ** 0.5)
 
 
-def expected_friction(fluid: Any, load: float, a: float, sliding: float, film: float) -> float:
+def expected_friction(fluid: Fluid, load: float, a: float, sliding: float, film: float) -> float:
     """Coefficient of friction of a smooth, flooded contact at its mean Hertz pressure.
 
     Parameters
@@ -96,7 +97,7 @@ def expected_friction(fluid: Any, load: float, a: float, sliding: float, film: f
 
 
 def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Solid] = (STEEL, STEEL)) -> float:
-    """Blok's flash temperature [K] of a contact with a coefficient of friction."""
+    """Blok's flash temperature [K] of a contact, of its middle row, with a coefficient of friction."""
     effusivities = [solid.effusivity for solid in solids]
-    conditions = scales.load, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
+    conditions = scales.load_per_length, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
     return blok_flash_temperature(friction, *conditions, effusivities)

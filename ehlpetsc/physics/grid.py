@@ -74,7 +74,7 @@ class Grid:
 
     @property
     def cell_size(self) -> float:
-        """Weight of a node in a sum over the contact: length or area of its cell, in a strip per length across."""
+        """Weight of a node in a sum over the contact: length or area of its cell, in a strip by length."""
         return self.spacings[-1] / self.shape[0] if self.periodic else math.prod(self.spacings)
 
     @cached_property
@@ -99,6 +99,13 @@ class Grid:
     def inside(self, radius: float) -> np.ndarray:
         """Mask of the nodes within a multiple of the dry contact, at least of those in its middle, flat."""
         return self.distance <= max(radius, self.distance.min())
+
+    def interpolated(self, values: np.ndarray, onto: Grid) -> np.ndarray:
+        """A flat field at the nodes of another grid, linear along each axis."""
+        field = values.reshape(self.shape)
+        for k, (axis, nodes) in enumerate(zip(self.axes, onto.axes, strict=True)):
+            field = np.apply_along_axis(lambda v, x=axis, at=nodes: np.interp(at, x, v), k, field)
+        return field.ravel()
 
     def edges(self) -> dict[str, np.ndarray]:
         """Nodes at each end of the domain, flat indices by the key that moves it."""

@@ -11,14 +11,22 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from ehlpetsc.base.compiled import inlined
 from ehlpetsc.base.declarations import Key
 
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+
 SLOTS = 10  # constants that compiled loops get of any law
 STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
+Numbers = float | np.ndarray
 Derivatives = tuple[Any, ...]
+FluidValues = SimpleNamespace  # of [fluid], checked or to be completed
 
 
 @dataclass(frozen=True)
@@ -42,10 +50,10 @@ class Law:
     """
 
     function: Callable[..., Derivatives]
-    constants: Callable[[Any, Any], tuple[float, ...]]
+    constants: Callable[[FluidValues, Values | None], tuple[float, ...]]
     equation: str
     keys: Mapping[str, Key] = field(default_factory=dict)
-    complete: Callable[[Any], Mapping[str, Any]] = lambda fluid: {}
+    complete: Callable[[FluidValues], Mapping[str, Any]] = lambda fluid: {}
     of_temperature: bool = False
 
     def __call__(self, *arguments: Any) -> Derivatives:

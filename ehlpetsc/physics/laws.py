@@ -10,13 +10,22 @@ import math
 from collections.abc import Mapping
 from functools import cache
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehlpetsc.base.compiled import address_of, call_at, inlined
 from ehlpetsc.base.declarations import Key, Refused
-from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives, Law, OilLaw, padded, switched
+from ehlpetsc.physics.law import (
+    STANDARD_TEMPERATURE,
+    Derivatives,
+    FluidValues,
+    Law,
+    Numbers,
+    OilLaw,
+    padded,
+    switched,
+)
 from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.physics.viscosity_laws import (
     DOOLITTLE,
@@ -36,13 +45,16 @@ from ehlpetsc.physics.viscosity_laws import (
     yasutomi,
 )
 
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+
 BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05
 ROELANDS_S0 = 1.1  # where a case with his law of pressure gives none: mineral oils have 1 to 1.5
 ROELANDS_PRESSURE = 1.96e8  # Pa
 ROELANDS_VISCOSITY = 6.315e-5  # Pa s: ln eta0 + 9.67 = ln(eta0/6.315e-5)
 
 
-def reference_temperature(fluid: Any, heat: Any = None) -> float:
+def reference_temperature(fluid: FluidValues, heat: Values | None = None) -> float:
     """Temperature at which `fluid.viscosity` holds [K]."""
     given = getattr(fluid, "temperature", None)
     if heat is None:
@@ -54,7 +66,7 @@ def reference_temperature(fluid: Any, heat: Any = None) -> float:
 
 
 def temperature_constants(
-    fluid: Any, heat: Any, factor: float | None = None
+    fluid: FluidValues, heat: Values | None, factor: float | None = None
 ) -> tuple[float, float, float, float]:
     """Last four constants of :func:`power_law`; `factor` c of Roelands' law, None: not his."""
     reference = reference_temperature(fluid, heat)
@@ -71,23 +83,23 @@ def temperature_constants(
     return EXPONENTIAL, beta, 0.0, reference
 
 
-def _barus(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _barus(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     return fluid.pressure_viscosity, 1.0, 1.0, *temperature_constants(fluid, heat)
 
 
-def _roelands(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _roelands(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     pressure, z = fluid.roelands_pressure, fluid.roelands_z
     factor = fluid.pressure_viscosity * pressure / z
     return factor, pressure, z, *temperature_constants(fluid, heat, factor)
 
 
-def _with_coefficient(fluid: Any) -> dict[str, float]:
+def _with_coefficient(fluid: FluidValues) -> dict[str, float]:
     if fluid.pressure_viscosity is None:
         raise Refused("", "pressure_viscosity")
     return {}
 
 
-def _complete_roelands(fluid: Any) -> dict[str, float]:
+def _complete_roelands(fluid: FluidValues) -> dict[str, float]:
     """Exponent from the viscosity that the oil tends to under tension, by default Roelands' 6.315e-5 Pa s."""
     _with_coefficient(fluid)
     pressure = fluid.roelands_pressure or ROELANDS_PRESSURE
@@ -106,24 +118,24 @@ def _complete_roelands(fluid: Any) -> dict[str, float]:
     return {"roelands_z": z, "roelands_pressure": pressure}
 
 
-def _doolittle(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _doolittle(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     constants = *(getattr(fluid, name) for name in DOOLITTLE), 0.0
     ambient = doolittle(0.0, reference_temperature(fluid, heat), *constants)[0]
     return *constants[:-1], ambient / fluid.doolittle_b
 
 
-def _yasutomi(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _yasutomi(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     c1, c2, glass, *others = (getattr(fluid, name) for name in YASUTOMI)
     above = reference_temperature(fluid, heat) - glass
     return c1, c2, glass, *others, above / (c2 + above)
 
 
-def _modulus(fluid: Any, heat: Any) -> tuple[float, ...]:
+def _modulus(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
     c, d, *others = (getattr(fluid, name) for name in MODULUS)
     return 1.0, c, d, *others, c / (d + reference_temperature(fluid, heat))
 
 
-def _complete_modulus(fluid: Any) -> dict[str, float]:
+def _complete_modulus(fluid: FluidValues) -> dict[str, float]:
     """As :func:`_complete_with_slope`; D + T and the modulus are positive by constants of T in K."""
     values = _complete_with_slope(fluid)
     T = reference_temperature(fluid)
@@ -134,7 +146,7 @@ def _complete_modulus(fluid: Any) -> dict[str, float]:
     return values
 
 
-def _complete_with_slope(fluid: Any) -> dict[str, float]:
+def _complete_with_slope(fluid: FluidValues) -> dict[str, float]:
     """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure."""
     law = LAWS[fluid.law]
     for name in law.keys:
@@ -210,7 +222,7 @@ def ln_viscosities(law: tuple, p: float, T: float, other: float) -> tuple[Deriva
     return _ln_viscosities(law[0], (p, T, other), law[1])
 
 
-def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
+def viscosity_law(fluid: FluidValues, heat: Values | None = None) -> OilLaw:
     """Viscosity law of a case; `fluid.exponent_factor` below 1 is that of a continuation."""
     law = LAWS[fluid.law]
     first, *others = law.constants(fluid, heat)
@@ -219,7 +231,9 @@ def viscosity_law(fluid: Any, heat: Any = None) -> OilLaw:
     return OilLaw(kind, padded((first, *others)), float(reference_temperature(fluid, heat)))
 
 
-def viscosity(p: np.ndarray, fluid: Any, heat: Any = None, T: Any = None) -> tuple[np.ndarray, np.ndarray]:
+def viscosity(
+    p: np.ndarray, fluid: FluidValues, heat: Values | None = None, T: Numbers | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """ln(eta/eta0), by default at the reference temperature, and its derivative by p [1/Pa]."""
     law = viscosity_law(fluid, heat)
     return LAWS[fluid.law](p, law.temperature if T is None else T, law.constants)[:2]
@@ -249,13 +263,13 @@ def conductivity(p: float, ambient: float, c1: float, c2: float) -> tuple[float,
 # ---- density ----
 
 
-def compression(p: Any, gamma: float, lambda_: float) -> Derivatives:
+def compression(p: Numbers, gamma: float, lambda_: float) -> Derivatives:
     r"""Density over its ambient value, :math:`(1+\gamma p)/(1+\lambda p)`, and its derivative."""
     below = 1.0 + lambda_ * p
     return (1.0 + gamma * p) / below, (gamma - lambda_) / (below * below)
 
 
-def incompressible(p: Any) -> Derivatives:
+def incompressible(p: Numbers) -> Derivatives:
     """Density 1 and derivative 0."""
     return 1.0 + 0.0 * p, 0.0 * p
 
@@ -265,7 +279,7 @@ TEXTBOOKS = "the density `1 + 0.6e-9 p/(1 + 1.7e-9 p)` of textbooks is gamma = 2
 DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
 
 
-def _complete_density(fluid: Any) -> dict[str, float]:
+def _complete_density(fluid: FluidValues) -> dict[str, float]:
     values = {
         name: default if getattr(fluid, name) is None else getattr(fluid, name)
         for name, default in DENSITY.items()
@@ -302,7 +316,7 @@ def relative_density(law: tuple, p: float) -> Derivatives:
     return _relative_density(law[0], (p,), law[1])
 
 
-def density_law(fluid: Any) -> OilLaw:
+def density_law(fluid: FluidValues) -> OilLaw:
     """Density law of a case."""
     law = DENSITY_LAWS[fluid.density]
     constants = law.constants(fluid, None)
@@ -311,7 +325,7 @@ def density_law(fluid: Any) -> OilLaw:
     return OilLaw(kind, padded(constants))
 
 
-def density(p: np.ndarray, fluid: Any) -> tuple[np.ndarray, np.ndarray]:
+def density(p: np.ndarray, fluid: FluidValues) -> tuple[np.ndarray, np.ndarray]:
     """Density over its ambient value under pressures [Pa], and its derivative [1/Pa]."""
     return DENSITY_LAWS[fluid.density](p, density_law(fluid).constants)
 
@@ -322,7 +336,7 @@ def density(p: np.ndarray, fluid: Any) -> tuple[np.ndarray, np.ndarray]:
 TABLES: tuple[Mapping[str, Law], ...] = (LAWS, DENSITY_LAWS, SHEAR_LAWS)
 
 
-def names_in_use(fluid: Any) -> tuple[str, ...]:
+def names_in_use(fluid: FluidValues) -> tuple[str, ...]:
     """Name of the law that a case has of each of `TABLES`."""
     return fluid.law, fluid.density, shear_law(fluid)
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
 
 
@@ -61,7 +62,7 @@ class ConstantOperation:
     varies = False
 
     @classmethod
-    def of(cls, case: Any, scales: Scales) -> Self:
+    def of(cls, case: Case, scales: Scales) -> Self:
         """Operation of a case with constant load, radius and speeds."""
         travel = None if case.time is None else scales.duration * scales.u_max
         return cls(Conditions(scales.load, scales.R, scales.u1, scales.u2), travel)

@@ -7,13 +7,16 @@ closed form; that of any other is a table, see :mod:`ehlpetsc.physics.tabulated_
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.base.declarations import Key, Refused
-from ehlpetsc.physics.law import Derivatives, Law, switched
+from ehlpetsc.physics.law import Derivatives, FluidValues, Law, switched
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 NEWTON, EYRING, CARREAU = range(3)  # positions in `SHEAR_LAWS`
@@ -77,7 +80,7 @@ def carreau(x: float, stress: float, n: float, a: float) -> Derivatives:
     return tau, tau * (1.0 + (n - 1.0) * thinned)
 
 
-def _complete_carreau(fluid: Any) -> dict[str, float]:
+def _complete_carreau(fluid: FluidValues) -> dict[str, float]:
     if fluid.carreau_exponent is None:
         raise Refused("", "carreau_exponent")
     return {}
@@ -123,7 +126,7 @@ SHEAR_LAWS = {  # a law is that of the case whose first key, its stress, is give
 _shear_stress = switched(SHEAR_LAWS, 1)
 
 
-def shear_law(fluid: Any) -> str:
+def shear_law(fluid: FluidValues) -> str:
     """Name of the shear law of a case."""
     keys = {name: next(iter(law.keys)) for name, law in SHEAR_LAWS.items() if law.keys}
     return next((name for name, key in keys.items() if getattr(fluid, key, None) is not None), "newton")
@@ -173,14 +176,14 @@ def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, fl
     return value, by_x * by_tau, by_limit + 0.0 * by_x
 
 
-def flow_law(fluid: Any) -> FlowLaw:
+def flow_law(fluid: Fluid) -> FlowLaw:
     """Shear law of a case with its constants."""
     name = shear_law(fluid)
     constants = map(float, SHEAR_LAWS[name].constants(fluid, None))
     return FlowLaw(list(SHEAR_LAWS).index(name), *constants)
 
 
-def stress_pressure(fluid: Any) -> float:
+def stress_pressure(fluid: Fluid) -> float:
     """Relative rise of the Eyring stress with pressure [1/Pa]."""
     return getattr(fluid, "eyring_stress_pressure", None) or 0.0
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from ehlpetsc.physics.geometry import GEOMETRIES, Geometry
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.operation import Conditions
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
 
 
 def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[float]) -> float:
@@ -23,17 +26,6 @@ def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[flo
         E1, E2 [Pa] and nu1, nu2.
     """
     return 2.0 / sum((1.0 - nu * nu) / e for e, nu in zip(youngs_modulus, poisson_ratio, strict=True))
-
-
-def hertz_gap(x: np.ndarray, a: float, radius: float) -> np.ndarray:
-    r"""Gap outside the contact of a dry smooth cylinder [m], 0 inside.
-
-    :math:`\frac{a^2}{2R}\left[X\sqrt{X^2-1}-\ln(X+\sqrt{X^2-1})\right]`, :math:`X=|x|/a`: the parabola
-    and the deflection by the pressure of `hertz_pressure` (Johnson 1985, section 4.2).
-    """
-    ratio = np.maximum(np.abs(x) / a, 1.0)
-    root = np.sqrt(ratio**2 - 1.0)
-    return a**2 / (2.0 * radius) * (ratio * root - np.log(ratio + root))
 
 
 @dataclass(frozen=True)
@@ -101,8 +93,13 @@ class Scales:
         return self.grid.spacings[-1]
 
     @property
+    def load_per_length(self) -> float:
+        r"""Load per length across in the middle of the dry contact, :math:`\pi p_0a/2` [N/m]."""
+        return 0.5 * np.pi * self.p0 * self.a
+
+    @property
     def stiffness(self) -> float:
-        r"""Deflection of a half-space by a pressure p0 on a^2 at the distance a, :math:`2p_0R/(\pi E'a)` in a^2/R."""
+        r"""Deflection by p0 on a^2 at the distance a, :math:`2p_0R/(\pi E'a)`, in a^2/R."""
         return 2.0 * self.p0 * self.R / (np.pi * self.E * self.a)
 
     @property
@@ -121,7 +118,7 @@ class Scales:
         return ratio ** (0.5 * self.grid.growth)
 
     @classmethod
-    def of(cls, case: Any) -> Self:
+    def of(cls, case: Case) -> Self:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""
         contact, mesh = case.contact, case.mesh
         modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)

@@ -1,6 +1,8 @@
 """Traction on both surfaces: shear of the film and friction of the solids."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,9 +11,12 @@ from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
 from ehlpetsc.physics.tabulated_flow import flow_table, stress_spread
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
+
 
 def shear_stresses(
-    fluid: Any,
+    fluid: Fluid,
     solids: np.ndarray,
     gradient: np.ndarray,
     sliding: float,
@@ -59,7 +64,12 @@ def shear_stresses(
 
 
 def wall_shear(
-    h: np.ndarray, gradient: np.ndarray | float, ln_eta: np.ndarray, fluid: Any, sliding: float, p: np.ndarray
+    h: np.ndarray,
+    gradient: np.ndarray | float,
+    ln_eta: np.ndarray,
+    fluid: Fluid,
+    sliding: float,
+    p: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     r"""Shear stress at the lower and the upper wall, :math:`\tau(\mp h/2)=\tau_m\mp hp_x/2`, isothermal.
 

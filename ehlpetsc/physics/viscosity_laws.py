@@ -14,7 +14,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.declarations import Key
-from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives
+from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives, Numbers
 
 KELVIN = 273.15  # K at 0 degrees Celsius
 GLASSY = -0.5  # x/(C2 + x) of Yasutomi's law below which the logarithm continues linearly, towards a solid
@@ -28,8 +28,8 @@ WALTHER_SHIFT = 0.7  # mm^2/s
 
 
 def power_law(
-    p: Any,
-    T: Any,
+    p: Numbers,
+    T: Numbers,
     factor: float,
     reference: float,
     z: float,
@@ -69,7 +69,7 @@ def power_law(
 
 
 @compiled
-def walther(temperature: Any, a: float, b: float) -> Derivatives:
+def walther(temperature: Numbers, a: float, b: float) -> Derivatives:
     r"""Kinematic viscosity [mm^2/s], :math:`\lg\lg(\nu+0.7)=A-B\lg T` (ASTM D341), T in K; d ln(nu)/dT."""
     exponent = 10.0 ** (a - b * np.log(temperature) / 2.302585092994046)
     shifted = 10.0**exponent
@@ -116,8 +116,8 @@ def roelands_slope_of_secant(secant: float, decades: float, pressure: float, z: 
 
 
 def doolittle(
-    p: Any,
-    T: Any,
+    p: Numbers,
+    T: Numbers,
     b: float,
     occupied: float,
     occupied_rise: float,

@@ -12,7 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
+from ehlpetsc.base.progress_line import ProgressLine
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.mean_stress import MEAN_STRESSES
 from ehlpetsc.post.run import Job, run
@@ -55,6 +57,7 @@ def main(words: Sequence[str]) -> int:
 
 
 def _run(chosen: argparse.Namespace) -> int:
+    announce_compilation(_say)
     files = [str(file) for path in chosen.results for file in files_of(path)]
     _check(chosen, files)
     jobs = [_job(path, chosen) for path in files]
@@ -106,7 +109,16 @@ def _process(job: Job, inputs: Sequence[str], overwrite: bool) -> None:
         _say(f"{job.output}: already there, of the same file and options")
     else:
         _check_output(Path(job.output), inputs, overwrite)
-        run(job, lambda text: _say(f"{job.path}: {text}"))
+        line = ProgressLine(f"post {Path(job.path).name}", 1.0)
+
+        def report(text: str) -> None:
+            line.clear()
+            _say(f"{job.path}: {text}")
+
+        try:
+            run(job, report, line.reach)
+        finally:
+            line.clear()
     _summary(job.output, time.perf_counter() - start)
 
 

@@ -59,10 +59,14 @@ class Job(NamedTuple):
             return False
 
 
-def run(job: Job, report: Callable[[str], None] = lambda text: None) -> None:
+def run(
+    job: Job,
+    report: Callable[[str], None] = lambda text: None,
+    show: Callable[[float], None] = lambda share: None,
+) -> None:
     """Compute damage and statistics of one result file and write them to `job.output`, replacing it.
 
-    `report` is called with warnings and notes.
+    `report` is called with warnings and notes, `show` with the share of the work that is done.
     """
     with Loads(job.path, job.settings) as loads:
         identity = job.fingerprint()
@@ -72,11 +76,18 @@ def run(job: Job, report: Callable[[str], None] = lambda text: None) -> None:
             raise PostError(f"{job.path}: {fault}") from None
         for note in _notes(job, loads):
             report(note)
+        done, total = 0, len(prepared.depths) * sum(m.complete.sum() for m in prepared.motions.values())
+
+        def advance(points: int) -> None:
+            nonlocal done
+            done += points
+            show(done / total)
+
         datasets: dict[str, Any] = {"damage/s": prepared.s, "damage/z_over_a": prepared.depths}
         if loads.y is not None:
             datasets["damage/y"] = loads.y
         for surface in prepared.motions:
-            datasets |= solve(prepared, surface, job)
+            datasets |= solve(prepared, surface, job, advance)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
         provenance = {"settings": "\n".join(job.settings), "fingerprint": identity}
         attributes = attributes_of(prepared) | provenance
@@ -107,19 +118,23 @@ def _criteria(job: Job, case: Case) -> set[str]:
     return {*job.criteria, case.post.criterion} & {*CRITERIA}
 
 
-def solve(prepared: Prepared, surface: str, job: Job) -> dict[str, np.ndarray]:
+def solve(
+    prepared: Prepared, surface: str, job: Job, advance: Callable[[int], None] = lambda points: None
+) -> dict[str, np.ndarray]:
     """Damage, cycles, peak range and criteria of a surface (depths, *rows, points) by name in the file.
 
-    nan for incomplete points.
+    nan for incomplete points. `advance` is called with the number of points that are done at a depth.
     """
     depths = prepared.depths
     blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(job.jobs, len(depths))))
-    work = partial(_solve_depths, prepared, surface, job)
+    work = partial(_solve_depths, prepared, surface, job, advance)
     found = list(ThreadPoolExecutor(job.jobs).map(work, blocks) if job.jobs > 1 else map(work, blocks))
     return {name: np.concatenate([values[name] for values in found]) for name in found[0]}
 
 
-def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray) -> dict[str, np.ndarray]:
+def _solve_depths(
+    prepared: Prepared, surface: str, job: Job, advance: Callable[[int], None], depths: np.ndarray
+) -> dict[str, np.ndarray]:
     loads, motion, table = prepared.loads, prepared.motions[surface], prepared.loads.case.post.residual_stress
     counts = _counts(prepared, surface, job)
     names = [name for columns, _ in counts for name in columns]
@@ -135,6 +150,7 @@ def _solve_depths(prepared: Prepared, surface: str, job: Job, depths: np.ndarray
                 values = count(stresses.reshape(-1, *stresses.shape[-2:]), of_rows, residual)
                 for name, column in zip(columns, values.T, strict=True):
                     out[name][k][..., points] = column.reshape(points.size, *loads.rows).T
+            advance(len(points))
     return out
 
 

@@ -8,7 +8,7 @@ import resource
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
@@ -18,6 +18,17 @@ from ehlpetsc.base.errors import OutputError
 LIBVER = ("v110", "v110")  # the first with SWMR, that of Debian 12, which cannot read files of newer formats
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
 BEING_WRITTEN = "already open"  # in the message of HDF5 on a file of a live or killed writer
+NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL)  # of file systems without locks
+
+
+def open_hdf5(path: str | Path | BinaryIO, mode: str, **options: Any) -> h5py.File:
+    """Open an HDF5 file as `h5py.File` does, without a lock on a file system that has none."""
+    try:
+        return h5py.File(path, mode, **options)
+    except OSError as fault:
+        if fault.errno not in NO_LOCKS:
+            raise
+        return h5py.File(path, mode, locking=False, **options)
 
 
 def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
@@ -28,10 +39,12 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
     if not Path(path).is_file():
         raise OutputError(f"{path}: no such file")
     try:
-        return h5py.File(path, "r", **options)
+        return open_hdf5(path, "r", **options)
     except (OSError, ValueError, RuntimeError) as fault:
         if BEING_WRITTEN in str(fault):
-            return h5py.File(path, "r", swmr=True, **options)
+            return open_hdf5(path, "r", swmr=True, **options)
+        if getattr(fault, "errno", None) == errno.EAGAIN:
+            raise OutputError(f"{path}: another process has it open for writing; wait for it") from fault
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
 

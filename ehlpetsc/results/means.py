@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.effects.quantities import MEANS, REDUCTIONS, STEP_SCALARS
+import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
+from ehlpetsc.base.quantities import MEANS, REDUCTIONS, STEP_SCALARS
 from ehlpetsc.surfaces.roughness import RAMP_LENGTH
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def mean(result: Result, name: str, weights: np.ndarray) -> float:
 
 
 def means(result: Result) -> dict[str, float]:
-    """Means of the scalars `ehlpetsc.effects.quantities.MEANS`, by name, in the last line of a run.
+    """Means of the scalars `ehlpetsc.base.quantities.MEANS`, by name, in the last line of a run.
 
     Empty if the run ends before both surfaces fill the contact.
     """

@@ -20,6 +20,14 @@ PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".ti
 PAGES = (".html", ".htm")
 
 
+def file_path(text: str | os.PathLike) -> Path:
+    """Path of an output file; OutputError without the name of a file, as that of ``.``."""
+    path = Path(text)
+    if not path.name:
+        raise OutputError(f"{path}: a folder, not a file to write a result to; give the name of a file")
+    return path
+
+
 def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") -> None:
     """Refuse an output path, that of `option`, that is an input or not a regular file: OutputError."""
     if path.exists() and not path.is_file():

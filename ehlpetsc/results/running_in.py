@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.effects.quantities import OTHERS, STEP_SCALARS
+from ehlpetsc.base.quantities import OTHERS
 from ehlpetsc.results.means import filled_weights, mean
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def pass_summary(result: Result) -> dict[str, Any]:
     values = {name: mean(result, name, weights) for name in MEANS if name in result.scalars}
     summary = {name: value if np.isfinite(value) else None for name, value in values.items()}
     summary |= {"p_max": float(steps("p_max").max()), "newton": int(steps("newton").sum())}
-    summary |= {name: float(steps(name)[-1]) for name in result.scalars if STEP_SCALARS[name].units == "m^2"}
+    summary |= {name: float(steps(name)[-1]) for name in result.scalars if name.endswith("_volume")}
     summary.setdefault("set_volume", 0.0)
     return summary | {side: statistics(result, side) for side in ("1", "2")}
 

@@ -11,6 +11,7 @@ import difflib
 import math
 import os
 import re
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -99,7 +100,7 @@ def _check(word: str, value: str, before: str, case: str | None, names: list[str
     """Refuse a word that neither this program nor PETSc has, and files that PETSc could not open."""
     name = word.lstrip("-")
     if word in ("-n", "-np"):
-        raise UsageError(f"{word} is of mpirun and run_mpi.sh, before the case: mpirun {word} RANKS ...")
+        raise UsageError(f"{word} RANKS comes before the case: ehlpetsc -n RANKS {case}")
     if re.match(r"[^-]|-\d", word) and not before.startswith("-"):
         reason = "neither an option nor a value; a command comes first"
         raise UsageError(f"{word}: {reason}: ehlpetsc {word} {case}")
@@ -135,15 +136,19 @@ def run(chosen: argparse.Namespace, stop: StopRequest) -> int:
 
 def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, stop: StopRequest) -> int:
     """Run a case file on all ranks; with -help print PETSc's options."""
+    from ehlpetsc.base.compiled import announce_compilation
     from ehlpetsc.case.loading import load
+    from ehlpetsc.results.output_guard import file_path
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.simulation import Simulation
 
+    if comm.rank == 0:
+        announce_compilation(partial(print, flush=True))
     case = on_root(comm, load, chosen.case, chosen.set)
     if options.hasName("help"):
         Simulation(case, comm)  # PETSc's objects print their options when they are created
         return ExitStatus.DONE
-    output = Path(chosen.output or f"{Path(case.path).stem}.h5")
+    output = file_path(f"{Path(case.path).stem}.h5" if chosen.output is None else chosen.output)
     restart, overwrite = chosen.restart, chosen.overwrite
     has_passes = case.time is not None and case.time.passes > 1
     if case.series and has_passes:

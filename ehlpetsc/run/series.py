@@ -13,11 +13,11 @@ import re
 import sys
 import time as clock
 import tomllib
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.base.progress_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -36,10 +36,12 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.run.simulation import AcceptedState
     from ehlpetsc.run.stop import StopRequest
 
 MAX_NAME_LENGTH = 60  # characters
 WAITING = "waiting"  # state of a member that is not computed yet
+VARIED = ("key", "keys")  # of [series], in the index
 
 
 def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
@@ -69,38 +71,6 @@ def members_of(case: Case, output: Path) -> list[Member]:
     return found
 
 
-def index_of(case: Case, path: Path, members: list[Member], files: list[Path]) -> Index:
-    """Index of the members of a series, all waiting."""
-    swept = tomllib.loads(case.text)["series"]
-    index = Index(path, case, "members", **{name: swept[name] for name in ("key", "keys") if name in swept})
-    index.rows = [
-        {"value": member.value, "file": file.name, "state": WAITING}
-        for member, file in zip(members, files, strict=True)
-    ]
-    return index
-
-
-def compute_rows(
-    world: MPI.Comm,
-    index: Index,
-    order: list[int],
-    solve: Callable[[int, MPI.Comm, PollingStop], dict[str, Any]],
-    stop: StopRequest | None,
-    on_row: Callable[[int], None] = lambda number: None,
-) -> None:
-    """Compute the rows `order` of an index, one a rank, write it after each; `on_row` on rank 0."""
-
-    def record(report: tuple[int, dict]) -> None:
-        number, row = report
-        index.rows[number] |= row
-        with contextlib.suppress(OutputError):  # of the first rank alone; it is written again at the end
-            index.write()
-        on_row(number)
-
-    on_root(world, index.write)
-    index.rows[:] = WorkQueue(world, 1, order, record).compute(solve, stop, lambda: index.rows)
-
-
 class Member:
     """Member of a series: its name, as ``viscosity=0.002``, value, case and result file."""
 
@@ -127,14 +97,35 @@ class PrefixedStream(io.TextIOBase):
 
     def __init__(self, name: str, stream: TextIO) -> None:
         self._name, self._stream, self._line = f"[{name}] ", stream, ""
+        self._begin = ERASE if on_terminal(stream) else ""
 
     def write(self, text: str) -> None:
         *lines, self._line = (self._line + text).split("\n")
         # one write for all lines, so that the output of groups does not mix within a line
-        self._stream.write("".join(f"{self._name}{line}\n" for line in lines))
+        if lines:
+            self._stream.write(self._begin + "".join(f"{self._name}{line}\n" for line in lines))
 
     def flush(self) -> None:
         self._stream.flush()
+
+
+class MemberProgress:
+    """Output that adds the steps of a member to the line of its series, if this rank has it."""
+
+    def __init__(self, simulation: Simulation, line: ProgressLine | None, work: float) -> None:
+        self._simulation, self._line, self._work, self._share = simulation, line, work, 0.0
+
+    def write(self, state: AcceptedState) -> None:
+        """Add the step."""
+        share = float(state.time) / self._simulation.end if self._simulation.case.time else 1.0
+        if self._line:
+            self._line.add(self._work * max(share - self._share, 0.0))
+        self._share = max(share, self._share)
+
+    def close(self, status: ExitStatus) -> None:
+        """Add steps that are left out."""
+        if self._line:
+            self._line.add(self._work * (1.0 - self._share))
 
 
 class Series:
@@ -149,8 +140,12 @@ class Series:
     ) -> None:
         self.world, self.stop, self.overwrite = world, stop, overwrite
         self.members = members_of(case, output)
-        files = [member.output for member in self.members]
-        self.index = index_of(case, output.with_name(f"{output.stem}.series.json"), self.members, files)
+        varied = {name: value for name, value in tomllib.loads(case.text)["series"].items() if name in VARIED}
+        index = Index(output.with_name(f"{output.stem}.series.json"), case, "members", **varied)
+        index.rows = [
+            {"value": member.value, "file": member.output.name, "state": WAITING} for member in self.members
+        ]
+        self.index = index
 
     def run(self) -> ExitStatus:
         """Run the missing members; returns the exit status."""
@@ -158,13 +153,34 @@ class Series:
         on_root(self.world, index.acquire, self.overwrite)
         try:
             missing = on_root(self.world, self._missing)
-            compute_rows(self.world, index, missing, self._run_member, self.stop)
+            self._show_progress(missing)
+            on_root(self.world, index.write)
+            queue = WorkQueue(self.world, 1, missing, self._record)
+            index.rows[:] = queue.compute(self._run_member, self.stop, lambda: index.rows)
             if self.world.rank == 0:
+                self._line.clear()
                 self._report(clock.monotonic() - begun)
             on_root(self.world, index.write)
         finally:
             index.release()
         return self._status()
+
+    def _show_progress(self, missing: list[int]) -> None:
+        """Begin the line of progress, on a terminal, which the first rank writes."""
+        self._work = {number: float(self.members[number].weight()[0]) for number in missing}
+        self._is_in_line, self._own = on_terminal(sys.stdout), set[int]()
+        self._line: Any = None
+        if self.world.rank == 0:
+            self._line = ProgressLine(f"series, {len(missing)} members", sum(self._work.values()))
+
+    def _record(self, report: tuple[int, dict]) -> None:
+        """Write the row of a member that has ended to the index, on the first rank."""
+        number, row = report
+        self.index.rows[number] |= row
+        with contextlib.suppress(OutputError):  # of the first rank alone; it is written again at the end
+            self.index.write()
+        if number not in self._own:  # of another rank
+            self._line.add(self._work[number])
 
     def _missing(self) -> list[int]:
         """Numbers of the members without a complete result, the longest first; prints the opening."""
@@ -190,7 +206,10 @@ class Series:
         out: Any = PrefixedStream(member.name, sys.stdout)
         err: Any = PrefixedStream(member.name, sys.stderr)
         try:
-            run = Run(Simulation(member.case, group), member.output, stop, out, err)
+            simulation, work = Simulation(member.case, group), self._work[number]
+            progress = MemberProgress(simulation, self._line, work) if self._is_in_line else None
+            self._own.add(number)
+            run = Run(simulation, member.output, stop, out, err, progress)
             status, failure = run.run(overwrite=self.overwrite)
         except (CaseError, OutputError, UsageError) as error:
             return {"state": ExitStatus.BAD_INPUT.words, "reason": str(error)}

@@ -13,7 +13,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.errors import CaseError, NotConverged, Stopped, UsageError
+from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
@@ -24,6 +24,7 @@ from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.failed_start import coarser, cures, guess_of
 from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.run.validity import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
@@ -33,6 +34,7 @@ from ehlpetsc.stepping.time_stepping import TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
+MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
@@ -135,6 +137,7 @@ class Simulation:
             raise CaseError([f"{case.path}: a [series]: {one_by_one}"])
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}), case.kind)
+        self._options = options
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number: int = pass_number or (after.pass_number + 1 if after else 1)
@@ -190,14 +193,14 @@ class Simulation:
             watch = partial(_raise_if_stopped, stop.overdue if begun else stop, self.comm) if stop else None
             yield self.advance(watch=watch)
 
-    def resume(self, solution: State, baseline: tuple[np.ndarray, np.ndarray]) -> None:
+    def resume(self, state: State, baseline: tuple[np.ndarray, np.ndarray]) -> None:
         """Continue from a time level; `baseline` are steady q and w for the predictor."""
         solver = self.stepper.solver
-        effects = effects_of(self.scene, solution.records)
+        effects = effects_of(self.scene, state.records)
         self.stepper = TimeStepping(solver, self.scene, effects, self._film, baseline)
-        records = {e.name: solution.records.get(e.name) or e.start() for e in effects}
-        m = solver.problem.mass_per_area(solution.q, solution.w) if solution.m is None else solution.m
-        self.solution = replace(solution, records=records, m=m)
+        records = {e.name: state.records.get(e.name) or e.start() for e in effects}
+        m = solver.problem.mass_per_area(state.q, state.w) if state.m is None else state.m
+        self.solution = replace(state, records=records, m=m)
 
     def advance(self, dt: float | None = None, watch: Watch | None = None) -> AcceptedState:
         """Solve the steady contact, at later calls one time step.
@@ -213,19 +216,24 @@ class Simulation:
             No such time step is possible, or the simulation is at its end.
         """
         self._check_time_step(dt)
-        started = clock.monotonic()
+        started, gmres = clock.monotonic(), self._linear_iterations
         with self.options:
             try:
-                solution = self._start(watch) if self.solution is None else self._step(dt, watch)
-                check_ends(self.scales.grid, solution.p, solution.solution.loads.contact_mask)
-                self.solution = solution
+                state = self._start(watch) if self.solution is None else self._step(dt, watch)
+                check_ends(self.scales.grid, state.p, state.solution.loads.contact_mask)
+                self.solution = state
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error
         problem, effects = self.stepper.problem, self.stepper.effects
-        scalars, fields, in_contact = diagnostics(self.scene, problem, effects, solution, started)
-        scalars |= {"step": solution.step, "time": solution.time}
-        self.state = AcceptedState(scalars, fields, in_contact, solution)
+        scalars, fields, in_contact = diagnostics(self.scene, problem, effects, state, started)
+        scalars |= {"step": state.step, "time": state.time, "gmres": self._linear_iterations - gmres}
+        self.state = AcceptedState(scalars, fields, in_contact, state)
         return self.state
+
+    @property
+    def _linear_iterations(self) -> int:
+        """GMRES iterations so far on the mesh of the case; the paper's sweeps have none."""
+        return getattr(self.stepper.solver, "linear_iterations", 0)
 
     def _check_time_step(self, dt: float | None) -> None:
         """Refuse an impossible length of a time step [s], and a step after the end."""
@@ -242,12 +250,34 @@ class Simulation:
     def _start(self, watch: Watch) -> State:
         self._print_heading("steady start")
         with events.START:
-            solution = self.stepper.start(self._records, watch)
+            try:
+                state = self._started(watch)
+            except NotConverged as error:
+                if isinstance(error.__cause__, NoSteadyStart):
+                    advice = cures(self.case, self.operation.at(0.0))
+                    raise NotConverged(f"{error}{advice}") from error.__cause__
+                raise
         if isinstance(self.stepper.solver, NewtonSolver):
             for name in self.options.deferred_views:
                 snes = self.stepper.solver.snes
                 (snes if name == "snes_view" else snes.ksp).view()
-        return solution
+        return state
+
+    def _started(self, watch: Watch) -> State:
+        """Steady state, from the solution on a coarser mesh if need be."""
+        try:
+            return self.stepper.start(self._records, watch)
+        except NotConverged as failure:
+            points = self.case.mesh.points_per_half_width // 2
+            if not isinstance(failure.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
+                raise
+            try:
+                coarse = Simulation(coarser(self.case, points), self.comm, self._options)
+                coarse.advance(watch=watch)
+            except (CaseError, NotConverged, UsageError):
+                raise failure from failure.__cause__
+            guess = guess_of(coarse.solution, coarse.stepper.problem, self.stepper.problem)
+            return self.stepper.start(self._records, watch, guess)
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")

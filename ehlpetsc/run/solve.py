@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TextIO
 
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.run.outputs.busy_cores import BusyCores
 from ehlpetsc.run.outputs.progress import Progress, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 
@@ -46,7 +47,10 @@ def solve(
 
 
 class Run:
-    """Run of a simulation by the command, with messages of rank 0 on `out` and `err`; one of its outputs."""
+    """Run of a simulation by the command, with messages of rank 0 on `out` and `err`; one of its outputs.
+
+    `progress`: output that shows the steps, by default a `Progress`.
+    """
 
     def __init__(
         self,
@@ -55,10 +59,12 @@ class Run:
         stop: StopRequest | None = None,
         out: TextIO | None = None,
         err: TextIO | None = None,
+        progress: Output | None = None,
     ) -> None:
         self.simulation, self.recorder = simulation, Recorder(simulation, output)
         self.stop, self.root = stop, simulation.comm.rank == 0
         self.out, self.err = out or sys.stdout, err or sys.stderr
+        self._progress = progress
         self._unused: set[str] = set()
 
     def run(self, restart: Path | None = None, overwrite: bool = False) -> Outcome:
@@ -81,8 +87,11 @@ class Run:
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))
             self._notes = self.simulation.options.loose_tolerances()
-            printed: list[Output] = [self, Progress(self.simulation, self.out)] if self.root else []
-            return solve(self.simulation, [self.recorder, *printed], self.stop)
+            printed: list[Output] = (
+                [] if not self.root else [self, self._progress or Progress(self.simulation, self.out)]
+            )
+            busy = BusyCores(self.simulation.comm, self._print)
+            return solve(self.simulation, [self.recorder, busy, *printed], self.stop)
 
     def write(self, state: AcceptedState) -> None:
         """Print the unused options after the first step, when PETSc has read those of the solver."""

@@ -38,6 +38,9 @@ class Solver(Protocol):
     tolerance: float
     bounded: bool
 
+    def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
+        """Prepare for time steps from states near this one."""
+
     def solve(
         self, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
     ) -> tuple[Unknowns, int]: ...

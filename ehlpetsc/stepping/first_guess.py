@@ -42,17 +42,24 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
     The pressure is smoothed over `SMOOTHING` times the length of the inlet sweep, film^(2/3): the infinite
     slope at the edge of the Hertz pressure would dominate the flow through a thick film. `film` is the
     expected one in a^2/R, `thick` the factor on it.
+
+    Without entrainment the solids carry the load, in oil at ambient pressure: no flow fills a cavity.
     """
     grid, load = problem.grid, load_of(problem, inputs)
     width_2 = (load * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
     p = np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0))
-    if problem.fluid is not None:
+    oil_carries = problem.fluid is not None and inputs.conditions.entrainment != 0.0
+    if oil_carries:
         p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
     p *= grid.load * load / (grid.cell * p.sum())
     h = problem.film(p, 0.0, undeformed_gap(problem, inputs))
-    if problem.fluid is None:
-        gap = np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
-        return Unknowns(*problem.model.dry_start(p, gap), -h[np.argmax(p)])
+    if not oil_carries:
+        lowest = 0.0 if problem.fluid is None else problem.model.minimum_film
+        gap = lowest + np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
+        q, w = problem.model.dry_start(p, gap)
+        if problem.fluid is not None:
+            q = np.maximum(q, AMBIENT)
+        return Unknowns(q, w, lowest - h[np.argmax(p)])
     h00 = problem.model.start_film(thick * film) - h.min()
     h += h00
     oil, w = problem.model.oil_start(p, h)

@@ -1,9 +1,13 @@
 """Fields in SI units and scalars of an accepted time level."""
 
 import time as clock
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from ehlpetsc.base.quantities import STEP_SCALARS, of_case
+from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
 from ehlpetsc.effects.effect import Effect, Scene, Step
@@ -13,8 +17,99 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.stepping.state import State
 
-MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
 MIN_BALANCE_FILM = 1e-10  # m, size of an atom: smallest reference film of the mass error
+
+
+@dataclass(frozen=True)
+class Observation:
+    """An accepted time level, of which :mod:`ehlpetsc.base.quantities` states the scalars.
+
+    `fields`: in SI units by name, without those of effects.
+    `started`: monotonic clock at the beginning of the step [s].
+    """
+
+    scene: Scene
+    problem: EHLProblem
+    state: State
+    conditions: Conditions
+    fields: dict[str, np.ndarray]
+    started: float
+
+    @property
+    def loads(self) -> SurfaceLoads:
+        """Loads on the surfaces, dimensionless."""
+        return self.state.solution.loads
+
+    @property
+    def model(self) -> ContactModel:
+        """Contact model of the case."""
+        return self.problem.model
+
+    @property
+    def cell(self) -> float:
+        """Size of a cell [m], of a point contact [m^2]."""
+        return self.scene.scales.grid.cell_size
+
+    @cached_property
+    def size(self) -> float:
+        """Size of the Hertz contact of the instant over that of the scales."""
+        return self.scene.scales.size(self.conditions)
+
+    @cached_property
+    def rq(self) -> float:
+        """Combined rms height [m]."""
+        return self.scene.rq
+
+    @cached_property
+    def load(self) -> float:
+        """Integral of the pressure [N/m]."""
+        return self.cell * self.fields["pressure"].sum()
+
+    @cached_property
+    def friction_1(self) -> float:
+        """Friction force on surface 1 [N/m]."""
+        return self.cell * self.fields["shear_stress_1"].sum()
+
+    @cached_property
+    def friction_2(self) -> float:
+        """Friction force on surface 2 [N/m]."""
+        return self.cell * self.fields["shear_stress_2"].sum()
+
+    @property
+    def approach(self) -> float:
+        """Undeformed separation h00 [m]."""
+        return self.state.solution.unknowns.h00 * self.scene.scales.h
+
+    @cached_property
+    def mean_film(self) -> float:
+        """See :func:`mean_film`."""
+        return mean_film(self.scene.scales, self.state.solution.nodes.film, self.size)
+
+    @property
+    def smooth_film(self) -> float:
+        """Minimum film of smooth surfaces by formulas [m]; nan without oil."""
+        fluid = self.scene.case.fluid
+        return smooth_films(self.scene.scales, fluid, self.conditions)[1] if fluid else np.nan
+
+    @property
+    def mass_error(self) -> float:
+        """See :func:`mass_error`."""
+        return mass_error(self.problem, self.state.solution, self.size)
+
+    @property
+    def oil_pressure(self) -> np.ndarray:
+        """Pressure of the oil where it is known [Pa], else 0."""
+        return np.where(self.loads.oil_mask, self.loads.oil_pressure, 0.0) * self.scene.scales.p0
+
+    @cached_property
+    def thin(self) -> np.ndarray:
+        """Nodes whose film is thin, ``output.thin_film``."""
+        return self.loads.film < self.scene.case.output.thin_film * self.model.minimum_film
+
+    @property
+    def wall(self) -> float:
+        """Wall clock time of the step until now [s]."""
+        return clock.monotonic() - self.started
 
 
 def diagnostics(
@@ -24,50 +119,20 @@ def diagnostics(
 
     `started` is the monotonic clock at the beginning of the step [s].
     """
-    case, s, rq, conditions = scene.case, scene.scales, scene.rq, scene.operation.at(state.time)
-    solution, loads = state.solution, state.solution.loads
+    case, conditions, solution = scene.case, scene.operation.at(state.time), state.solution
+    present = [effect for effect in effects if effect.is_in(case)]
     shear = None
-    for effect in effects:
-        if effect.is_in(case):
-            shear = effect.film_shear(state.records[effect.name], solution, shear)
-    fields, contact_mask = _fields(scene, conditions, solution, shear), loads.contact_mask
-    pressure, thickness = fields["pressure"], fields["film_thickness"]
-    size = s.size(conditions)
-    load, film = s.grid.cell_size * pressure.sum(), mean_film(s, solution.nodes.film, size)
-    friction_1, friction_2 = (s.grid.cell_size * fields[f"shear_stress_{side}"].sum() for side in ("1", "2"))
-    smooth_film = smooth_films(s, case.fluid, conditions)[1] if case.fluid else np.nan
-    scalars = {
-        "dt": state.dt or 0.0,
-        "newton": state.newton,
-        "retries": state.retries,
-        "h_min": thickness.min(),
-        "p_max": pressure.max(),
-        "contacts": int(contact_mask.sum()),
-        "load": load,
-        "load_error": abs(load / conditions.load - 1.0),
-        "mass_error": mass_error(problem, solution, size),
-        "approach": solution.unknowns.h00 * s.h,
-        "friction": friction_2,
-        "friction_1": friction_1,
-        "friction_coefficient": 0.5 * abs(friction_2 - friction_1) / load,
-        "film_central": film,
-        "lambda_ratio": smooth_film / rq if rq else np.nan,
-        "mean_gap_ratio": film / rq if rq else np.nan,
-        "wall": clock.monotonic() - started,
-    }
-    if case.conditions is not None:
-        scalars |= {"load_given": conditions.load, "radius": conditions.radius}
-        scalars |= {"speed_1": conditions.u1, "speed_2": conditions.u2}
-        scalars |= dict(zip(("displacement_1", "displacement_2"), state.travelled, strict=True))
-    if problem.fluid is not None:
-        scalars |= _of_oil(loads, s)
-    scalars |= problem.model.diagnostics(loads, s, case.output.thin_film)
+    for effect in present:
+        shear = effect.film_shear(state.records[effect.name], solution, shear)
+    fields = _fields(scene, conditions, solution, shear)
+    observation = Observation(scene, problem, state, conditions, fields, started)
+    functions = {name: STEP_SCALARS[name].of for name in of_case(STEP_SCALARS, case)}
+    scalars = {name: of(observation) for name, of in functions.items() if of}
     step = Step(state.time, state.dt, state.travelled, conditions)
-    for effect in effects:
-        if effect.is_in(case):
-            effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)
-            fields, scalars = fields | effect_fields, scalars | effect_scalars
-    return scalars, fields, contact_mask
+    for effect in present:
+        effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)
+        fields, scalars = fields | effect_fields, scalars | effect_scalars
+    return scalars, fields, solution.loads.contact_mask
 
 
 def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.ndarray | None) -> dict:
@@ -88,13 +153,6 @@ def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.
         "shear_stress_2": shear_2,
         "in_contact": loads.contact_mask,
     }
-
-
-def _of_oil(loads: SurfaceLoads, s: Scales) -> dict:
-    """Maximum pressure of the oil, and number of nodes with less than 1 nm of oil."""
-    oil = np.where(loads.oil_mask, loads.oil_pressure, 0.0) * s.p0
-    thin = ~loads.contact_mask & (loads.film * s.h < MIN_CONTINUUM_FILM)
-    return {"oil_pressure": oil.max(), "nodes_below_1nm": int(thin.sum())}
 
 
 def mean_film(scales: Scales, h: np.ndarray, size: float) -> float:

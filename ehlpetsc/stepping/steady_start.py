@@ -39,12 +39,16 @@ MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
 
 
-def steady(solver: Solver, film: float, inputs: StepInputs, watch: Watch = None) -> tuple[Unknowns, int]:
+def steady(
+    solver: Solver, film: float, inputs: StepInputs, watch: Watch = None, guess: Unknowns | None = None
+) -> tuple[Unknowns, int]:
     """Steady solution, and the number of iterations with failed attempts; raise `NoSteadyStart` without one.
 
-    `film` is the expected one in a^2/R.
+    `film` is the expected one in a^2/R, `guess` the solution on a coarser mesh.
     """
     problem, oil = solver.problem, inputs.inlet_film
+    if guess is not None:
+        return Continuation(solver, inputs, watch=watch).solve(guess)
     if problem.model.yield_pressure < 1.0:
         return yielding_start(solver, film, inputs, watch)
     if oil is None:

@@ -68,14 +68,14 @@ class TimeStepping:
     ):
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
-        self.baseline, self.ramp_time = baseline, 0.0
+        self.baseline, self.ramp_time, self._is_prepared = baseline, 0.0, False
         time = scene.case.time
         self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
-    def start(self, records: dict, watch: Watch = None) -> State:
-        """Steady state at time 0 from the records of the effects.
+    def start(self, records: dict, watch: Watch = None, guess: Unknowns | None = None) -> State:
+        """Steady state at time 0 from the records of the effects, or a guess from a coarser mesh.
 
         By time steps if roughness at rest prevents convergence, or if the case starts rough.
         """
@@ -83,7 +83,7 @@ class TimeStepping:
             return self._start_by_time_stepping(records, watch)
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
-            state = self._steady(inputs, records, watch)
+            state = self._steady(inputs, records, watch, guess)
         except NoSteadyStart as error:
             if self.scales.dt is None or self.problem.fluid is None or not inputs.phi.any():
                 raise NotConverged(f"steady start: {error}") from error
@@ -91,9 +91,11 @@ class TimeStepping:
         self.baseline = (state.q, state.w)
         return state
 
-    def _steady(self, inputs: StepInputs, records: dict, watch: Watch) -> State:
+    def _steady(
+        self, inputs: StepInputs, records: dict, watch: Watch, guess: Unknowns | None = None
+    ) -> State:
         solved, newton = self._inlet_first(
-            inputs, None, lambda i, _: steady(self.solver, self.film, i, watch)
+            inputs, guess, lambda i, begin: steady(self.solver, self.film, i, watch, begin)
         )
         state = self._state(solved, self._step_end(), records, newton=newton)
         return self._settled(state, inputs, records, watch)
@@ -214,11 +216,22 @@ class TimeStepping:
         nodes = [(entrained - level.travelled) / self.scales.dx for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
+    def _prepare(self, dt: float) -> None:
+        """Prepare the solver, once, for time steps of `dt` [s] from the smooth contact."""
+        if self._is_prepared or self.problem.fluid is None:
+            return
+        self._is_prepared = True
+        q, w = self.baseline
+        m, unit = self.problem.mass_per_area(q, w), self.scales.u / self.scales.a
+        history = FilmHistory(m, m, dt * unit, dt * unit)
+        self.solver.prepare(Unknowns(q, w, 0.0), self.problem.inputs(history=history, dt=dt))
+
     def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:
         """State after one time step of `dt` [s], by default of the step control; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
         left = self.operation.time_left(state.time, nominal)
         dt = dt or next_step(state.dt, state.retries, nominal, left)
+        self._prepare(nominal)
         retries = newton = 0
         while True:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)

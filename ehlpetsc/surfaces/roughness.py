@@ -14,7 +14,6 @@ from ehlpetsc.surfaces.profile import Profile
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
 
 RAMP_LENGTH = 0.1  # half-widths at the beginning of a profile over which its heights increase from zero
 
@@ -70,16 +69,17 @@ class Roughness:
 
         `positions`: by default both profiles begin to enter with their first point.
         """
+        specs, positions = [case.surface.side(side) for side in ("1", "2")], positions or SurfacePositions()
+        if not any(specs):
+            return None
         from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
 
-        sides, positions = {}, positions or SurfacePositions()
+        sides = []
         speeds = directed_speeds(case, scales)
-        for k, side in enumerate(("1", "2")):
-            spec = case.surface.side(side)
-            sides[side] = spec and Profile(
-                samples(case.path.parent, spec), passage(case, scales, speeds[k], k, positions)
-            )
-        return cls(sides["1"], sides["2"]) if any(sides.values()) else None
+        for k, spec in enumerate(specs):
+            given = passage(case, scales, speeds[k], k, positions)
+            sides.append(spec and Profile(samples(case.path.parent, spec), given))
+        return cls(*sides)
 
     def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
         """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2).
@@ -124,27 +124,3 @@ def passage(case: Case, scales: Scales, speed: float, side: int, positions: Surf
         table is not None and table.profile_offsets is not None,
         ahead=outlet - inlet + RAMP_LENGTH * scales.a if starts_rough else 0.0,
     )
-
-
-def _line(case: Case, scales: Scales, positions: SurfacePositions | None) -> Roughness | None:
-    return Roughness.of(case, scales, positions)
-
-
-def _plane(case: Case, scales: Scales, positions: SurfacePositions | None) -> ArealRoughness | None:
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
-
-    y, dy = scales.a * scales.grid.axes[0], scales.grid.spacings[0]
-    return ArealRoughness.of(case, scales, y, dy, dy * len(y), scales.grid.periodic, positions)
-
-
-ROUGHNESS = {"line": _line, "strip": _plane, "point": _plane}
-
-
-def roughness_of(
-    case: Case, scales: Scales, positions: SurfacePositions | None = None
-) -> Roughness | ArealRoughness | None:
-    """Roughness of a case of any kind of contact; None if both surfaces are smooth.
-
-    `positions`: by default both surfaces begin to enter with their first point.
-    """
-    return ROUGHNESS[case.kind](case, scales, positions)

@@ -17,6 +17,7 @@ from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
+from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 
@@ -84,7 +85,8 @@ def test_distributed_lu_solves_its_matrix(model):
     mine = inactive_nodes[(inactive_nodes >= first) & (inactive_nodes < last)] - first
     nodes = part.model.state(at[0][part.window], at[1][part.window])
     derivatives = whole.evaluate(Unknowns(*at), whole.inputs()).reynolds_derivatives[first:last]
-    entries = part.model.band_entries(nodes, derivatives, lu.band.stencil)
+    pairs = NodePairs(nodes, part.model.compliance)
+    entries = pairs.entries(derivatives, lu.band.stencil)
     other = entries._replace(
         p_first=np.zeros_like(entries.p_first),
         separation_second=np.zeros_like(entries.p_first),
@@ -94,10 +96,9 @@ def test_distributed_lu_solves_its_matrix(model):
     lu.factor(entries, mine)
     has_load = int(last == n)
     found = np.empty(2 * (last - first) + has_load)
-    lu.units[:] = np.eye(2)[:, None]
+    lu.units[:] = pairs.unknowns(part.owned)
     solve(lu.factors, right[2 * first : 2 * last + has_load], found)
     found, approach = found[: 2 * (last - first)], ranks.bcast(found[-1], root=ranks.size - 1)
-    part.model.from_band(nodes, part.owned, found.reshape(-1, 2))
     expected = np.linalg.solve(dense(whole, at, inactive_nodes), right)
     scale = np.tile(np.abs(expected[:-1]).reshape(-1, 2).max(axis=0), last - first)
     np.testing.assert_allclose(found / scale, expected[2 * first : 2 * last] / scale, rtol=0, atol=1e-7)

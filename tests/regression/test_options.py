@@ -203,3 +203,15 @@ def test_missing_packages_print_the_command_to_type(case, tmp_path):
     assert len(lines) == 2
     assert " numpy, scipy" in lines[0]
     assert "type: ./run_mpi.sh case.toml -snes_monitor " in lines[1]
+
+
+@pytest.mark.parametrize(
+    "words, reason",
+    [
+        (["-snes_error_if_not_converged", "-snes_max_it", 2], "SNES DIVERGED_MAX_IT"),
+        (["-ksp_error_if_not_converged", "-ksp_max_it", 1], "SNES DIVERGED_LINEAR_SOLVE"),
+    ],
+)
+def test_errors_of_petsc_if_not_converged_are_failed_solves(case, tmp_path, words, reason):
+    done = run(case, *words, cwd=tmp_path)
+    assert done.returncode == 3 and f"not converged: steady start: {reason}" in done.stderr

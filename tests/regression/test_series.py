@@ -8,7 +8,7 @@ import pytest
 from support import ROOT, is_line_with
 from support.running import SHORT, run, settings, summary
 
-from ehlpetsc.analysis import ensemble
+from ehlpetsc.analysis.summary import main as summary_table
 from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.results.reader import read_result
 
@@ -197,5 +197,5 @@ def test_grid_of_keys_is_accepted_by_all_commands(tmp_path):
     series_index = str(tmp_path / "out.series.json")
     assert plot([series_index]) == 0
     table = tmp_path / "out.ensemble.csv"
-    assert ensemble.main([series_index, "-o", str(table)]) == 0
+    assert summary_table(["--ensemble", series_index, "-o", str(table)]) == 0
     assert len(table.read_text().splitlines()) > 20

@@ -76,3 +76,14 @@ def band_kernel(n, dx, diffusivity, conductivity, speed):
             r = lag + sign * offset
             kernel += length * np.exp(u * r - abs(u) * np.abs(r)) * k0e(abs(u) * np.abs(r))
     return kernel / (np.pi * conductivity)
+
+
+def hertz_gap(x: np.ndarray, a: float, radius: float) -> np.ndarray:
+    r"""Gap outside the contact of a dry smooth cylinder [m], 0 inside.
+
+    :math:`\frac{a^2}{2R}\left[X\sqrt{X^2-1}-\ln(X+\sqrt{X^2-1})\right]`, :math:`X=|x|/a`: the parabola
+    and the deflection by the pressure of `hertz_pressure` (Johnson 1985, section 4.2).
+    """
+    ratio = np.maximum(np.abs(x) / a, 1.0)
+    root = np.sqrt(ratio**2 - 1.0)
+    return a**2 / (2.0 * radius) * (ratio * root - np.log(ratio + root))

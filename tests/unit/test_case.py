@@ -10,10 +10,10 @@ from support import CASES, is_line_with
 
 from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.quantities import STORED
 from ehlpetsc.base.toml_file import toml_text
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
-from ehlpetsc.effects.quantities import STORED
 from ehlpetsc.physics.laws import viscosity
 
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"

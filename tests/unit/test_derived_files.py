@@ -10,7 +10,6 @@ import pytest
 from support import CASES, COARSE_LIFE, ROOT, is_line_with, refused
 from support.made_results import make_result
 
-from ehlpetsc.analysis.ensemble import main as ensemble
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.gears.command import main as gears
@@ -83,9 +82,10 @@ def sentence(capsys, command, *words):
 @pytest.mark.parametrize(
     "command, option, name",
     [
-        *((command, "-o", "other.h5") for command in (plot, summary, ensemble, gears)),
-        *((command, "-o", "case.toml") for command in (plot, summary, ensemble)),
-        *((command, "-o", "a.series.json") for command in (summary, ensemble)),
+        *((command, "-o", "other.h5") for command in (plot, summary, gears)),
+        *((command, "-o", "case.toml") for command in (plot, summary)),
+        (summary, "-o", "a.series.json"),
+        (summary, "--ensemble -o", "a.series.json"),
         (plot, "--report -o", "case.toml"),
         (gears, "--csv", "other.toml"),
     ],

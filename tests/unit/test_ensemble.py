@@ -10,6 +10,7 @@ from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.analysis import ensemble
 from ehlpetsc.analysis.ensemble import run_scalars
+from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 
@@ -41,9 +42,9 @@ def test_members_that_differ_in_seeds_form_one_ensemble(tmp_path):
 
 def test_results_without_common_conditions_are_refused(tmp_path, capsys):
     """A series over speeds: its table was of nan."""
-    assert ensemble.main(made(tmp_path, (5.0, 1.0), [1])) == 2
+    assert summary(["--ensemble", *made(tmp_path, (5.0, 1.0), [1])]) == 2
     (message,) = capsys.readouterr().err.splitlines()
-    assert message.startswith("ehlpetsc ensemble: 2 results ") and not list(tmp_path.glob("*.csv"))
+    assert message.startswith("ehlpetsc summary: 2 results ") and not list(tmp_path.glob("*.csv"))
 
 
 def test_run_statistics_are_time_means_and_extremes(tmp_path):
@@ -64,7 +65,7 @@ def test_ensemble_table_of_a_series(tmp_path, capsys):
     files = [{"file": path.name} for path in sorted(tmp_path.glob("*.h5"))]
     index = tmp_path / "e.series.json"
     index.write_text(json.dumps({"members": files}))
-    assert ensemble.main([str(index)]) == 0
+    assert summary(["--ensemble", str(index)]) == 0
     lines = capsys.readouterr().out.splitlines()
     rows = {(row["ensemble"], row["scalar"]): row for row in csv.DictReader(lines)}
     row = rows["entrainment_speed = 1", "contact_share"]

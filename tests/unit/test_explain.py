@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support import CASES
 
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.case import loading as case
-from ehlpetsc.effects.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run import forecast

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.film_stress import film_stress
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
@@ -14,7 +15,7 @@ from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
 from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law
-from ehlpetsc.effects.heat.film_shear import film_stress, wall_exchange
+from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
 from ehlpetsc.physics.laws import ln_viscosity, padded
 from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw

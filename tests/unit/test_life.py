@@ -8,7 +8,7 @@ from scipy.special import erf
 from support import CASES, COARSE_LIFE, ROOT
 from support.made_results import save_life
 
-from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.base.errors import CaseError, OutputError, PostError
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody
@@ -19,7 +19,6 @@ from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps, Rates
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.life.regimes import outcome, winner
 from ehlpetsc.life.rounds import Round
 from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.body_field import BodyField
@@ -338,15 +337,6 @@ def made_life(pits=0, ahead=0.5, rows=2):
     return found
 
 
-@pytest.mark.parametrize("pits, ahead, wins", [(1, 0.5, "fatigue"), (0, 0.5, "wear"), (0, 1.02, "neither")])
-def test_dominant_mechanism_follows_from_pits_and_expected_damage(pits, ahead, wins):
-    assert winner(made_life(pits, ahead)) == wins
-    found = outcome(made_life(pits, ahead))
-    assert found["first_failure"] == (8e5 if pits else None) and found["solved"] == 2
-    worse = 0.1 * pits, ahead
-    assert (found["pitted_share"], found["damage_ahead"]) == worse, "the larger of both surfaces"
-
-
 def test_line_of_a_round_names_its_figures():
     figures = dict(entry.split("=") for entry in line_of(made_life(pits=2, rows=3), 3.4).split())
     assert figures.pop("friction") == "0.1000" and figures.pop("wall") == "3s"
@@ -370,3 +360,37 @@ def test_stored_life_is_not_drawn_where_no_picture_is_wanted(tmp_path):
     save_life(made_life(), tmp_path / "a.life.h5")
     assert main([str(tmp_path / "a.life.h5"), "--no-picture"]) == 0
     assert [path.name for path in tmp_path.iterdir()] == ["a.life.h5"]
+
+
+@pytest.mark.parametrize(
+    "keys, side", [({}, 2), ({"motion.slide_roll_ratio": -0.4}, 1), ({"time.pass_shift": 0.0}, 2)]
+)
+def test_travel_too_short_for_the_slow_surface_names_one_that_is_enough(tmp_path, keys, side):
+    """Points of the slow surface pass the contact, but with its profile still on the ramp."""
+    ground = {"kind": "ground", "ra": 1e-7, "correlation": 4e-5}
+    case = {
+        "title": "short",
+        "contact": {
+            "radius": 0.0191,
+            "load": 400e3,
+            "material": "16MnCr5",
+            "model": "mixed",
+            "asperity_height": 2e-8,
+        },
+        "fluid": {
+            "viscosity": 0.004,
+            "law": "roelands",
+            "pressure_viscosity": 15e-9,
+            "density": "dowson-higginson",
+        },
+        "motion": {"entrainment_speed": 3.0, "slide_roll_ratio": 0.4},
+        "mesh": {"inlet": -1.8, "outlet": 1.4, "points_per_half_width": 12},
+        "surface": {str(k): {"synthetic": ground | {"seed": 2 + k}} for k in (1, 2)},
+        "time": {"travel": 5.0, "courant": 2.0, "pass_shift": 3e-4},
+        "wear": {"coefficient": 1e-15},
+        "life": {"passes": 1e5, "partners": 2, "max_solved": 3},
+    }
+    with pytest.raises(PostError, match=f"surface {side}: .*time.travel = 5, allowed: 6.6 or more"):
+        run_life(load(case, keys), tmp_path / "a.h5", unresolved=True)
+    if side == 2 and not keys:
+        run_life(load(case, {"time.travel": 6.7}), tmp_path / "b.h5", unresolved=True, most=1)

@@ -1,5 +1,6 @@
 """Result and restart files: their content, and that faults leave them readable."""
 
+import errno
 import json
 import os
 import signal
@@ -11,10 +12,13 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
+from support import CASES
 
+import ehlpetsc
+from ehlpetsc.base import quantities
+from ehlpetsc.base.declarations import Field, StepScalar
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.effects import quantities
-from ehlpetsc.effects.quantities import FIELDS, of_every_case
+from ehlpetsc.base.quantities import FIELDS, of_every_case
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
@@ -320,3 +324,47 @@ def test_restart_content_round_trip(tmp_path):
     np.testing.assert_array_equal(values["h"], 2 * X)
     assert (values["step"], values["case"], values["time"]) == (5, "text", 0.1)
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("number", [errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS])
+def test_file_system_without_locks_is_written_and_read(tmp_path, monkeypatch, number):
+    real = h5py.File
+
+    def without_locks(path, *arguments, locking=True, **options):
+        if locking:
+            raise OSError(number, "unable to lock file")
+        return real(path, *arguments, locking=False, **options)
+
+    monkeypatch.setattr(h5py, "File", without_locks)
+    assert content(written(tmp_path / "a.h5", range(3)))["step"].tolist() == [0, 1, 2]
+
+
+def test_file_that_another_process_has_locked_is_not_called_damaged(tmp_path):
+    code = f"import h5py; file = h5py.File({str(tmp_path / 'a.h5')!r}, 'w', libver='earliest'); input()"
+    code = code.replace("; input()", "; print(flush=True); input()")
+    with subprocess.Popen([sys.executable, "-c", code], stdin=-1, stdout=-1, text=True) as other:
+        other.stdout.readline()
+        with pytest.raises(OutputError, match="a.h5: another process has it open for writing; wait for it"):
+            read_result(tmp_path / "a.h5")
+        other.communicate("\n")
+
+
+def test_a_new_scalar_of_the_steps_is_one_entry_of_the_table(monkeypatch):
+    weight = StepScalar(
+        "N", "pressure by film", integrated=True, of=lambda o: o.cell * o.fields["pressure"][3]
+    )
+    monkeypatch.setitem(quantities.STEP_SCALARS, "weight", weight)
+    case = ehlpetsc.load(CASES / "dry_hertz.toml", {"mesh.points_per_half_width": 20})
+    with ehlpetsc.solve(case) as result:
+        expected = result.pressure[0, 3] * (result.x[1] - result.x[0])
+        assert result.steps.weight[0] == pytest.approx(expected) and result.unit("steps/weight") == "N/m"
+
+
+@pytest.mark.parametrize("contact, unit", [("line", "m^2"), ("strip", "m^2"), ("point", "m^3")])
+def test_unit_of_an_integral_is_per_metre_but_in_a_point_contact(contact, unit):
+    volume = Field("m^3", "volume", integrated=True)
+    assert quantities.unit_in(volume, contact) == unit
+
+
+def test_fields_lie_over_the_axes_of_the_grid():
+    assert quantities.dims_in(FIELDS["pressure"], ("y", "x")) == ("time", "y", "x")

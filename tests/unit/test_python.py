@@ -300,3 +300,20 @@ def test_pass_follows_a_complete_pass_of_the_same_contact():
         with pytest.raises(UsageError, match="^after: .*same nodes.*contact law"):
             Simulation(running_in(**changes), after=first)
     assert Simulation(running_in(**{"fluid.viscosity": 0.003}), after=first).pass_number == 2
+
+
+@pytest.mark.parametrize("case", [5, True, None, 1.5])
+def test_a_number_is_no_case(case):
+    """As a path it would be a file descriptor, which reading closes."""
+    with pytest.raises(ehlpetsc.CaseError, match=f"^{case!r}: not a case; allowed: the path of a case file"):
+        ehlpetsc.load(case)
+
+
+@pytest.mark.parametrize("output", ["", ".", "/"])
+def test_output_without_a_name_is_refused(output):
+    with pytest.raises(ehlpetsc.OutputError, match="a folder, not a file .*give the name of a file"):
+        ehlpetsc.solve(CASES / "dry_hertz.toml", output=output)
+
+
+def test_post_is_an_attribute_of_the_package():
+    assert ehlpetsc.post.weibull_fit.__module__.startswith("ehlpetsc.post.") and "post" in dir(ehlpetsc)

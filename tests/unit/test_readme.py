@@ -2,12 +2,12 @@
 
 import re
 import runpy
+import subprocess
 from pathlib import Path
 
 import pytest
 from support import ROOT
 
-from ehlpetsc.base import docs
 from ehlpetsc.base.environment import missing
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
@@ -106,7 +106,8 @@ def test_output_on_the_page_is_current():
 
 
 CONFIGURATION = runpy.run_path(str(ROOT / ".github" / "site" / "conf.py"))
-SITE, LACKS = CONFIGURATION["PAGES"], missing(docs.NEEDED)
+SITE = CONFIGURATION["PAGES"]
+LACKS = missing(("sphinx", "myst_parser", "furo", "matplotlib", "plotly", "xarray", "h5netcdf"))
 TEXTS = {page: (ROOT / f"{page}.md").read_text(encoding="utf-8") for page in SITE}
 needs_generator = pytest.mark.skipif(
     bool(LACKS) or not CONFIGURATION["MATHJAX"].exists(), reason="no Sphinx with its theme, or no MathJax"
@@ -126,10 +127,18 @@ def test_theory_equations_are_numbered_consecutively():
     assert numbers == [[str(k)] for k in range(1, len(displayed) + 1)] and len(numbers) > 10
 
 
+def test_site_without_debians_mathjax_takes_that_of_sphinx():
+    path = ROOT / ".github" / "site" / "conf.py"
+    text = path.read_text(encoding="utf-8").replace('"/usr/share/javascript/mathjax"', '"/none"')
+    found: dict = {}
+    exec(compile(text, path, "exec"), found)
+    assert "/none" in str(found["MATHJAX"]) and not {"mathjax_path", "mathjax2_config"} & found.keys()
+
+
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("site") / "new"
-    assert docs.main([str(folder)]) == 0
+    subprocess.run([ROOT / "run_mpi.sh", "docs", folder], check=True)
     return folder
 
 

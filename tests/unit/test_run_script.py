@@ -63,6 +63,16 @@ def test_options_after_the_case_are_passed_on(script):
     assert f"ARGS {['case.toml', *options]} SIZE 1" in done.stdout
 
 
+def test_script_runs_with_the_package_on_its_path(script, tmp_path):
+    """Also by the linked command, of which every other word goes to the program."""
+    (tmp_path / "elsewhere" / "mine.py").write_text("import sys, ehlpetsc, petsc4py; print(sys.argv)")
+    assert script("python", "mine.py", "-n").stdout == "['mine.py', '-n']\n"
+    script("--commands", "linked")
+    linked = [tmp_path / "elsewhere" / "linked" / "ehlpetsc", "python", "mine.py"]
+    done = subprocess.run(linked, cwd=tmp_path / "elsewhere", capture_output=True, text=True, check=True)
+    assert done.stdout == "['mine.py']\n"
+
+
 @pytest.mark.parametrize("status", [1, 4])
 def test_exit_status_is_passed_on_silently(script, status):
     done = script("case.toml", STATUS=str(status), **AT_ONCE)
@@ -204,6 +214,33 @@ def test_command_link_works_in_any_folder(script, tmp_path):
     (tmp_path / "ehlpetsc" / "__main__.py").write_text("import os, sys; print(sys.argv[1:], os.getcwd())")
     path = {"PATH": f"{folder}:/usr/bin:/bin"}
     called = subprocess.run(
-        ["ehlpetsc", "-n", "a b"], cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60
+        ["ehlpetsc", "-x", "a b"], cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60
     )
-    assert called.stdout == f"{['-n', 'a b']} {tmp_path}\n", called.stderr
+    assert called.stdout == f"{['-x', 'a b']} {tmp_path}\n", called.stderr
+
+
+def test_command_link_starts_ranks_as_the_script_does(script, tmp_path):
+    script("--commands", str(tmp_path / "bin"))
+    path = {"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin"}
+    words = ["ehlpetsc", "-n", "2", "case.toml"]
+    done = subprocess.run(words, cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60)
+    assert "ARGS ['case.toml'] SIZE 2" in done.stdout, done.stderr
+
+
+@pytest.mark.parametrize(
+    "settings, words",
+    [
+        (
+            {"OMPI_MCA_orte_default_hostfile": "{hosts}"},
+            ["There are not enough slots available", "; try -n 1"],
+        ),
+        ({"OMPI_MCA_btl": "nonsense"}, ["A requested component was not found", "Component: nonsense"]),
+        ({"OMPI_MCA_plm": "nonsense"}, ["A requested component was not found", "Framework: plm"]),
+    ],
+)
+def test_refusal_of_the_launcher_is_one_sentence(script, tmp_path, settings, words):
+    (tmp_path / "hosts").write_text("localhost slots=1\n")
+    settings = {name: value.format(hosts=tmp_path / "hosts") for name, value in settings.items()}
+    done = script("-n", "2", "case.toml", **settings)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert is_line_with(done.stderr, "run_mpi.sh: mpirun: ", *words)

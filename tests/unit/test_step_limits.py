@@ -6,12 +6,16 @@ import numpy as np
 import pytest
 
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
 from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
 from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
-from ehlpetsc.discretisation.contact.yielding import YieldingContact, limit_yield_switch
+from ehlpetsc.discretisation.contact.yielding import (
+    CompliantYieldingContact,
+    YieldingContact,
+    limit_yield_switch,
+)
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
+from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
 from ehlpetsc.physics.asperities import LayerLaw
 
 
@@ -64,7 +68,7 @@ def test_contact_precedes_yielding_in_a_step():
     assert (q[2], w[2]) == pytest.approx((0.5, -0.02))
 
 
-LAYER = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2, high_pressure=0.1)
+LAYER = Layer(LayerLaw(1e-3, 100.0), 1.0, 10.0, contact_pressure=1e-2)
 SOLIDS, COMPLIANT = partial(MixedContact, 0.1, 10.0), partial(CompliantContact, LAYER)
 YIELDING = partial(YieldingContact, 0.1, 10.0, 0.6)
 PLASTIC, SMALLEST = partial(CompliantYieldingContact, LAYER, 0.6, 0.1), 1e-3 * np.log(100.0 / 0.6)
@@ -86,10 +90,10 @@ def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
     model, rng, owned = model(), np.random.default_rng(5), slice(0, len(q))
     state = model.linearised(model.state(np.array(q), np.array(w)), owned, lambda sums: sums)
     rows, stencil = rng.standard_normal((len(q), 8)), np.arange(len(q))[:, None] - np.arange(4)
-    (p_first, separation_first, separation_second, by_pairs) = model.band_entries(state, rows, stencil)
+    of_nodes = NodePairs(state, model.compliance)
+    (p_first, separation_first, separation_second, by_pairs) = of_nodes.entries(rows, stencil)
     pairs = rng.standard_normal((len(q), 2))
-    changes = pairs.copy()
-    model.from_band(state, owned, changes)
+    changes = np.einsum("kni,nk->ni", of_nodes.unknowns(owned), pairs)
     pressure, oil, film, separation = (state.derivatives() * changes.T).sum(axis=1)
     (first, second), places = pairs.T, (q_columns, w_columns)
     np.testing.assert_allclose(p_first * first, pressure, rtol=1e-12, atol=1e-12)

@@ -8,6 +8,7 @@ from support import ROOT, is_line_with
 
 from ehlpetsc import __version__
 from ehlpetsc.__main__ import COMMANDS, main
+from ehlpetsc.base import environment
 from ehlpetsc.base.errors import ExitStatus
 
 
@@ -64,10 +65,31 @@ def test_texts_of_cases_need_neither_petsc_nor_mpi(words):
     assert done.returncode == 0 and done.stdout, done.stderr
 
 
-@pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "ensemble", "gears", "explain"])
+@pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "gears", "explain"])
 def test_mistyped_option_is_refused_in_one_line(name, capsys):
     with pytest.raises(SystemExit) as end:
         main([name, "a.h5", "b.h5", "--deph"])
     printed = capsys.readouterr()
     assert end.value.code == ExitStatus.BAD_INPUT and not printed.out
     assert is_line_with(printed.err, f"ehlpetsc {name}: ", " --deph;", f"; ehlpetsc {name} -h")
+
+
+def test_ranks_are_started_by_the_script_of_a_clone(monkeypatch, capsys):
+    started = []
+    monkeypatch.setattr("os.execv", lambda program, words: started.append(words))
+    for name in environment.MPIRUN_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    main(["-n", "2", "a.toml", "-o", "a.h5"])
+    assert started[0] == [str(ROOT / "run_mpi.sh"), "-n", "2", "a.toml", "-o", "a.h5"]
+    monkeypatch.setattr(environment, "SCRIPT", ROOT / "none")
+    monkeypatch.setattr("shutil.which", lambda name: f"/bin/{name}")
+    main(["-n", "3", "a.toml"])
+    assert started[-1] == ["/bin/mpirun", "-n", "3", sys.executable, "-m", "ehlpetsc", "a.toml"]
+    assert main(["-n", "two", "a.toml"]) == 2 and "-n two: allowed: a whole number" in capsys.readouterr().err
+    monkeypatch.setenv("PMIX_RANK", "0")
+    assert main(["-n", "2", "a.toml"]) == 2 and "leave it out" in capsys.readouterr().err
+
+
+def test_advice_of_an_installed_package_names_the_page(monkeypatch):
+    monkeypatch.setattr(environment, "SCRIPT", ROOT / "none")
+    assert "the section Install of the page README.md" in environment.advice(["petsc4py"], [])

@@ -12,9 +12,10 @@ import pytest
 from support import exact_solutions
 from support.convergence import observed_order
 from support.driving import Scene
+from support.exact_solutions import hertz_gap
 
 from ehlpetsc.physics.hertz import hertz_pressure
-from ehlpetsc.physics.scales import Scales, hertz_gap
+from ehlpetsc.physics.scales import Scales
 
 WAVES = 10  # to a half-width
 DOMAIN = ("mesh.inlet=-1.3", "mesh.outlet=1.3")  # 13 waves either side: a crest at x = 0

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from support.exact_solutions import band_kernel
+from support.film_stress import FilmStress, film_stress, other_heat
 
 from ehlpetsc.effects.heat import film_shear
-from ehlpetsc.effects.heat.film_shear import film_stress
 from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
 
 N = 80
@@ -106,7 +106,7 @@ def exponential(T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def start_of(
-    closed: film_shear.FilmStress, walls: tuple[float, float] = (0.0, 0.0), beta: float = BETA
+    closed: FilmStress, walls: tuple[float, float] = (0.0, 0.0), beta: float = BETA
 ) -> tuple[float, np.ndarray]:
     y, tilt = float(closed.y), 0.25 * beta * (walls[0] - walls[1])
     shape = np.exp(-tilt) * np.sinh(0.5 * y * (1.0 + X)) + np.exp(tilt) * np.sinh(0.5 * y * (1.0 - X))
@@ -216,7 +216,7 @@ def test_other_heat_acts_like_a_rise_of_the_reference_temperature(share, error):
     for eta, sliding in ((1.0, 20.0), (100.0, 5.0), (1e4, 20.0)):
         unheated = film_stress(FILM, eta, BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
         heat = share * float(unheated.stress) * sliding
-        rise = film_shear.other_heat(float(unheated.y)) * heat * FILM / CONDUCTIVITY
+        rise = other_heat(float(unheated.y)) * heat * FILM / CONDUCTIVITY
         closed = film_stress(FILM, eta * np.exp(-BETA * rise), BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
 
         def ln_eta(T, eta=eta):

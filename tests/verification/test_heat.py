@@ -5,6 +5,7 @@ import pytest
 from support import CASES
 from support.exact_solutions import moving_band
 
+from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.case.loading import CaseError, load
 from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
 from ehlpetsc.run.simulation import Simulation
@@ -224,3 +225,20 @@ def test_surface_temperatures_by_quadrature_of_the_fluxes(name):
         assert found.max() > 1.3 * (getattr(states[0], f"temperature_{side}") - BULK).max()
         assert found.max() == pytest.approx(rise.max(), rel=0.05)
         assert np.sqrt(np.mean((found - rise) ** 2)) < 0.01 * rise.max()
+
+
+def test_start_under_counter_motion_without_a_limiting_stress_names_the_cure():
+    """The sliding of a Newtonian oil heats the film by thousands of kelvins."""
+    case = {
+        "title": "counter-motion",
+        "contact": {"radius": 0.038, "load": 1.5e6, "youngs_modulus": 350e9, "poisson_ratio": 0.3},
+        "fluid": {"grade": "ISO VG 460", "law": "barus", "density": "incompressible", "temperature": 320.6},
+        "motion": {"entrainment_speed": 0.215, "slide_roll_ratio": 40.0},
+        "mesh": {"inlet": -2.0, "outlet": 2.0, "points_per_half_width": 16},
+        "heat": {"bulk_temperature": 291.7, "inlet_temperature": 393.1, "viscosity_temperature": 0.0162},
+    }
+    mixed = {"contact.model": "mixed"}
+    with pytest.raises(NotConverged, match="Try a finer mesh or fluid.limiting_shear, as sliding heats"):
+        Simulation(load(case, mixed)).advance()
+    state = Simulation(load(case, mixed | {"fluid.limiting_shear": 0.08})).advance()
+    assert state.heat_error < 1e-9 and state.film_temperature_max > 500.0

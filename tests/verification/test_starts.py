@@ -62,7 +62,7 @@ def test_stationary_roughness_is_reached_by_time_stepping(monkeypatch):
     known = next(iter(Simulation(rough("1", -2.0, 1.0))))
     found = time_stepping.steady
 
-    def only_smooth(solver, film, inputs, watch=None):
+    def only_smooth(solver, film, inputs, watch=None, guess=None):
         if inputs.phi.any():
             raise NoSteadyStart("none")
         return found(solver, film, inputs)
@@ -127,3 +127,59 @@ def test_fully_plastic_start_converges(share):
     ).advance()
     assert state.newton < 60 and state.load_error < 1e-10
     assert state.p_max == pytest.approx(hertz / share, rel=1e-15) and state.yielding > 30
+
+
+FROM_REST = {
+    "title": "from rest",
+    "contact": {
+        "radius": 0.0024,
+        "load": 47e3,
+        "youngs_modulus": 70e9,
+        "poisson_ratio": 0.3,
+        "model": "mixed",
+    },
+    "fluid": {
+        "viscosity": 0.004,
+        "law": "roelands",
+        "pressure_viscosity": 16e-9,
+        "density": "dowson-higginson",
+    },
+    "mesh": {"inlet": -2.0, "outlet": 2.0, "points_per_half_width": 24},
+    "time": {"courant": 0.5},
+    "operation": {"time": [0.0, 3.8e-5], "speed_1": [0.0, 0.77], "speed_2": [0.0, 0.77]},
+    "motion": {"entrainment_speed": 1.54, "slide_roll_ratio": 0.0},
+    "heat": {"bulk_temperature": 349.2, "inlet_temperature": 383.1, "viscosity_temperature": 0.0138},
+}
+
+
+@pytest.mark.parametrize(
+    "solids",
+    [
+        {"contact.boundary_film": 9.7e-9},
+        {"contact.boundary_film": 9.7e-9, "contact.yield_pressure": 827e6},
+        {"contact.boundary_film": 9.7e-9, "contact.yield_pressure": 470e6},
+        {"contact.asperity_height": 9e-9, "contact.yield_pressure": 827e6},
+    ],
+)
+def test_start_from_rest_is_the_dry_contact_in_oil(solids):
+    state = Simulation(load(FROM_REST, solids)).advance()
+    assert state.contact_share == pytest.approx(1.0, abs=1e-9) and state.load_error < 1e-7
+    assert state.heat_error < 1e-6  # next to no heat is no measure of it
+
+
+def test_start_that_fails_on_a_fine_mesh_begins_from_a_coarser_one(monkeypatch):
+    keys = {"mesh.inlet": -2.0, "mesh.points_per_half_width": 200, "fluid.pressure_viscosity": 20e-9}
+    expected = Simulation(load(CASES / "table1_smooth.toml", keys)).advance()
+    found = time_stepping.steady
+
+    def only_coarse(solver, film, inputs, watch=None, guess=None):
+        if guess is None and solver.problem.n > 400:
+            raise NoSteadyStart("too fine")
+        return found(solver, film, inputs, watch, guess)
+
+    monkeypatch.setattr(time_stepping, "steady", only_coarse)
+    state = Simulation(load(CASES / "table1_smooth.toml", keys)).advance()
+    np.testing.assert_allclose(state.film_thickness, expected.film_thickness, rtol=1e-6)
+    monkeypatch.setattr(time_stepping, "steady", lambda *_: only_coarse(*_[:3]))
+    with pytest.raises(NotConverged, match="^steady start: too fine. Try a finer mesh or contact.model"):
+        Simulation(load(CASES / "table1_smooth.toml", keys)).advance()

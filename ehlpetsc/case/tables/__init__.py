@@ -12,8 +12,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from ehlpetsc.base import quantities
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.errors import CaseError, UsageError
 from ehlpetsc.base.toml_file import is_plain, toml_text
 from ehlpetsc.case.tables.contact import CONTACT, FLUID
 from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
@@ -21,7 +22,6 @@ from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.quantities import FIELDS, OTHERS, STEP_SCALARS, add_quantities, quantities_of
 from ehlpetsc.physics.law import Law
 from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS
 
@@ -103,7 +103,7 @@ BUILT_IN: dict[str, dict[str, object]] = {
     "a key of [fluid]": dict(FLUID.keys),
     "an effect": {effect.name: effect for effect in EFFECTS},
     "a table or key": dict(CASE.keys),
-    "a quantity": {**FIELDS, **STEP_SCALARS, **OTHERS},
+    "a quantity": {**quantities.FIELDS, **quantities.STEP_SCALARS, **quantities.OTHERS},
 }
 
 
@@ -124,7 +124,9 @@ def extend(
         "a key of [fluid]": keys,
         "an effect": {effect.name: effect for effect in effects},
         "a table or key": {effect.table.name: effect.table for effect in effects if effect.table},
-        "a quantity": {name: field for effect in effects for name, field in quantities_of(effect).items()},
+        "a quantity": {
+            name: field for effect in effects for name, field in quantities.of_effect(effect).items()
+        },
     }
     for kind, entries in own.items():
         for name, entry in entries.items():
@@ -135,7 +137,7 @@ def extend(
     FLUID.keys.update(keys)
     for effect in effects:
         EFFECTS[:] = [*(kind for kind in EFFECTS if kind.name != effect.name), effect]
-        add_quantities(effect)
+        quantities.register(effect)
         if effect.table:
             CASE.keys[effect.table.name] = effect.table.key
 
@@ -152,5 +154,9 @@ def key_of(name: str) -> Key | None:
 
 if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
     sys.path.append(os.getcwd())
-    own = importlib.import_module(name)
+    try:
+        own = importlib.import_module(name)
+    except ImportError as error:
+        allowed = "a module in this folder or on Python's path, with LAWS, DENSITY_LAWS or EFFECTS"
+        raise UsageError(f"EHLPETSC_OWN = {name}: {error}; allowed: {allowed}") from None
     extend(*(getattr(own, name, {}) for name in ("LAWS", "DENSITY_LAWS", "EFFECTS")))

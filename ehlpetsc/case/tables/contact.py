@@ -31,6 +31,10 @@ class Contact(Values):
         return self.model if self.asperity_height is None else "compliant"
 
 
+class Fluid(Values):
+    """`[fluid]`: the oil."""
+
+
 def _complete(contact: Contact) -> dict[str, Any]:
     radii = contact.radius if isinstance(contact.radius, tuple) else (contact.radius, None)
     values = dict(zip(("radius", "radius_across"), radii, strict=True))
@@ -49,8 +53,10 @@ KEYS = {
         replaced_by=CONDITIONS,
     ),
     "load": Required(
-        "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`",
+        "load per length, `w`, the integral of `p`, `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`; of a point "
+        "contact its load [N]",
         *("N/m", 1e-3, 1e10),
+        point_unit="N",
         replaced_by=CONDITIONS,
     ),
     "material": Key("steel: elastic, fatigue and yield constants", choices=tuple(STEELS), many="both"),
@@ -158,4 +164,6 @@ KEYS = {
     ),
     "inlet_film": Key("`h (1 - theta)` at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
 }
-FLUID = KeyTable("fluid", "left out: dry contact", KEYS, complete=lambda fluid: completed(vars(fluid)))
+FLUID = KeyTable(
+    "fluid", "left out: dry contact", KEYS, values=Fluid, complete=lambda fluid: completed(vars(fluid))
+)

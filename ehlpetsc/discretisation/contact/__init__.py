@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.physics.scales import Scales
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Contact
 
-def film_scale_of(case: Any, scales: Scales, expected_film: float) -> float:
+
+def film_scale_of(case: Case, scales: Scales, expected_film: float) -> float:
     """Scale of the Reynolds rows, at least the film that passes between touching solids; in a^2/R."""
     return max(expected_film, smallest_film(case.contact, scales))
 
 
-def smallest_film(contact: Any, scales: Scales) -> float:
+def smallest_film(contact: Contact, scales: Scales) -> float:
     """Film in a^2/R that solids in contact leave: boundary film, or that of the layer under p0; 0: none."""
     if contact.asperity_height is not None:
         from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
@@ -22,7 +26,9 @@ def smallest_film(contact: Any, scales: Scales) -> float:
     return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
 
 
-def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance: float = 0.0) -> ContactModel:
+def contact_model(
+    case: Case, scales: Scales, film_scale: float, bound_tolerance: float = 0.0
+) -> ContactModel:
     """The contact model of a case.
 
     `film_scale`: see :func:`film_scale_of`.
@@ -37,7 +43,7 @@ def contact_model(case: Any, scales: Scales, film_scale: float, bound_tolerance:
         )
     if contact.asperity_height is not None:
         from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-        from ehlpetsc.discretisation.contact.compliant_yielding import CompliantYieldingContact
+        from ehlpetsc.discretisation.contact.yielding import CompliantYieldingContact
 
         layer = Layer.of(contact, scales)
         if contact.yield_pressure is None:

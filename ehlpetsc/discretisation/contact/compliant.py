@@ -13,20 +13,18 @@ the rise of an exponential.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
 from ehlpetsc.discretisation.contact.node_state import (
-    BandEntries,
     NodeState,
     SurfaceLoads,
     full_of_oil,
     limit_cavitation,
 )
-from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.physics.asperities import (
     CONTACT_PRESSURE,
     LayerLaw,
@@ -39,11 +37,12 @@ from ehlpetsc.physics.asperities import (
 )
 from ehlpetsc.physics.scales import Scales
 
-HIGH_PRESSURE = 100e6  # Pa: of the second length that is reported
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Contact
+
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
 DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess
-STIFF_SLOPE = 1.0  # p0 per a^2/R: from this slope of p_c on, pressure and void are the pair of a cavity
 
 
 @dataclass(frozen=True)
@@ -52,17 +51,16 @@ class Layer:
 
     `law`: see :class:`ehlpetsc.physics.asperities.LayerLaw`.
     `slope_modulus`, `hardness`: E* h'_rms; infinite for elastic asperities.
-    `contact_pressure`, `high_pressure`: thresholds of the lengths in contact.
+    `contact_pressure`: from which on asperities count as in contact.
     """
 
     law: LayerLaw
     slope_modulus: float
     hardness: float
     contact_pressure: float
-    high_pressure: float
 
     @classmethod
-    def of(cls, contact: Any, scales: Scales) -> Layer:
+    def of(cls, contact: Contact, scales: Scales) -> Layer:
         """Layer of the table [contact], its rms height `asperity_height` a number."""
         modulus = 0.5 * scales.E / scales.p0
         return cls(
@@ -70,7 +68,6 @@ class Layer:
             contact.asperity_slope * modulus,
             (contact.asperity_hardness or np.inf) / scales.p0,
             CONTACT_PRESSURE / scales.p0,
-            HIGH_PRESSURE / scales.p0,
         )
 
 
@@ -90,8 +87,7 @@ class CompliantContact(SeparatedContact):
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         solids, slope = asperity_pressures(w, self.law)
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
-        mask = solids > self.layer.contact_pressure
-        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones, mask)
+        return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         return asperity_pressures(w, self.law)[0]
@@ -137,44 +133,8 @@ class CompliantContact(SeparatedContact):
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         limit_rise(now, step, self.law)
 
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """Pairs (p, h) at nodes full of oil; (q, h) or, where asperities are stiff, (p, q) under a void."""
-        full, stiff = self._kinds(state)
-        h_p = np.where(stiff, 1.0 / np.where(stiff, state.p_w, 1.0), 0.0)
-        p_first = np.where(full | stiff, 1.0, state.p_q)
-        separation_second = np.where(stiff, 0.0, state.separation_w)
-        slope = np.where(full, state.p_w, 0.0)[stencil]
-        derivatives = derivatives.copy()
-        by_q, by_h = q_columns(derivatives), w_columns(derivatives)
-        old_q, old_h, stiff = by_q.copy(), by_h.copy(), stiff[stencil]
-        by_q[:] = np.where(stiff, old_h * h_p[stencil], old_q)
-        by_h[:] = np.where(stiff, old_q, old_h - old_q * slope)
-        return BandEntries(p_first, h_p, separation_second, derivatives)
-
-    def _kinds(self, state: NodeState) -> tuple[np.ndarray, np.ndarray]:
-        """Masks of nodes full of oil, and of cavitated ones whose asperities are stiff."""
-        full = state.p_q > 0.0
-        return full, ~full & (state.p_w < -STIFF_SLOPE)
-
-    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        full, stiff = (kind[local] for kind in self._kinds(state))
-        first, second, slope = solution[:, 0].copy(), solution[:, 1].copy(), state.p_w[local]
-        solution[:, 0] = np.where(stiff, second, first - np.where(full, slope * second, 0.0))
-        solution[:, 1] = np.where(stiff, first / np.where(stiff, slope, 1.0), second)
-
-    def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
-        """Integral of the real area fraction [m]."""
-        return (
-            scales.grid.cell_size
-            * real_area_fraction(loads.contact_pressure, self.layer.slope_modulus, self.layer.hardness).sum()
-        )
-
-    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        return super().diagnostics(loads, scales, thin_film) | {
-            "contact_length_10mpa": scales.grid.cell_size * loads.contact_mask.sum(),
-            "contact_length_100mpa": scales.grid.cell_size
-            * (loads.contact_pressure > self.layer.high_pressure).sum(),
-        }
+    def real_area_fraction(self, loads: SurfaceLoads) -> np.ndarray:
+        return real_area_fraction(loads.contact_pressure, self.layer.slope_modulus, self.layer.hardness)
 
 
 @compiled

@@ -15,7 +15,6 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
-    BandEntries,
     NodeState,
     SurfaceLoads,
     limit_cavitation,
@@ -41,7 +40,7 @@ class DirectContact(ContactModel):
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         p_q = np.where(q > self.lowest_pressure - AMBIENT_TOLERANCE, 1.0, 0.0)
         zeros, ones = np.zeros(len(w)), np.ones(len(w))
-        return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones, w <= self.lower_bound)
+        return NodeState(q, self.pressure(q, w), w, p_q, zeros, ones)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         """Not separated from the oil's: zero."""
@@ -67,17 +66,13 @@ class DirectContact(ContactModel):
 
     def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """A node in contact and cavitated at once would leave its deflection row without an entry for q."""
-        return state._replace(p_q=np.where(state.contact_mask, 1.0, state.p_q))
+        return state._replace(p_q=np.where(state.film <= self.lower_bound, 1.0, state.p_q))
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         return pressure_change(now, step, self.lower_bound, self.lowest_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         clip_cavities(now, step, self.lower_bound)
-
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """The unknowns of the band are (q, h) themselves."""
-        return BandEntries(state.p_q, np.zeros_like(state.film), state.h_w, derivatives)
 
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float

@@ -17,14 +17,11 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
     PRESSURE_AFTER_REFILL,
-    BandEntries,
     NodeState,
     SurfaceLoads,
     full_of_oil,
     limit_cavitation,
 )
-from ehlpetsc.discretisation.unknowns import q_columns, w_columns
-from ehlpetsc.physics.scales import Scales
 
 
 class SeparatedContact(ContactModel):
@@ -37,20 +34,6 @@ class SeparatedContact(ContactModel):
         solids, everywhere = self.contact_pressure(w), np.ones(len(w), dtype=bool)
         oil = pressure - solids
         return SurfaceLoads(mask, pressure, solids, h, oil, everywhere, solids, everywhere)
-
-    def contact_length(self, loads: SurfaceLoads, scales: Scales) -> float:
-        """Length in contact [m]."""
-        return scales.grid.cell_size * loads.contact_mask.sum()
-
-    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        thin = loads.film < thin_film * self.minimum_film
-        total = loads.pressure.sum()
-        return {
-            "contact_share": loads.contact_pressure.sum() / total,
-            "contact_length": self.contact_length(loads, scales),
-            "thin_length": scales.grid.cell_size * thin.sum(),
-            "thin_share": loads.pressure[thin].sum() / total,
-        }
 
 
 class MixedContact(SeparatedContact):
@@ -68,7 +51,7 @@ class MixedContact(SeparatedContact):
         mask, pressure = w < 0.0, np.maximum(q, 0.0) + self._carried(w)
         p_w, h_w = np.where(mask, -self.stiffness, 0.0), np.where(mask, 0.0, 1.0)
         film = self.boundary_film + np.maximum(w, 0.0)
-        return NodeState(q, pressure, film, full_of_oil(q) * 1.0, p_w, h_w, mask)
+        return NodeState(q, pressure, film, full_of_oil(q) * 1.0, p_w, h_w)
 
     def _carried(self, w: np.ndarray) -> np.ndarray:
         return self.stiffness * np.maximum(-w, 0.0)
@@ -96,37 +79,6 @@ class MixedContact(SeparatedContact):
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
         limit_contact_switch(now, step, self.stiffness, film_after_release)
-
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """Pairs (q, h) at open nodes, (p, p_f) where solids touch, whose film does not change."""
-        mask, none = state.contact_mask, np.zeros_like(state.film)
-        p_first = np.where(mask, 1.0, state.p_q)
-        derivatives = swap_pairs(derivatives, mask[stencil], mask[stencil])
-        return BandEntries(p_first, none, state.h_w, derivatives)
-
-    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        solid = np.flatnonzero(state.contact_mask[local])
-        first, oil = solution[solid, 0], solution[solid, 1]
-        solution[solid, 0] = oil
-        solution[solid, 1] = -(first - state.p_q[local][solid] * oil) / self.stiffness
-
-
-def swap_pairs(derivatives: np.ndarray, swapped: np.ndarray, blind: np.ndarray) -> np.ndarray:
-    """Reynolds derivatives with those by the first unknown moved to the second one.
-
-    Parameters
-    ----------
-    derivatives : shape (local nodes, 8)
-    swapped, blind : shape (local nodes, 4)
-        Nodes of the stencil whose second unknown is the oil pressure, and those whose first one is not felt.
-    """
-    if not blind.any():
-        return derivatives
-    derivatives = derivatives.copy()
-    by_first, by_second = q_columns(derivatives), w_columns(derivatives)
-    by_second[:] = np.where(swapped, by_first, by_second)
-    by_first[:] = np.where(blind, 0.0, by_first)
-    return derivatives
 
 
 @compiled

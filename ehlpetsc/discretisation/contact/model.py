@@ -13,8 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact.node_state import BandEntries, NodeState, SurfaceLoads
-from ehlpetsc.physics.scales import Scales
+from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 
 
 class ContactModel:
@@ -109,17 +108,6 @@ class ContactModel:
         """
         raise NotImplementedError
 
-    def band_entries(self, state: NodeState, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """:class:`.node_state.BandEntries` of a state.
-
-        `state`, `derivatives`: as in `ehl_problem.Evaluation`.
-        `stencil`: nodes of each Reynolds row, by their index in the window, shape (local nodes, 4).
-        """
-        raise NotImplementedError
-
-    def from_band(self, state: NodeState, local: slice, solution: np.ndarray) -> None:
-        """Translate the local solution, shape (local nodes, 2), from the unknowns of the band in place."""
-
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float
     ) -> tuple[str | None, np.ndarray]:
@@ -147,9 +135,6 @@ class ContactModel:
         """:class:`.node_state.SurfaceLoads` of a solution; h its film."""
         raise NotImplementedError
 
-    def diagnostics(self, loads: SurfaceLoads, scales: Scales, thin_film: float) -> dict:
-        """Scalars of the contact in SI units.
-
-        `thin_film`: films count as thin below this multiple of `minimum_film`.
-        """
-        return {}
+    def real_area_fraction(self, loads: SurfaceLoads) -> np.ndarray:
+        """Share of each cell on which solids touch."""
+        return loads.contact_mask

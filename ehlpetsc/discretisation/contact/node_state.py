@@ -42,7 +42,6 @@ class NodeState(NamedTuple):
         where negative.
     `pressure`, `film`: total pressure p; film h of the Reynolds equation.
     `p_q`, `p_w`, `h_w`: derivatives of p with respect to q and w, of h with respect to w.
-    `contact_mask`: nodes whose solids carry.
     `plastic`: None where solids are elastic.
     """
 
@@ -52,7 +51,6 @@ class NodeState(NamedTuple):
     p_q: np.ndarray
     p_w: np.ndarray
     h_w: np.ndarray
-    contact_mask: np.ndarray
     plastic: PlasticState | None = None
 
     @property
@@ -134,39 +132,3 @@ class SurfaceLoads(NamedTuple):
     oil_mask: np.ndarray
     friction_pressure: np.ndarray
     sheared_oil: np.ndarray
-
-
-class BandEntries(NamedTuple):
-    """Derivatives of a state in the unknowns of the banded preconditioner.
-
-    The kernel of the deflection reaches far, the second difference of the film does not: a band stays narrow
-    if the pressure is the first unknown of every node. A contact model therefore writes its derivatives in a
-    pair of its own choice (`ContactModel.band_entries`) and translates the solution back
-    (`ContactModel.from_band`).
-
-    `p_first`, `separation_first`, `separation_second`: of the pressure by the first, of the separation by
-        both unknowns of each node of the window.
-    `reynolds_derivatives`: of the local Reynolds rows by both unknowns of the nodes i-2 .. i+1, shape (local
-        nodes, 8).
-    """
-
-    p_first: np.ndarray
-    separation_first: np.ndarray
-    separation_second: np.ndarray
-    reynolds_derivatives: np.ndarray
-
-
-@compiled
-def same_deflection(
-    pressure: np.ndarray,
-    depth: np.ndarray,
-    film: np.ndarray,
-    old_pressure: np.ndarray,
-    old_depth: np.ndarray,
-    old_film: np.ndarray,
-) -> bool:
-    """Whether the deflection rows of two states have the same entries."""
-    for i in range(len(pressure)):
-        if pressure[i] != old_pressure[i] or depth[i] != old_depth[i] or film[i] != old_film[i]:
-            return False
-    return True

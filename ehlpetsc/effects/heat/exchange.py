@@ -19,6 +19,7 @@ from typing import NamedTuple
 from ehlpetsc.base.compiled import inlined
 
 KINDS = PARABOLA, INSULATED, APART = 0, 1, 2  # in the order in which the oil gets colder
+MAX_SPLIT = 30.0  # of d, walls thousands of kelvins apart: beyond, in first iterations, its sinh may overflow
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
 
 
@@ -78,7 +79,8 @@ def fluxes(t: float, exchange: Exchange) -> tuple[float, float, float]:
 def split(t: float, beta: float, exchange: Exchange) -> float:
     """Half the difference of the walls' temperatures, times beta."""
     walls, (q1, q2, _) = exchange.walls, fluxes(t, exchange)
-    return 0.5 * beta * (walls[0] + walls[2] * q1 - walls[1] - walls[3] * q2)
+    d = 0.5 * beta * (walls[0] + walls[2] * q1 - walls[1] - walls[3] * q2)
+    return min(max(d, -MAX_SPLIT), MAX_SPLIT)
 
 
 @inlined

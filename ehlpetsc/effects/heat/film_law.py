@@ -15,7 +15,7 @@ X the factor of :func:`.film_shear.wall_exchange` at the last level: the oil is 
 near the hotter wall, which gets more of the heat of shear than conduction alone leaves it. (X = 1 gives 8 %
 more friction at slide/roll 1.9, 2 % at 1.5.) The mean of the profile is :math:`T=T_s+m/\beta`. What is left
 are two equations, for :math:`T_s` and y, with one solution. (Heat in the middle of the film would need
-the weight of :func:`.film_shear.other_heat` in place of 1/12: 1 % of the stress where H is
+the weight c of :mod:`.film_shear`, up to 1/8, in place of 1/12: 1 % of the stress where H is
 10 % of :math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
 
 The walls may get heat otherwise where oil enters cold: :mod:`.exchange`.

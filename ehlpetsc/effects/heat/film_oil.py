@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,6 +16,10 @@ from ehlpetsc.physics.laws import (
     viscosity_law,
 )
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
+
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+    from ehlpetsc.case.tables.contact import Fluid
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 MIN_SLOPE = 1e-12  # 1/K
@@ -67,7 +71,7 @@ class FilmLaw(NamedTuple):
     limit_temperature: float = 0.0
 
 
-def film_law(fluid: Any, heat: Any, sliding: float, thinnest: float = 0.0) -> FilmLaw:
+def film_law(fluid: Fluid | None, heat: Values, sliding: float, thinnest: float = 0.0) -> FilmLaw:
     """Constants of the oil in a step with u1 - u2 [m/s]; `fluid` None: dry."""
     conduction = (
         float(heat.oil_conductivity),

@@ -20,16 +20,14 @@ x at :math:`\eta(T_0)` and :math:`|u_1-u_2|/h`. Without heating y = \|d\| and th
 the isothermal one.
 
 In compiled loops over nodes: `resolved_stress` for the stress and its derivatives, `mean_rise` and
-`wall_exchange` at its y for the mean temperature and the heat fluxes; `film_stress` is the same for arrays of
-physical quantities. Numbers may be complex, for derivatives by complex step.
+`wall_exchange` at its y for the mean temperature and the heat fluxes. Numbers may be complex, for derivatives
+by complex step.
 
 Heat H [W/m^2] of another source (pressure flow, compression, less the heat that the oil stores and carries)
-makes a parabola of temperature: add :math:`c\,Hh/k_f` with :func:`other_heat` to :math:`T_0`,
-:math:`Hh/(12k_f)` to the mean temperature, H/2 to both fluxes. The stress is then that of the boundary value
-problem across the film to 0.05 % for H of 10 % of the heat of shear, to 0.4 % for 30 % (without it, 4 and
-12 %). A pressure flow subtracts :math:`\ln(\sinh\Sigma/\Sigma)` from x, as in :func:`.traction.wall_shear`,
-and its heat, which arises near the walls, has c = 1/12: 1 % at :math:`\Sigma=1`, where ignoring both costs 1
-to 18 %.
+makes a parabola of temperature: :math:`Hh/(12k_f)` in the mean, H/2 in both fluxes, and for the stress a rise
+:math:`c\,Hh/k_f` of :math:`T_0`, c between 1/12 without heating by shear and 1/8 with much of it. A pressure
+flow subtracts :math:`\ln(\sinh\Sigma/\Sigma)` from x, as in :func:`.traction.wall_shear`, and its heat, which
+arises near the walls, has c = 1/12: 1 % at :math:`\Sigma=1`, where ignoring both costs 1 to 18 %.
 
 Of a law of temperature other than the exponential, :math:`\beta` is the secant of :math:`\ln\eta` between
 :math:`T_0` and the middle of the film, :math:`T_0+(2/\beta)\ln[\cosh(y/2)/\cosh(d/2)]`. Roelands' law at 0.5
@@ -37,11 +35,9 @@ to 1 GPa then has the stress to 1 % (Eyring) or 3 % (Newtonian) up to 200 K in t
 wall costs 4 % at 30 K, 16 % at 70 K and 30 % at 120 K.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.base.compiled import inlined
 from ehlpetsc.physics.rheology import FlowLaw, flow_stress
 
 MIN_HEATING = 1e-280
@@ -49,35 +45,6 @@ SERIES_LIMIT = 0.2  # y below which the series of :func:`across` are exact to 1e
 MEAN_SERIES_LIMIT = 0.2  # y/2 below which the series of the mean rise is exact to 1e-14
 ITERATIONS = 200
 ACCURACY = 1e-7  # relative change of y in an iteration of Newton's method, after which it is exact to 1e-14
-
-
-class FilmStress(NamedTuple):
-    """Results of :func:`film_stress`; temperatures are above the mean of the walls [K].
-
-    Attributes
-    ----------
-    stress, q1, q2
-        Shear stress [Pa]; heat fluxes into both walls [W/m^2].
-    by_ln_eta, by_ln_h, by_beta, by_t1, by_t2
-        Derivatives of the stress, those by the walls' temperatures with the viscosity that they change.
-    mean, middle, maximum
-        Temperature averaged across the film, in the middle, and maximum with the walls.
-    y
-        Of :func:`resolved_stress`.
-    """
-
-    stress: np.ndarray
-    by_ln_eta: np.ndarray
-    by_ln_h: np.ndarray
-    by_beta: np.ndarray
-    by_t1: np.ndarray
-    by_t2: np.ndarray
-    q1: np.ndarray
-    q2: np.ndarray
-    mean: np.ndarray
-    middle: np.ndarray
-    maximum: np.ndarray
-    y: np.ndarray
 
 
 @inlined
@@ -212,22 +179,6 @@ def mean_rise(y: float, d: float) -> tuple[float, float]:
 
 
 @inlined
-def other_heat(y: float) -> float:
-    r"""Weight c of heat uniform across the film: :math:`c\,Hh/k_f` acts like a rise of :math:`T_0`.
-
-    First order in H, for every flow law: from 1/12, the mean of the parabola, without heating to 1/8, its
-    maximum, as the shear concentrates in the middle; :math:`(2s\tanh s-m)/[8s(\tanh s+s/\cosh^2s)]`, s = y/2,
-    m the mean rise. Between equal walls.
-    """
-    s = 0.5 * y
-    if s.real < 1e-3:
-        return 1.0 / 12.0 + s * s / 45.0
-    tanh = np.tanh(s)
-    mean, _ = _mean_between_equal_walls(y)
-    return (2.0 * s * tanh - mean) / (8.0 * s * (tanh + s * (1.0 - tanh * tanh)))
-
-
-@inlined
 def wall_exchange(y: float, d: float) -> float:
     r"""Heat flux from wall 1 to wall 2 over that of conduction, :math:`\frac{y\sinh d}{d\sinh y}`.
 
@@ -236,71 +187,3 @@ def wall_exchange(y: float, d: float) -> float:
     t = d * d
     factor = 1.0 + t * (1 / 6 + t / 120) if abs(d.real) < 1e-2 else np.sinh(d) / d
     return -2.0 * factor * y * np.exp(-y) / np.expm1(-2.0 * y)
-
-
-@compiled
-def _resolve(
-    x: np.ndarray, heating: np.ndarray, d: np.ndarray, flow: FlowLaw, limit: np.ndarray
-) -> np.ndarray:
-    """Rows y, stress, its derivatives by x, B and d, mean rise and exchange of the walls."""
-    out = np.empty((7, len(x)), x.dtype)
-    for i in range(len(x)):
-        y, tau, by_x, by_heating, by_d, _ = resolved_stress(0.0, x[i], heating[i], d[i], flow, limit[i])
-        mean, exchange = mean_rise(y, d[i])[0], wall_exchange(y, d[i])
-        out[:, i] = y, tau, by_x, by_heating, by_d, mean, exchange
-    return out
-
-
-def film_stress(
-    h: np.ndarray,
-    eta: np.ndarray,
-    beta: np.ndarray,
-    t1: np.ndarray,
-    t2: np.ndarray,
-    conductivity: np.ndarray,
-    sliding: np.ndarray,
-    flow: FlowLaw,
-    limit: np.ndarray | float = np.inf,
-) -> FilmStress:
-    r"""Shear stress, temperatures and heat fluxes of sheared films; arrays or numbers of any common shape.
-
-    Parameters
-    ----------
-    h, sliding
-        Film [m] and :math:`|u_1-u_2|` [m/s], positive.
-    eta, beta
-        Viscosity [Pa s] and :math:`-d\ln\eta/dT` [1/K], positive, at the mean of the walls' temperatures.
-    t1, t2
-        Temperatures of the walls [K].
-    conductivity
-        Of the oil, :math:`k_f` [W/(m K)].
-    limit
-        Limiting shear stress [Pa].
-    """
-    given = np.broadcast_arrays(h, eta, beta, t1, t2, conductivity, sliding, limit)
-    kind = complex if any(np.iscomplexobj(array) for array in given) else float
-    shape = given[0].shape
-    h, eta, beta, t1, t2, k, u, limit = (np.ravel(array).astype(kind) for array in given)
-    x, heating, d = np.log(eta * u / (h * flow.stress)), beta * h * u / (8.0 * k), 0.5 * beta * (t1 - t2)
-    y, tau, by_x, by_heating, by_d, mean, exchange = _resolve(x, heating, d, flow, limit)
-    by_eta_and_t, by_split = -0.5 * beta * by_x, 0.5 * beta * by_d
-    conducted = k / h * (t1 - t2) * exchange
-    rho = heating * tau * np.sinh(y) / y
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inner = np.log(np.sinh(y) ** 2 / (4.0 * rho)) / beta
-        maximum = np.where(np.abs(np.sinh(d)) < np.abs(2.0 * rho), inner, 0.5 * np.abs((t1 - t2).real))
-    results = FilmStress(
-        stress=tau,
-        by_ln_eta=by_x,
-        by_ln_h=-by_x + by_heating * heating,
-        by_beta=by_heating * heating / beta + by_d * d / beta,
-        by_t1=by_eta_and_t + by_split,
-        by_t2=by_eta_and_t - by_split,
-        q1=0.5 * tau * u - conducted,
-        q2=0.5 * tau * u + conducted,
-        mean=mean / beta,
-        middle=2.0 / beta * np.log(np.cosh(0.5 * y) / np.cosh(0.5 * d)),
-        maximum=maximum,
-        y=y,
-    )
-    return FilmStress(*(np.reshape(value, shape) for value in results))

@@ -1,9 +1,9 @@
 r"""Coarse correction of the pressures of a contact in the plane, for the long waves.
 
-An incomplete factorisation reduces waves of a few nodes; those of pressure ahead of the contact, where the flow obeys
-nearly Poisson's equation, and in it, where film and deflection are in balance, take it ever longer on finer meshes. On
-bilinear functions P over some nodes the Reynolds rows, with flow :math:`A` and transport :math:`\Gamma` by the
-separation, have the matrix
+An incomplete factorisation reduces waves of a few nodes; those of pressure ahead of the contact, where the
+flow obeys nearly Poisson's equation, and in it, where film and deflection are in balance, take it ever
+longer on finer meshes. On bilinear functions P over some nodes the Reynolds rows, with flow :math:`A` and
+transport :math:`\Gamma` by the separation, have the matrix
 
 .. math:: P^TAP+(P^T\Gamma P)\,K_c,
 
@@ -46,6 +46,13 @@ class CoarseSpace:
         self.functions, self.counts = kron(across, along).tocsr(), (across.shape[1], along.shape[1])
         self.deflections = self._deflections(kernel)
 
+    def matrix(self, stencils: np.ndarray) -> csr_matrix:
+        """Matrix of rows of coefficients of the nodes i-2 .. i+1, below and above, (nodes, 6)."""
+        n, n_x = len(stencils), self.shape[1]
+        i = np.arange(n)
+        near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % n
+        return csr_matrix((stencils.ravel(), near.ravel(), 6 * np.arange(n + 1)), (n, n))
+
     def _deflections(self, kernel: np.ndarray) -> np.ndarray:
         """Deflection by a function at distances of coarse nodes, shape of the coarse nodes."""
         (n_y, n_x), d = self.shape, self.spacing
@@ -57,9 +64,12 @@ class CoarseSpace:
         return np.einsum("kmx,x->km", by_y[:, x.ravel()].reshape(len(by_y), *x.shape), hat)
 
     def chosen(self, mask: np.ndarray) -> tuple[csr_matrix, np.ndarray]:
-        """Functions cut off outside of a mask of nodes, without those that vanish, and their deflections K_c."""
+        """Functions cut off outside of a mask of nodes, and their deflections K_c.
+
+        Those whose own coarse node is in the mask: cut off more, several may be the same but for a factor.
+        """
         cut = (diags(mask.astype(float)) @ self.functions).tocsc()
-        kept = np.flatnonzero(np.asarray(abs(cut).sum(axis=0)).ravel() > 0.0)
+        kept = np.flatnonzero(mask.reshape(self.shape)[:: self.spacing, :: self.spacing])
         k_y, k_x = np.divmod(kept, self.counts[1])
         distance = np.abs(k_y[:, None] - k_y), np.abs(k_x[:, None] - k_x)
         return cut[:, kept].tocsr(), self.deflections[distance]
@@ -68,20 +78,19 @@ class CoarseSpace:
 class CoarseCorrection:
     """Correction of Reynolds rows at the nodes of a mask.
 
-    `flow`, `transport`: derivatives of the rows by pressures and by separations, (nodes, nodes).
+    `flow`, `transport`: derivatives of the rows by pressures and by separations of the nodes i-2 .. i+1,
+        below and above, every second column; shape (nodes, 12).
     """
 
-    def __init__(self, space: CoarseSpace, flow: csr_matrix, transport: csr_matrix, mask: np.ndarray):
-        self.flow, self.transport = flow, transport
+    def __init__(self, space: CoarseSpace, flow: np.ndarray, transport: np.ndarray, mask: np.ndarray):
         self.functions, self.deflections = space.chosen(mask)
-        by_pressure = (self.functions.T @ flow @ self.functions).toarray()
-        by_separation = self.functions.T @ transport @ self.functions
-        self.lu = lu_factor(
-            by_pressure + by_separation @ self.deflections, overwrite_a=True, check_finite=False
+        by_pressure, by_separation = (
+            self.functions.T @ space.matrix(by[:, ::2]) @ self.functions for by in (flow, transport)
         )
+        matrix = by_pressure.toarray() + by_separation @ self.deflections
+        self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def __call__(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressures that reduce Reynolds rows, and what is left of these."""
+        """Pressures that reduce Reynolds rows, and the separations by them."""
         coarse = lu_solve(self.lu, self.functions.T @ rows, check_finite=False)
-        pressure, separation = self.functions @ coarse, self.functions @ (self.deflections @ coarse)
-        return pressure, rows - self.flow @ pressure - self.transport @ separation
+        return self.functions @ coarse, self.functions @ (self.deflections @ coarse)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -14,12 +14,19 @@ from ehlpetsc.nonlinear.jacobian import Jacobian
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.ranks import all_ranks
 
-if TYPE_CHECKING:
-    from ehlpetsc.nonlinear.plane.preconditioner import Elimination
-
 SAME_PRESSURE = (
     1e-6  # relative difference: pressures that asperities carry in a cavity are left out of the elimination
 )
+
+
+class Elimination(Protocol):
+    """Elimination of the film for the preconditioner, kept between solves."""
+
+    def prepare(self, operator: PlaneJacobian) -> None:
+        """Prepare for the state of an operator."""
+
+    def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
+        """Unknowns for a local right-hand side."""
 
 
 class PlaneJacobian(Jacobian):
@@ -27,7 +34,8 @@ class PlaneJacobian(Jacobian):
 
     `elimination`: of the preconditioner, kept between solves.
 
-    `deflected`: last change of the unknowns whose deflection is known, and that deflection: the preconditioner,
+    `deflected`: last change of the unknowns whose deflection is known, and that deflection: the
+        preconditioner,
     which computes it for the vector that GMRES multiplies next, saves every second convolution.
     """
 

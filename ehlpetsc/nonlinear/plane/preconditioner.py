@@ -2,40 +2,46 @@ r"""Preconditioner of a contact in the plane: film and load eliminated, the pres
 
 For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equation and load:
 
-1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put into the
-   Reynolds rows (:mod:`.reduction`).
-2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and PETSc's preconditioner of the user's
-   options, ``-pc_type``, by default incomplete LU, of the sparse matrix of :mod:`.screened_poisson`. The load is an
-   additional row and column.
-3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are exact.
+1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put
+   into the Reynolds rows (:mod:`.reduction`).
+2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and from the sparse form
+   (:mod:`.screened_poisson`) by PETSc's preconditioner of the user's options, ``-pc_type``, by default
+   incomplete LU. The load is an additional row and column.
+3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
+   exact.
 
-The matrix is kept for later iterations and time steps until GMRES takes more than `MAX_KEPT` iterations, or a node
-changes its kind and with it the number of unknowns.
+Every time step begins with the matrices of the smooth contact (:meth:`Elimination.keep`), on which it depends
+neither before nor after a restart. They are assembled anew, for the rest of the step, when GMRES takes more
+than
+`MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy.sparse import csr_matrix
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, reduction_of
+from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
 from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
+from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
-MAX_KEPT = 14  # iterations of GMRES up to which the matrix is kept
+MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
 
 
 class EliminatedFilm:
     """Context of PETSc's Python preconditioner.
 
-    Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm`` (the default).
+    Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm`` (the
+    default).
     """
 
     def setUp(self, pc: PETSc.PC) -> None:
@@ -47,150 +53,173 @@ class EliminatedFilm:
         """Solve for one right-hand side."""
         operator, full = self.operator, np.zeros(self.operator.size)
         full[operator.active] = x.array_r
-        y.array[:] = operator.elimination.solve(full)[operator.active]
+        y.array[:] = operator.elimination.solve(operator, full)[operator.active]
+
+
+class SparseForm:
+    """Assembled sparse form of one state, with PETSc's preconditioner.
+
+    `kind`: of the local nodes.
+    `by_pressure`, `by_separation`: derivatives of the local Reynolds rows by v and by the separation, as
+        `EHLProblem.reynolds` multiplies by them, shape (local nodes, 12).
+    `border`: of the rows by h00.
+    """
+
+    def __init__(
+        self,
+        problem: EHLProblem,
+        whole: list[np.ndarray],
+        derivatives: np.ndarray,
+        terms: tuple,
+        comm: PETSc.Comm,
+    ):
+        grid = problem.grid
+        self.kind = kind = whole[0][problem.first : problem.last]
+        self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
+        rows, entries = block * problem.local, problem.local * (7 * TERMS + MAX_ROW + 3)
+        csr = np.zeros(rows + 1, dtype=np.int32), np.empty(entries, dtype=np.int32), np.empty(entries)
+        by_pressure, by_separation = np.zeros((problem.local, 6)), np.zeros((problem.local, 6))
+        self.border = np.zeros(rows)
+        mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic, block
+        scales = problem.deflection.row_scale, *grid.steps
+        count = fill(
+            tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, self.border
+        )
+        self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
+        self.by_pressure[:, ::2], self.by_separation[:, ::2] = by_pressure, by_separation
+        self._entries = csr[0], csr[1][:count].copy(), csr[2][:count].copy()  # PETSc does not copy them
+        sizes = rows, block * problem.n
+        self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=comm)
+        self.pc = PETSc.PC().create(comm)
+        self.pc.setOperators(self.matrix)
+        self.pc.setOptionsPrefix(PREFIX)
+        self.pc.setType("ilu" if comm.size == 1 else "asm")
+        self.pc.setFromOptions()
+        self.pc.setUp()
+        self.b, self.u = self.matrix.createVecs()
+        self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
+        nodes = block * np.arange(problem.local)
+        self.reynolds_rows = nodes + TERMS + (kind == CONTACT)
+        self.has_reynolds, self.has_pressure = kind != BOUND, kind != VOID
+        self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
+        self.deflection_rows = nodes[self.touching] + TERMS
+
+    def solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures and Reynolds unknowns of the local nodes."""
+        self.b.array[:] = b
+        self.pc.apply(self.b, self.u)
+        u = self.u.array_r
+        return np.where(self.has_pressure, u[TERMS :: self.block], 0.0), u[self.reynolds_rows]
+
+
+class Factors(NamedTuple):
+    """Sparse form and coarse correction of one state, and the solution for a unit of h00."""
+
+    sparse: SparseForm
+    coarse: CoarseCorrection
+    of_h00: tuple[np.ndarray, np.ndarray, float] | None = None
 
 
 class Elimination:
-    """Elimination of film and load with its factors, kept from one matrix to the next.
+    """Elimination of film and load with its matrices, kept from one linear system to the next.
 
     PETSc creates a new preconditioner whenever the set of active unknowns changes.
+
+    `builds`: number of sparse forms so far.
     """
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
-        self.periodic, self.n_x = problem.grid.periodic, problem.grid.shape[-1]
-        self.spacings = problem.grid.steps
-        self.coarse_space = CoarseSpace(problem.deflection.kernel, self.periodic)
-        self.terms = fitted_terms(problem.deflection, self.spacings)
-        self._nothing = np.zeros(len(problem.window))
+        self.coarse_space = CoarseSpace(problem.deflection.kernel, problem.grid.periodic)
+        self.terms = fitted_terms(problem.deflection.stiffness, problem.grid.steps)
         self.builds = 0
-        self.applications = 0  # since the last set-up: iterations of GMRES
-        self.pc: PETSc.PC | None = None
-        self.kind: np.ndarray | None = None
+        self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
+        self.factors: Factors | None = None
+        self.kept: Factors | None = None
+
+    def begin_solve(self) -> None:
+        """Return to the kept factors, or to none."""
+        self.factors, self.applications = self.kept, 0 if self.kept else MAX_KEPT + 1
+
+    def keep(self, operator: PlaneJacobian) -> None:
+        """Factor for the state of an operator, as the first factors of all later solves."""
+        self.applications = MAX_KEPT + 1
+        self.prepare(operator)
+        self.kept = self.factors
 
     def prepare(self, operator: PlaneJacobian) -> None:
-        """Assemble and factor anew where the kept matrix no longer serves."""
-        self.operator = operator
+        """Assemble and factor anew where the kept matrices no longer serve."""
+        owned = self.problem.owned
         inactive = np.zeros(len(self.problem.window), dtype=bool)
-        inactive[self.problem.owned.start + self.operator.inactive_nodes] = True
-        self.reduction = reduction_of(self.operator.state, inactive)
-        kind = self.reduction.kind[self.problem.owned]
-        same = self.kind is not None and np.array_equal(kind, self.kind)
-        keeps = same and self.applications <= MAX_KEPT
-        if self.ranks.size > 1:
-            keeps = self.ranks.allreduce(int(keeps), op=MPI.MIN) == 1
-        if not keeps:
+        inactive[owned.start + operator.inactive_nodes] = True
+        self.reduction = reduction_of(operator.state, inactive)
+        slow = self._any(self.applications > MAX_KEPT)
+        if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
             with events.FACTOR:
-                self.build()
-            self.kind = kind
+                self._build(operator.reynolds_derivatives, slow or self.factors is self.kept)
         self.applications = 0
+
+    def _any(self, condition: bool) -> bool:
+        """Whether a condition holds on any rank."""
+        return condition if self.ranks.size == 1 else self.ranks.allreduce(int(condition), op=MPI.MAX) == 1
 
     def _gathered(self, local: np.ndarray) -> np.ndarray:
         """Values of all nodes from those of the local ones, first axis."""
-        if self.ranks.size == 1:
-            return local
-        return np.concatenate(self.ranks.allgather(local))
+        return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def build(self) -> None:
-        """Assemble the sparse form and set up PETSc's preconditioner."""
+    def _build(self, derivatives: np.ndarray, with_coarse: bool) -> None:
         p, self.builds = self.problem, self.builds + 1
-        owned, derivatives = p.owned, self.operator.reynolds_derivatives
-        whole = [self._gathered(np.ascontiguousarray(v[owned])) for v in self.reduction[:6]]
-        block = self.block = TERMS + 1 + int((whole[0] == CONTACT).any())
-        rows = block * p.local
-        entries = p.local * (TERMS * 6 + TERMS + 2 + MAX_ROW + 1)
-        pointers = np.zeros(rows + 1, dtype=np.int32)
-        columns, values = np.empty(entries, dtype=np.int32), np.empty(entries)
-        self.by_pressure, self.by_separation, border = (
-            np.zeros((p.local, 6)),
-            np.zeros((p.local, 6)),
-            np.zeros(rows),
-        )
-        mesh = self.n_x, p.n, p.first, p.last, self.periodic, block
-        scales = p.deflection.row_scale, *self.spacings
-        count = fill(
-            tuple(whole),
-            derivatives,
-            self.terms,
-            scales,
-            mesh,
-            (pointers, columns, values),
-            self.by_pressure,
-            self.by_separation,
-            border,
-        )
-        if self.pc is not None:
-            for thing in (self.pc, self.matrix, self.b, self.u):
-                thing.destroy()
-        sizes = (rows, block * p.n)
-        self._entries = pointers, columns[:count].copy(), values[:count].copy()  # PETSc does not copy them
-        self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=self.comm)
-        self.pc = PETSc.PC().create(self.comm)
-        self.pc.setOperators(self.matrix)
-        self.pc.setOptionsPrefix(PREFIX)
-        self.pc.setFromOptions()
-        self.pc.setUp()
-        self.b, self.u = self.matrix.createVecs()
-        self._transport = np.zeros_like(derivatives)
-        self._transport[:, ::2] = self.by_separation
-        mine, nodes = self.reduction.kind[owned], block * np.arange(p.local)
-        self.row_of_r = nodes + TERMS + (mine == CONTACT)
-        self.row_of_g = np.flatnonzero((mine == CONTACT) | (mine == BOUND))
-        self.has_reynolds, self.has_pressure = mine != BOUND, mine != VOID
-        self.coarse = self._coarse_correction()
-        self.of_h00, self.r_of_h00, self.load_of_h00 = self._solve(-border)
+        coarse = None if with_coarse or self.factors is None else self.factors.coarse
+        self.factors = None  # frees the last sparse form before the next one
+        parts: Reduction = self.reduction._replace(back=None)
+        whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
+        sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
+        if coarse is None:
+            mask = whole[0] == PRESSURE
+            mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
+            rows = (self._gathered(by) for by in (sparse.by_pressure, sparse.by_separation))
+            coarse = CoarseCorrection(self.coarse_space, *rows, mask)
+        self.factors = Factors(sparse, coarse)
+        self.factors = Factors(sparse, coarse, self._pressures(-sparse.border))
 
-    def _coarse_correction(self) -> CoarseCorrection:
-        """Coarse correction for the matrix of all ranks."""
-        n, n_x = self.problem.n, self.n_x
-        full = self._gathered(self.reduction.kind[self.problem.owned]) == PRESSURE
-        full[::n_x] = False  # the inlet has no balance
-        i = np.arange(n)
-        near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % n
-        index = np.repeat(i, near.shape[1]), near.ravel()
-        flow, transport = (
-            csr_matrix((self._gathered(values).ravel(), index), (n, n))
-            for values in (self.by_pressure, self.by_separation)
-        )
-        return CoarseCorrection(self.coarse_space, flow, transport, full)
-
-    def _solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Local pressures and Reynolds unknowns, and the load, by coarse correction and sparse form."""
-        p, rows = self.problem, self.row_of_r
+    def _pressures(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Pressures and Reynolds unknowns of the local nodes, and the load."""
+        p, (sparse, coarse, _) = self.problem, self.factors
+        rows = sparse.reynolds_rows
         with events.BACK_SOLVE:
-            coarse, left = self.coarse(self._gathered(np.where(self.has_reynolds, b[rows], 0.0)))
-            local = slice(p.first, p.last)
-            self.b.array[:] = b
-            self.b.array[rows[self.has_reynolds]] = left[local][self.has_reynolds]
-            self.pc.apply(self.b, self.u)
-        u = self.u.array_r
-        pressure = np.where(self.has_pressure, u[TERMS :: self.block], 0.0) + coarse[local]
+            reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
+            pressure, separation = coarse(self._gathered(reynolds))
+            local, nothing = slice(p.first, p.last), np.zeros(len(p.window))
+            pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
+            for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
+                reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
+            left = b.copy()
+            left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
+            finer, r = sparse.solve(left)
+        pressure = pressure[local] + finer
         load = p.deflection.cell * pressure.sum()
-        if self.ranks.size > 1:
-            load = self.ranks.allreduce(load)
-        return pressure, u[rows], float(load)
+        return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
 
-    def solve(self, full: np.ndarray) -> np.ndarray:
+    def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
-        p, operator, exchange = self.problem, self.operator, self.operator.exchange
+        p, (sparse, _, of_h00) = self.problem, self.factors
+        exchange, local, scale = operator.exchange, n_dofs(p.local), p.deflection.row_scale
         self.applications += 1
-        local = n_dofs(p.local)
-        b_g, b_r = full[0:local:2] / p.deflection.row_scale, full[1:local:2]
-        b_load = full[-1] if operator.size > local else 0.0
+        b_g, b_load = full[0:local:2] / scale, full[-1] if operator.size > local else 0.0
         if self.ranks.size > 1:
             b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
-        b_r = b_r - p.reynolds.product(self._transport, exchange.window(b_g), self._nothing, p.owned.start)
-        b = np.zeros(self.b.getLocalSize())
-        b[self.row_of_r[self.has_reynolds]] = b_r[self.has_reynolds]
-        b[self.block * self.row_of_g + TERMS] = full[0:local:2][self.row_of_g]
-        pressure, r, load = self._solve(b)
-        approach = (b_load - load) / self.load_of_h00
-        pressure, r = pressure + approach * self.of_h00, r + approach * self.r_of_h00
+        nothing = np.zeros(len(p.window))
+        by_g = p.reynolds.product(sparse.by_separation, exchange.window(b_g), nothing, p.owned.start)
+        b = np.zeros(sparse.block * p.local)
+        b[sparse.reynolds_rows[sparse.has_reynolds]] = (full[1:local:2] - by_g)[sparse.has_reynolds]
+        b[sparse.deflection_rows] = full[0:local:2][sparse.touching]
+        pressure, r, load = self._pressures(b)
+        approach = (b_load - load) / of_h00[2]
+        pressure, r = pressure + approach * of_h00[0], r + approach * of_h00[1]
         sums = exchange.sums(pressure)
         separation = sums.deflection + approach + b_g
-        kind, back = self.reduction.kind[p.owned], self.reduction.back[:, p.owned]
-        first = np.where(kind == VOID, r, pressure)
-        second = np.where(kind == CONTACT, r, separation)
+        kind, back = sparse.kind, self.reduction.back[:, p.owned]
+        first, second = np.where(kind == VOID, r, pressure), np.where(kind == CONTACT, r, separation)
         out = np.empty(operator.size)
         out[0:local:2] = back[0] * first + back[1] * second
         out[1:local:2] = back[2] * first + back[3] * second

@@ -40,7 +40,13 @@ class PlaneMatrices:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; the options name the preconditioner."""
 
     def begin_solve(self) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; factors are kept from step to step."""
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        if self.elimination.factors:
+            self.elimination.begin_solve()
+
+    def keep(self, jacobian: PlaneJacobian) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        self.elimination.keep(jacobian)
 
 
 def plane_system(

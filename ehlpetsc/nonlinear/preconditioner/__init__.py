@@ -17,8 +17,7 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.jacobian import JacobianOperator
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
-
-UNITS = np.eye(2)[:, None]  # of both unknowns of the band at a node
+from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
 
 
 class Factors:
@@ -37,13 +36,11 @@ class Factors:
 
     def factor(self, operator: JacobianOperator) -> None:
         """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian`."""
-        state, derivatives = operator.state, operator.reynolds_derivatives
-        entries = operator.model.band_entries(state, derivatives, self.lu.band.stencil)
+        pairs = NodePairs(operator.state, operator.model.compliance)
+        entries = pairs.entries(operator.reynolds_derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
-        self.lu.units[:] = UNITS
-        for unit in self.lu.units:
-            operator.model.from_band(state, self._owned, unit)
+        self.lu.units[:] = pairs.unknowns(self._owned)
 
 
 class FarFieldBand:

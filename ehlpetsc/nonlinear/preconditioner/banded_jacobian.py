@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
 from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
+from ehlpetsc.nonlinear.preconditioner.node_pairs import BandEntries, same_deflection
 
 FILMS = np.array([1, 0, SIZE - 2, SIZE - 1])  # places in a group of its nodes' films
 FIRST_SUM = 2

@@ -19,8 +19,7 @@ from __future__ import annotations
 import numpy as np
 from mpi4py import MPI
 
-from ehlpetsc.base.compiled import compiled, unsigned
-from ehlpetsc.discretisation.contact.node_state import BandEntries, same_deflection
+from ehlpetsc.base.compiled import ZERO, compiled, unsigned
 from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.preconditioner.block_lu import (
     AT_LEFT,
@@ -35,6 +34,7 @@ from ehlpetsc.nonlinear.preconditioner.block_lu import (
     backward_transposed,
     forward,
 )
+from ehlpetsc.nonlinear.preconditioner.node_pairs import BandEntries, same_deflection
 from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
 from ehlpetsc.nonlinear.ranks import all_ranks, collective, exchange
 
@@ -125,7 +125,7 @@ class DistributedLU:
 def are_close(entries: np.ndarray, before: np.ndarray, tolerance: float) -> bool:
     """Whether entries of the deflection rows are the same and those of Reynolds rows nearly so.
 
-    `entries`, `before`: fields of a `contact.node_state.BandEntries`.
+    `entries`, `before`: fields of a `node_pairs.BandEntries`.
     `tolerance`: of each entry, as a fraction of the largest one of its row.
     """
     rows, old_rows = entries[3], before[3]
@@ -239,7 +239,7 @@ def solve(factors: tuple, b: np.ndarray, solution: np.ndarray) -> None:
     y[:] = 0.0
     for i in range(len(dofs)):
         y[dofs[i]] = b[i]
-    begin(is_outer, lu, cuts[:2], y, 0, everyone[rank])
+    begin(is_outer, lu, cuts[:2], y, ZERO, everyone[rank])
     if len(b) > len(dofs):
         everyone[rank, -1] -= b[-1]
     exchange(collective, everyone)

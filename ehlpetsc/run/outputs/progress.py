@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import time as clock
 from typing import TYPE_CHECKING, TextIO
 
-from ehlpetsc.effects.quantities import STEP_SCALARS
+from ehlpetsc.base.progress_line import SECONDS_IN_PLACE, duration, in_notebook, on_terminal
+from ehlpetsc.base.quantities import STEP_SCALARS
 
 if TYPE_CHECKING:
     from ehlpetsc.base.errors import ExitStatus
@@ -15,20 +15,7 @@ if TYPE_CHECKING:
     from ehlpetsc.run.simulation import AcceptedState, Simulation
 
 SECONDS_BETWEEN_LINES = 5.0
-SECONDS_IN_PLACE = 0.2
 MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
-
-
-def on_terminal(stream: TextIO) -> bool:
-    """Whether output is shown on a terminal, which under mpirun is not known."""
-    is_dumb = os.environ.get("TERM") == "dumb" or "OMPI_COMM_WORLD_RANK" in os.environ
-    return stream.isatty() and not is_dumb
-
-
-def in_notebook() -> bool:
-    """Whether output is shown in a notebook."""
-    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    return type(shell).__name__ == "ZMQInteractiveShell"
 
 
 class Progress:
@@ -81,18 +68,6 @@ class Progress:
         if now - begun < MIN_RATE_TIME and time < end or time <= since[1]:
             return "0s" if time >= end else "?"
         return duration((now - since[0]) * max(end - time, 0.0) / (time - since[1]))
-
-
-def duration(seconds: float) -> str:
-    """Duration as text: ``45s``, ``12m05s``, ``3h20m``, ``2d04h``."""
-    s = round(seconds)
-    if s < 60:
-        return f"{s}s"
-    if s < 3600:
-        return f"{s // 60}m{s % 60:02d}s"
-    if s < 86400:
-        return f"{s // 3600}h{s % 3600 // 60:02d}m"
-    return f"{s // 86400}d{s % 86400 // 3600:02d}h"
 
 
 def summary_line(status: ExitStatus, totals: Totals, wall: float) -> str:

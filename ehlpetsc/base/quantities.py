@@ -1,0 +1,301 @@
+"""Table of all datasets of a result file: unit, long name, type, cases that have it, function, reduction.
+
+A new scalar of the steps is a line here. Effects add their quantities (`register`). The case file's list of
+fields, writer and reader, progress, the summary line, totals of runs and series, the forecast of file sizes
+and `ehlpetsc.analysis.compare` use this table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ehlpetsc.base.declarations import Column, Field, StepScalar
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.effects.effect import Effect
+
+MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
+HIGH_PRESSURE = 100e6  # Pa: of the second length in contact
+PER_METRE = {"N": "N/m", "W": "W/m", "m^2": "m", "m^3": "m^2"}
+"""Units of integrals over a contact, per metre of its width."""
+
+REDUCTIONS: dict[str, Callable] = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
+"""From the values of the steps, in their order, to the one of a run."""
+
+MEANS = ("friction_coefficient", "film_central", "lambda_ratio", "mean_gap_ratio", "contact_share")
+"""Scalars whose means over the time in which both surfaces fill the contact are in the summary of a run."""
+
+SCENES: dict[str, Callable[[Case], bool]] = {
+    "": lambda case: True,
+    "fluid": lambda case: case.fluid is not None,
+    "mixed": lambda case: case.contact.has_contact_pressure,
+    "compliant": lambda case: case.contact.asperity_height is not None,
+    "variable": lambda case: case.conditions is not None,
+}
+"""Whether a case has what a quantity needs."""
+
+FIELDS = {
+    "pressure": Field("Pa", "pressure"),
+    "contact_pressure": Field("Pa", "pressure of the solids, part of the pressure", only="mixed"),
+    "film_thickness": Field("m", "film thickness"),
+    "void_fraction": Field("1", "void fraction of the film", only="fluid"),
+    "shear_stress_1": Field("Pa", "shear stress on surface 1"),
+    "shear_stress_2": Field("Pa", "shear stress on surface 2"),
+    "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
+}
+"""Fields over (stored frame, node), in the order in which files list them."""
+
+STORED = list(FIELDS)
+"""Fields that a case stores unless it names its own."""
+
+STEP_SCALARS = {
+    "step": StepScalar(
+        "1",
+        "number of the time step",
+        dtype="i8",
+        over_run="last",
+        over_series="sum",
+        summary="d",
+        label="steps",
+        progress=Column("step", 1, "{:>8d}"),
+    ),
+    "time": StepScalar("s", "time at the end of the step", progress=Column("time/us", 1e6, "{:>11.4f}")),
+    "dt": StepScalar(
+        "s", "time step", progress=Column("dt/us", 1e6, "{:>9.5f}"), of=lambda o: o.state.dt or 0.0
+    ),
+    "newton": StepScalar(
+        "1",
+        "Newton iterations of the step, retries included",
+        dtype="i4",
+        over_run="sum",
+        summary="d",
+        progress=Column("newton", 1, "{:>6d}"),
+        of=lambda o: o.state.newton,
+    ),
+    "gmres": StepScalar("1", "GMRES iterations of the step, retries included", dtype="i4", over_run="sum"),
+    "retries": StepScalar(
+        "1", "attempts that did not converge", dtype="i4", over_run="sum", of=lambda o: o.state.retries
+    ),
+    "h_min": StepScalar(
+        "m",
+        "minimum film thickness",
+        over_run="min",
+        summary=".9g",
+        progress=Column("h_min/um", 1e6, "{:>9.5f}"),
+        compared=True,
+        of=lambda o: o.fields["film_thickness"].min(),
+    ),
+    "p_max": StepScalar(
+        "Pa",
+        "maximum pressure",
+        over_run="max",
+        summary=".9g",
+        progress=Column("p_max/GPa", 1e-9, "{:>9.4f}"),
+        compared=True,
+        of=lambda o: o.fields["pressure"].max(),
+    ),
+    "contacts": StepScalar(
+        "1",
+        "nodes in contact",
+        dtype="i4",
+        over_run="sum",
+        summary="d",
+        progress=Column("contacts", 1, "{:>8d}"),
+        compared=True,
+        of=lambda o: int(o.loads.contact_mask.sum()),
+    ),
+    "load": StepScalar("N", "integral of the pressure", integrated=True, compared=True, of=lambda o: o.load),
+    "load_error": StepScalar(
+        "1",
+        "relative error of the load",
+        over_run="max",
+        summary=".2e",
+        of=lambda o: abs(o.load / o.conditions.load - 1.0),
+    ),
+    "mass_error": StepScalar(
+        "1",
+        "mass defect summed over all nodes, relative to the mass that the contact carries",
+        over_run="max",
+        summary=".2e",
+        of=lambda o: o.mass_error,
+    ),
+    "approach": StepScalar("m", "undeformed separation h00", compared=True, of=lambda o: o.approach),
+    "friction": StepScalar(
+        "N", "friction force on surface 2", integrated=True, compared=True, of=lambda o: o.friction_2
+    ),
+    "friction_1": StepScalar(
+        "N", "friction force on surface 1, in +x", integrated=True, compared=True, of=lambda o: o.friction_1
+    ),
+    "friction_coefficient": StepScalar(
+        "1",
+        "magnitude of the mean friction force of both walls over load",
+        over_run="last",
+        summary=".4g",
+        of=lambda o: 0.5 * abs(o.friction_2 - o.friction_1) / o.load,
+    ),
+    "film_central": StepScalar(
+        "m",
+        "mean film of the middle half of the Hertz contact of the instant",
+        over_run="last",
+        summary=".4g",
+        of=lambda o: o.mean_film,
+    ),
+    "lambda_ratio": StepScalar(
+        "1",
+        "expected smooth minimum film over the combined Rq",
+        over_run="last",
+        summary=".4g",
+        of=lambda o: o.smooth_film / o.rq if o.rq else np.nan,
+    ),
+    "mean_gap_ratio": StepScalar(
+        "1",
+        "mean film over the combined Rq",
+        over_run="last",
+        summary=".4g",
+        of=lambda o: o.mean_film / o.rq if o.rq else np.nan,
+    ),
+    "oil_pressure": StepScalar(
+        "Pa",
+        "maximum pressure of the oil, nodes in direct contact left out",
+        over_run="max",
+        only="fluid",
+        of=lambda o: o.oil_pressure.max(),
+    ),
+    "nodes_below_1nm": StepScalar(
+        "1",
+        "nodes out of contact under less than 1 nm of oil",
+        dtype="i4",
+        over_run="sum",
+        only="fluid",
+        of=lambda o: int((~o.loads.contact_mask & (o.fields["film_thickness"] < MIN_CONTINUUM_FILM)).sum()),
+    ),
+    "contact_share": StepScalar(
+        "1",
+        "share of the load on the solids",
+        over_run="max",
+        summary=".4g",
+        label="contact_share_max",
+        compared=True,
+        only="mixed",
+        of=lambda o: o.loads.contact_pressure.sum() / o.loads.pressure.sum(),
+    ),
+    "contact_length": StepScalar(
+        "m^2",
+        "length where solids carry; of a compliant layer, integral of the real area fraction",
+        integrated=True,
+        compared=True,
+        only="mixed",
+        of=lambda o: o.cell * o.model.real_area_fraction(o.loads).sum(),
+    ),
+    "contact_length_10mpa": StepScalar(
+        "m^2",
+        "length where asperities carry more than 10 MPa",
+        integrated=True,
+        compared=True,
+        only="compliant",
+        of=lambda o: o.cell * o.loads.contact_mask.sum(),
+    ),
+    "contact_length_100mpa": StepScalar(
+        "m^2",
+        "length where asperities carry more than 100 MPa",
+        integrated=True,
+        compared=True,
+        only="compliant",
+        of=lambda o: o.cell * (o.loads.contact_pressure > HIGH_PRESSURE / o.scene.scales.p0).sum(),
+    ),
+    "thin_length": StepScalar(
+        "m^2",
+        "length where the film is thin",
+        integrated=True,
+        compared=True,
+        only="mixed",
+        of=lambda o: o.cell * o.thin.sum(),
+    ),
+    "thin_share": StepScalar(
+        "1",
+        "share of the load where the film is thin",
+        compared=True,
+        only="mixed",
+        of=lambda o: o.loads.pressure[o.thin].sum() / o.loads.pressure.sum(),
+    ),
+    "radius": StepScalar(
+        "m", "radius of relative curvature", only="variable", of=lambda o: o.conditions.radius
+    ),
+    "load_given": StepScalar(
+        "N",
+        "load of the operating conditions",
+        integrated=True,
+        only="variable",
+        of=lambda o: o.conditions.load,
+    ),
+    "speed_1": StepScalar("m/s", "speed of surface 1", only="variable", of=lambda o: o.conditions.u1),
+    "speed_2": StepScalar("m/s", "speed of surface 2", only="variable", of=lambda o: o.conditions.u2),
+    "displacement_1": StepScalar(
+        "m",
+        "distance travelled by surface 1 since time 0, signed",
+        only="variable",
+        of=lambda o: o.state.travelled[0],
+    ),
+    "displacement_2": StepScalar(
+        "m",
+        "distance travelled by surface 2 since time 0, signed",
+        only="variable",
+        of=lambda o: o.state.travelled[1],
+    ),
+    "wall": StepScalar("s", "wall clock time of the step", over_run="sum", of=lambda o: o.wall),
+}
+"""Scalars of every time step, below ``steps/``, in the order of progress and summary."""
+
+OTHERS = {
+    "x": Field("m", "distance along the entrainment direction", ("x",)),
+    "y": Field("m", "distance across the entrainment direction", ("y",)),
+    "time": Field("s", "time of the stored frame", ("time",)),
+    "step": Field("1", "number of the time step stored in the frame", ("time",), "i8"),
+    "contact_count": Field("1", "time steps in contact over the whole run", ("nodes",), "i8"),
+    "surface/s": Field("m", "coordinate fixed to the surface, s = x - speed time", ("s",)),
+    "surface/z": Field("m", "height, positive out of the metal", ("s",)),
+}
+"""Coordinates and what else is neither a field nor a scalar of the step."""
+
+
+def register(kind: type[Effect]) -> None:
+    """Add the quantities of an effect to the tables."""
+    SCENES[kind.name] = kind.is_in
+    FIELDS.update({name: replace(field, only=kind.name) for name, field in kind.fields.items()})
+    STORED.extend(name for name in kind.fields if name not in STORED)
+    STEP_SCALARS.update({name: replace(scalar, only=kind.name) for name, scalar in kind.scalars.items()})
+    OTHERS.update(_on_surfaces(kind))
+
+
+def of_effect(kind: type[Effect]) -> dict[str, Field]:
+    """Quantities of an effect by their names in the tables."""
+    return {**kind.fields, **kind.scalars, **_on_surfaces(kind)}
+
+
+def _on_surfaces(kind: type[Effect]) -> dict[str, Field]:
+    return {f"surface/{name}": field for name, field in kind.surface.items()}
+
+
+def of_case(table: Mapping[str, Field], case: Case) -> list[str]:
+    """Names of the quantities of a table in a case."""
+    return [name for name, field in table.items() if SCENES[field.only](case)]
+
+
+def of_every_case(table: Mapping[str, Field]) -> list[str]:
+    """Names of the quantities of a table in all cases."""
+    return [name for name, field in table.items() if not field.only]
+
+
+def unit_in(quantity: Field, contact: str = "line") -> str:
+    """Unit of a quantity of a "line", "strip" or "point" contact: only of the last one that of the whole."""
+    return PER_METRE[quantity.units] if quantity.integrated and contact != "point" else quantity.units
+
+
+def dims_in(quantity: Field, axes: Sequence[str] = ("x",)) -> tuple[str, ...]:
+    """Names of the dimension scales of a quantity on a grid with these axes."""
+    return tuple(dim for name in quantity.dims for dim in (axes if name == "nodes" else [name]))
