@@ -113,7 +113,7 @@ def draw(lines: dict[tuple[Dimple, float], tuple[np.ndarray, np.ndarray]]) -> Fi
         panel.plot(1e6 * x, 1e9 * film, color=style.SINGLE, lw=1.4, label="computed")
         if measured := MEASURED.get((dimple, ratio)):
             panel.plot(measured.x, measured.film, "o", ms=3, color=style.DARK, label="measured")
-            panel.legend(loc="upper center", **style.SMALL)
+            panel.legend(loc="lower center", **style.SMALL)
         panel.set_title(f"depth {dimple.depth * 1e6:g} µm, slide/roll {ratio:g}", fontsize="small")
         panel.set(xlim=(-160, 160), ylim=(0, 500))
         panel.grid(lw=0.3)
