@@ -18,6 +18,7 @@ from ehlpetsc.base import environment
 from ehlpetsc.base.errors import CaseError, ExitStatus
 from ehlpetsc.results import reader
 from ehlpetsc.results.reader import open_result
+from ehlpetsc.results.section import Section
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,6 +39,8 @@ class Result(reader.Result):
     ) -> Figure:
         """Pressure and film over x/a at the frame nearest to a step or a time [s], contacts marked.
 
+        Of a point contact or strip maps and sections.
+
         By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`; `window` limits x/a.
 
         Examples
@@ -52,10 +55,23 @@ class Result(reader.Result):
         from ehlpetsc.pictures import frames, style
 
         indices = frames.choose_frames([self], step, time)
+        if self.y is not None:
+            from ehlpetsc.pictures.plane import fill_figure
+
+            figure = pyplot.figure(layout="constrained")
+            return fill_figure(figure, self, indices[0], frames.view([self], window))
         figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
         frames.fill_frame(axes, [self], indices, frames.view([self], window))
         style.set_title(figure, *frames.panel_title([self], indices))
         return figure
+
+    def section(self, y: float = 0.0) -> Result:
+        """As of :class:`ehlpetsc.results.reader.Result`, with :meth:`plot`."""
+        return DrawnSection(self, y)
+
+
+class DrawnSection(Section, Result):
+    """Section of a result, see :class:`ehlpetsc.results.section.Section`."""
 
 
 def read_result(path: str | PathLike) -> Result:

@@ -73,7 +73,10 @@ def frame_table(result: Result, step: int) -> list[Sequence]:
         stored = f"{result.step[0]} to {result.step[-1]}, next to it {result.step[frame]}"
         raise UsageError(f"--frame {step}: {result.path} stores no such step; allowed: one of {stored}")
     fields = {f"{name} [{result.unit(name)}]": result[name][frame] for name in result.fields}
-    return _columns({"x [m]": result.x} | fields)
+    if result.y is None:
+        return _columns({"x [m]": result.x} | fields)
+    y, x = np.meshgrid(result.y, result.x, indexing="ij")
+    return _columns({name: values.ravel() for name, values in {"x [m]": x, "y [m]": y, **fields}.items()})
 
 
 def _columns(columns: dict[str, np.ndarray]) -> list[Sequence]:

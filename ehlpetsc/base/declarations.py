@@ -41,6 +41,8 @@ class Key:
         Meaning, for the page of keys and for messages; symbols and equations in backticks.
     unit
         SI unit of the stored value; "": a pure number.
+    point_unit
+        Unit in a point contact, where it is another one.
     is_difference
         Whether a value in K is a difference of temperatures: 17 degC is then 17 K.
     kind
@@ -85,6 +87,7 @@ class Key:
     below: str = ""
     equation: str = ""
     is_difference: bool = False
+    point_unit: str = ""
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
 
@@ -219,7 +222,7 @@ class StepScalar(Field):
     compared : bool
         Whether it is compared between runs, unlike scalars of the solution process.
     of : function, optional
-        Its value at an accepted time level; None: an effect returns it from `observe`.
+        Its value at an accepted time level; None: an effect returns it from `observe`, or the simulation.
     """
 
     dims: tuple = ("time",)

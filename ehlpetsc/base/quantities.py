@@ -77,6 +77,7 @@ STEP_SCALARS = {
         progress=Column("newton", 1, "{:>6d}"),
         of=lambda o: o.state.newton,
     ),
+    "gmres": StepScalar("1", "GMRES iterations of the step, retries included", dtype="i4", over_run="sum"),
     "retries": StepScalar(
         "1", "attempts that did not converge", dtype="i4", over_run="sum", of=lambda o: o.state.retries
     ),
@@ -252,6 +253,7 @@ STEP_SCALARS = {
 
 OTHERS = {
     "x": Field("m", "distance along the entrainment direction", ("x",)),
+    "y": Field("m", "distance across the entrainment direction", ("y",)),
     "time": Field("s", "time of the stored frame", ("time",)),
     "step": Field("1", "number of the time step stored in the frame", ("time",), "i8"),
     "contact_count": Field("1", "time steps in contact over the whole run", ("nodes",), "i8"),

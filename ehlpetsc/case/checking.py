@@ -18,6 +18,10 @@ from ehlpetsc.case.tables import CASE, key_of
 
 NUMBERS_ONLY = {"half-widths", "boundary films"}  # units that are no units of measurement
 MAX_FLOAT = 1e308
+KINDS = (
+    " in a line contact or a strip, of one radius",
+    " in a point contact, of two radii",
+)  # after the allowed unit of a key
 
 Tables = dict[str, Any]
 # exceptions of values that follow from unchecked tables: their faults are found by the check of the keys
@@ -47,10 +51,22 @@ def in_si(data: Tables) -> list[Fault]:
     for holder, name, key, place in [*_entries(data, CASE, ""), *_series_entries(data.get("series"))]:
         if key and key.kind is float and key.unit not in NUMBERS_ONLY:
             try:
-                holder[name] = converted(holder[name], key.unit, key.is_difference)
+                holder[name] = converted(holder[name], in_contact(key, data).unit, key.is_difference)
             except UnitFault as fault:
-                faults.append(Fault(place, f"{place} = {fault}"))
+                why = KINDS[is_point(data)] if key.point_unit else ""
+                faults.append(Fault(place, f"{place} = {fault}{why}"))
     return faults
+
+
+def is_point(data: Tables) -> bool:
+    """Whether the tables of a case describe a point contact, by a pair of radii."""
+    contact = data.get("contact")
+    return isinstance(contact, dict) and isinstance(contact.get("radius"), list | tuple)
+
+
+def in_contact(key: Key, data: Tables) -> Key:
+    """Key with its unit in the contact of the tables of a case."""
+    return replace(key, unit=key.point_unit) if key.point_unit and is_point(data) else key
 
 
 def _entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key | None, str]]:
@@ -85,8 +101,8 @@ def check(
     root = data if root is None else root
     values: Tables = {}
     faults: list[Fault] = []
-    for name, key in table.keys.items():
-        place, value = where + name, data.get(name)
+    for name, declared in table.keys.items():
+        place, value, key = where + name, data.get(name), in_contact(declared, root)
         if place in known:
             faults.append(Fault(place, ""))
         elif value is None and not (key.table and key.table.always):
@@ -178,8 +194,18 @@ def _value(key: Key, value: Any) -> Any:
     )
     if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
         raise _Wrong
-    items = [_item(key, item) for item in value]
+    items = _numbers(key, value) if key.kind is float else [_item(key, item) for item in value]
     return items if key.many == "list" else tuple(items)
+
+
+def _numbers(key: Key, values: list | tuple) -> list[float]:
+    """Items of a list of numbers, of which a measured map has a million."""
+    if not set(map(type, values)) <= {int, float}:
+        return [_item(key, value) for value in values]
+    extremes = (min(values), max(values)) if len(values) > 2 and all(map(math.isfinite, values)) else values
+    for value in extremes:
+        _item(key, value)
+    return [float(value) for value in values]
 
 
 def _item(key: Key, value: Any) -> Any:

@@ -12,7 +12,7 @@ from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.messages import nearest, value_text
 from ehlpetsc.case.tables import CASE
 
-EXAMPLES = ("roller", "gears")  # files beside this one
+EXAMPLES = ("roller", "gears", "point", "strip")  # files beside this one
 
 
 def tables() -> dict[str, KeyTable]:

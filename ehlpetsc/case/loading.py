@@ -17,15 +17,16 @@ from ehlpetsc.case.checking import Fault, Tables, check, in_si, is_number
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
+from ehlpetsc.case.kinds import LINE, faults_of_kind, variable_point
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
-from ehlpetsc.case.tables.surface import PROFILE, SIDES, areal_keys
+from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.law import Law
 from ehlpetsc.physics.scales import Scales
 
-LINE = "line"  # the kind of contact whose surfaces are profiles
 DICT_NAME = "case"  # name of a case without a file in messages
 SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
 OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
@@ -133,6 +134,8 @@ def _checked(
     if isinstance(heat, dict) and heat.get("bulk_temperature") == "losses":
         return _checked_with_losses(folder, data, known)
     faults, conditions = [], None
+    if wrong := variable_point(data):
+        return None, wrong
     data = with_derived(data)
     try:
         data = with_columns(data, folder, ("gears",))
@@ -146,8 +149,18 @@ def _checked(
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
-        faults += [Fault("mesh", line) for line in reversed_flow]
+        faults += [Fault("mesh", line) for line in reversed_flow] + _contact_faults(cast(Case, case))
     return (case if case and not faults else None), faults + found
+
+
+def _contact_faults(case: Case) -> list[Fault]:
+    """Faults of effects that do not serve the kind of contact."""
+    faults = []
+    for kind in EFFECTS:
+        if kind.is_in(case) and case.kind not in kind.contacts:
+            key, served = kind.table.name if kind.table else kind.name, " and ".join(kind.contacts)
+            faults.append(Fault(key, f"{key}: of {served} contacts, and this is a {case.kind}; leave it out"))
+    return faults
 
 
 def _file_fault(data: Tables, error: ProfileError) -> Fault:
@@ -203,23 +216,23 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     """
     case, faults = _checked(folder, data, known)
     surface = data.get("surface")
-    for side in SIDES:
-        table = surface.get(side) if isinstance(surface, dict) else None
-        spec = check(PROFILE, table)[0] if isinstance(table, dict) else None
-        of_maps = areal_keys(spec) if spec and case and case.kind == LINE else []
-        reason = "of maps, and a line contact has profiles; leave it out"
-        faults += [Fault("", f"surface.{side}.{key}: {reason}") for key in of_maps]
-        if case and case.kind != LINE:
-            faults += _map_faults(folder, spec, case, f"surface.{side}")
+    tables = {side: surface.get(side) if isinstance(surface, dict) else None for side in SIDES}
+    specs = {side: check(PROFILE, t)[0] if isinstance(t, dict) else None for side, t in tables.items()}
+    whole = case if case and case.contact and case.mesh else None  # or their faults are reported
+    of_kind = faults_of_kind(whole, data, specs) if whole else []
+    for side, spec in specs.items():
+        table = tables[side]
+        if whole and whole.kind != LINE:
+            faults += _map_faults(folder, spec, whole, f"surface.{side}") if not of_kind else []
             continue
-        if spec is None or spec.synthetic or of_maps:  # smooth, or its faults are reported with its keys
+        if spec is None or spec.synthetic or of_kind:  # smooth, or its faults are reported with its keys
             continue
         try:
             _check_profile(folder, spec, case)
         except ProfileError as error:
             key = "z" if "z" in table else "file"
             faults.append(Fault("", f"surface.{side}.{key} = {show(table[key])}: {error}"))
-    return case, faults
+    return case, faults + of_kind
 
 
 def _map_faults(folder: Path, spec: Values | None, case: Case, place: str) -> list[Fault]:

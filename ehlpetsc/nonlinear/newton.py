@@ -45,6 +45,8 @@ class NewtonSolver:
         Absolute tolerance of the last solve.
     bounded : bool
         Whether SNES enforces the bound of the contact model.
+    linear_iterations : int
+        GMRES iterations of all solves so far.
     """
 
     def __init__(self, system: TwoFields, options: RunOptions | None = None):
@@ -59,6 +61,7 @@ class NewtonSolver:
         self.snes: Any = None
         self._unconstrained_snes: Any = None
         self.tolerance: float = None
+        self.linear_iterations = 0
         self._create()
         snes: Any = self.snes
         self.bounded = snes.getType() == "vinewtonrsls"
@@ -225,6 +228,7 @@ class NewtonSolver:
 
     def _solution(self, snes: PETSc.SNES) -> tuple[Unknowns, int]:
         reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
+        self.linear_iterations += snes.getLinearSolveIterations()
         # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
         self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:

@@ -51,6 +51,10 @@ def solver_of(
         bounded = options.value("snes_type", "vinewtonrsls") == "vinewtonrsls"
         tolerance = options.real("snes_vi_zero_tolerance", ZERO_TOLERANCE) if bounded else 0.0
         return NewtonSolver(SYSTEMS[case.kind](case, scales, film_scale, comm, tolerance), options)
+    if case.kind != "line":
+        raise UsageError(
+            f"-ehl_scheme sweep: the paper's sweeps solve line contacts, not a {case.kind}; leave it out"
+        )
     if case.fluid is None:
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:

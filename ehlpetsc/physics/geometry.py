@@ -1,7 +1,7 @@
 r"""Kinds of contact: dry smooth contact, nodes and dimensionless groups of each.
 
-A line contact is of infinite length; a strip is a line contact whose roughness varies along its length, periodic over
-the width of the mesh; a point contact is an ellipse.
+A line contact is of infinite length; a strip is a line contact whose roughness varies along its length,
+periodic over the width of the mesh; a point contact is an ellipse.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from ehlpetsc.physics.film_formulas import (
     MIN_OVER_CENTRAL_FILM,
-    hamrock_dowson_ratio,
+    hamrock_dowson_films,
     moes_central_film,
     nijenbanning_central_film,
 )
@@ -29,7 +29,7 @@ POINT_WIDTH = 4.0  # half-widths b: of the mesh of a point contact across, unles
 
 
 class Dry(NamedTuple):
-    """Dry smooth contact: half-widths along and across [m], across infinite in a line; maximum pressure [Pa]."""
+    """Dry smooth contact: half-widths along and across, infinite in a line [m]; maximum pressure [Pa]."""
 
     a: float
     b: float
@@ -40,14 +40,16 @@ class Geometry(NamedTuple):
     """Quantities in which the kinds of contact differ.
 
     `dry`: of [contact] and E' [Pa].
+    `rows`: rows of nodes across, of [mesh] and the dry contact.
     `grid`: of [contact], [mesh] and the dry contact.
     `moes`: Moes' M and L of viscosity, mean speed, alpha, load, radius along x and E'.
-    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and the ratio of the radii: central film
-        of an incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
+    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and the ratio of the radii:
+        central film of an incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
     `expected_film`: central film of the smooth flooded contact in a^2/R.
     """
 
     dry: Callable[[Values, float], Dry]
+    rows: Callable[[Values, Dry], int]
     grid: Callable[[Values, Values, Dry], Grid]
     moes: Callable[..., tuple[float, float]]
     smooth_films: Callable[..., tuple[float, float, float]]
@@ -75,9 +77,25 @@ def line_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     return Grid((along(mesh),), (dry.a / mesh.points_per_half_width,), (1.0,), (1.0,), 0.5 * np.pi)
 
 
+def one_row(mesh: Values, dry: Dry) -> int:
+    """The row of a line contact."""
+    return 1
+
+
+def strip_rows(mesh: Values, dry: Dry) -> int:
+    """Rows of a strip, over its period."""
+    return max(round(mesh.width * (mesh.points_across or mesh.points_per_half_width)), 2)
+
+
+def point_rows(mesh: Values, dry: Dry) -> int:
+    """Rows of a point contact, an odd number."""
+    points = mesh.points_across or mesh.points_per_half_width * dry.b / dry.a
+    return 2 * max(round(0.5 * (mesh.width or POINT_WIDTH) * points), 2) + 1
+
+
 def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     """Nodes of a strip: cells of equal width over the period, about the middle."""
-    n_y = max(round(mesh.width * (mesh.points_across or mesh.points_per_half_width)), 2)
+    n_y = strip_rows(mesh, dry)
     step = mesh.width / n_y
     y = (np.arange(n_y) - 0.5 * (n_y - 1)) * step
     spacings = step * dry.a, dry.a / mesh.points_per_half_width
@@ -91,7 +109,7 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     """Nodes of a point contact, symmetric about the direction of motion."""
     ratio = dry.b / dry.a
     points = mesh.points_across / ratio if mesh.points_across else mesh.points_per_half_width
-    half = max(round(0.5 * (mesh.width or POINT_WIDTH) * ratio * points), 2)
+    half = point_rows(mesh, dry) // 2
     y = np.arange(-half, half + 1) / points
     spacings = dry.a / points, dry.a / mesh.points_per_half_width
     curvature = contact.radius / contact.radius_across
@@ -120,7 +138,7 @@ def line_groups(
 def point_groups(
     viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float
 ) -> tuple[float, float]:
-    r"""Moes' load and lubricant numbers of a point contact, :math:`M=F/(E'R^2)\,(2U)^{-3/4}`; L as in a line."""
+    r"""Moes' numbers of a point contact, :math:`M=F/(E'R^2)\,(2U)^{-3/4}`; L as in a line."""
     two_u = 2.0 * viscosity * speed / (modulus * radius)
     return load / (modulus * radius**2 * two_u**0.75), alpha * modulus * two_u**0.25
 
@@ -141,8 +159,8 @@ def point_films(
     M, L = point_groups(viscosity, speed, alpha, load, radius, modulus)
     two_u = 2.0 * viscosity * speed / (modulus * radius)
     central = radius * math.sqrt(two_u) * nijenbanning_central_film(M, L, ratio)
-    lowest = hamrock_dowson_ratio(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
-    return central, lowest, hertz_ellipse(load, radius, radius * ratio, modulus).p0
+    of_hamrock = hamrock_dowson_films(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
+    return central, of_hamrock[1] / of_hamrock[0], hertz_ellipse(load, radius, radius * ratio, modulus).p0
 
 
 def line_film(scales: Scales) -> float:
@@ -158,8 +176,8 @@ def point_film(scales: Scales) -> float:
 
 
 GEOMETRIES = {
-    "line": Geometry(line, line_grid, line_groups, line_films, line_film),
-    "strip": Geometry(line, strip_grid, line_groups, line_films, line_film),
-    "point": Geometry(ellipse, point_grid, point_groups, point_films, point_film),
+    "line": Geometry(line, one_row, line_grid, line_groups, line_films, line_film),
+    "strip": Geometry(line, strip_rows, strip_grid, line_groups, line_films, line_film),
+    "point": Geometry(ellipse, point_rows, point_grid, point_groups, point_films, point_film),
 }
 """Kinds of contact by name, :attr:`ehlpetsc.case.tables.Case.kind`."""

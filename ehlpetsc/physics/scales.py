@@ -93,8 +93,13 @@ class Scales:
         return self.grid.spacings[-1]
 
     @property
+    def load_per_length(self) -> float:
+        r"""Load per length across in the middle of the dry contact, :math:`\pi p_0a/2` [N/m]."""
+        return 0.5 * np.pi * self.p0 * self.a
+
+    @property
     def stiffness(self) -> float:
-        r"""Deflection of a half-space by a pressure p0 on a^2 at the distance a, :math:`2p_0R/(\pi E'a)` in a^2/R."""
+        r"""Deflection by p0 on a^2 at the distance a, :math:`2p_0R/(\pi E'a)`, in a^2/R."""
         return 2.0 * self.p0 * self.R / (np.pi * self.E * self.a)
 
     @property

@@ -83,12 +83,12 @@ class Steps:
 
 
 class Result:
-    """Result file, read lazily; each of the `fields` is also an attribute, shape (nt, nx).
+    """Result file, read lazily; each of the `fields` is also an attribute, shape (nt, nx) or (nt, ny, nx).
 
     Attributes
     ----------
     attrs : dict
-        Root attributes: case text, provenance, a, p0, speeds, status.
+        Root attributes: case text, provenance, kind ("line", "strip", "point"), a, b, p0, speeds, status.
     x, y : ndarray, shapes (nx,), (ny,)
         Nodes [m]; y is None for a line contact.
     time, step : ndarray, shape (nt,)
@@ -97,7 +97,7 @@ class Result:
         Names of the fields stored in every frame, and of the scalars of every step.
     steps : Steps
         Scalars of every step, stored or not.
-    contact_count : ndarray, shape (nx,)
+    contact_count : ndarray, shape (nx,) or (ny, nx)
         Time steps in contact over the whole run.
     """
 
@@ -143,7 +143,8 @@ class Result:
         return [*super().__dir__(), *self.fields]
 
     def __repr__(self) -> str:
-        size = f"{len(self.x)} nodes, {len(self.time)} frames"
+        nodes = " x ".join(str(len(axis)) for axis in (self.x, self.y) if axis is not None)
+        size = f"{nodes} nodes, {len(self.time)} frames"
         return f"<Result {self.attrs['title']!r}: {size}, {self.attrs['status']}; {', '.join(self.fields)}>"
 
     @cached_property
@@ -161,7 +162,7 @@ class Result:
         return self[name].attrs.get("units", "1")
 
     def to_xarray(self) -> Dataset:
-        """Fields over (time, x) and scalars over (step), with units, long names and the root attributes.
+        """Fields over (time, x) or (time, y, x), scalars over (step), with units, names, root attributes.
 
         The time at the end of each step is ``step_time``, the step of each frame ``frame_step``.
 
@@ -179,13 +180,14 @@ class Result:
             attributes = {key: self[name].attrs[key] for key in ("units", "long_name")}
             return xarray.Variable(dims, values, attributes)
 
-        fields = {name: variable(("time", "x"), name, getattr(self, name)) for name in self.fields}
+        axes = ("x",) if self.y is None else ("y", "x")
+        fields = {name: variable(("time", *axes), name, getattr(self, name)) for name in self.fields}
         names = set(self.scalars) - {"step", "time"}
         scalars = {name: variable("step", f"steps/{name}", self.steps(name)) for name in names}
         return xarray.Dataset(
-            fields | scalars | {"contact_count": variable("x", "contact_count", self.contact_count)},
+            fields | scalars | {"contact_count": variable(axes, "contact_count", self.contact_count)},
             {
-                "x": variable("x", "x", self.x),
+                **{axis: variable(axis, axis, getattr(self, axis)) for axis in axes},
                 "time": variable("time", "time", self.time),
                 "frame_step": variable("time", "step", self.step),
                 "step": variable("step", "steps/step", self.steps.step),
@@ -195,8 +197,17 @@ class Result:
         )
 
     def frame(self, name: str, index: int) -> np.ndarray:
-        """Field `name` of one stored frame as float64, shape (nx,); negative indices count from the end."""
+        """Field `name` of one stored frame as float64; negative indices count from the end."""
         return self[name][range(len(self.time))[index]].astype(float)
+
+    def section(self, y: float = 0.0) -> Result:
+        """Row of a plane nearest to y [m], as the result of a line contact; an OutputError in a line contact.
+
+        Scalars of the steps remain those of the whole contact.
+        """
+        from ehlpetsc.results.section import Section
+
+        return Section(self, y)
 
     def contacts_at(self, frames: int | slice, nodes: slice = slice(None)) -> np.ndarray:
         """Whether nodes are in contact; an OutputError if the result does not store it."""
@@ -208,7 +219,7 @@ class Result:
         return int(np.argmin(np.abs(stored - value)))
 
     def profile(self, surface: str) -> tuple[np.ndarray, np.ndarray, float] | None:
-        """Roughness of surface "1" or "2" as ``(s, z, speed)``; None if the surface is smooth."""
+        """Roughness of surface "1" or "2" as ``(s, z, speed)``, z of a map (ny, ns); None if it is smooth."""
         name = f"surface/{surface}"
         if name not in self:
             return None

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import contextlib
 import io
+import math
 import time as clock
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 import h5py
 import numpy as np
@@ -27,14 +28,17 @@ from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+
 CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
 CHUNK_STEPS = 512
 FLUSH_SECONDS = 2.0  # between two flushes: a kill can lose the steps of this time and the current one
-ROWS_PER_BLOCK = 1024  # copied at once
+BLOCK_BYTES = 2**23  # copied at once
 
 
 class StoredSurface(NamedTuple):
-    """Profile of a body: points s, heights z [m], speed; attributes; names of depths to create."""
+    """Surface of a body: points s, heights z (ns,), of a map (ny, ns) [m], speed; attributes; depths."""
 
     s: np.ndarray
     z: np.ndarray
@@ -48,7 +52,8 @@ class Layout:
     """Datasets of a result file: nodes x [m], fields of a frame, scalars of the steps, surfaces by side.
 
     `fields` are keys of `quantities.FIELDS`, `scalars` of `STEP_SCALARS`, by default those of every case;
-    `precision` is the type of stored fields.
+    `precision` is the type of stored fields. `y` are the nodes across [m], None in a line contact; `kind` is
+    the kind of contact.
     """
 
     x: np.ndarray
@@ -56,50 +61,77 @@ class Layout:
     scalars: Sequence[str] = field(default_factory=lambda: of_every_case(STEP_SCALARS))
     precision: str = "float64"
     surfaces: dict[str, StoredSurface] = field(default_factory=dict)
+    y: np.ndarray | None = None
+    kind: str = "line"
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        """Nodes [m] by the name of their axis, slowest first."""
+        return {"x": self.x} if self.y is None else {"y": self.y, "x": self.x}
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of a frame."""
+        return tuple(map(len, self.axes.values()))
 
     def create_in(self, file: h5py.File) -> None:
         """Create every dataset, empty along time."""
-        nodes = len(self.x)
-        _add(file, "x", OTHERS["x"], np.asarray(self.x, dtype=float))
-        _add(file, "time", OTHERS["time"], **_growing(CHUNK_STEPS))
+        for axis, nodes in self.axes.items():
+            self._add(file, axis, OTHERS[axis], np.asarray(nodes, dtype=float))
+        self._add(file, "time", OTHERS["time"], **_growing(CHUNK_STEPS))
         for name in FIELDS:
             if name in self.fields:
                 dtype = np.dtype("u1" if FIELDS[name].dtype == "u1" else self.precision)
-                rows = max(1, CHUNK_BYTES // (nodes * dtype.itemsize))
-                # contact is rare, so that flags compress to almost nothing; floats do not compress enough
-                compression = {"compression": "gzip", "compression_opts": 1} if dtype == "u1" else {}
-                _add(file, name, FIELDS[name], dtype=dtype, **_growing(rows, nodes), **compression)
-        _add(file, "step", OTHERS["step"], **_growing(CHUNK_STEPS))
-        _add(file, "contact_count", OTHERS["contact_count"], np.zeros(nodes))
+                rows = max(1, CHUNK_BYTES // (math.prod(self.shape) * dtype.itemsize))
+                options = _growing(rows, *self.shape) | self._compression(dtype)
+                self._add(file, name, FIELDS[name], dtype=dtype, **options)
+        self._add(file, "step", OTHERS["step"], **_growing(CHUNK_STEPS))
+        self._add(file, "contact_count", OTHERS["contact_count"], np.zeros(self.shape))
         for name in sorted(self.scalars, key="time".__ne__):  # first the dimension scale of the others
-            _add(file, f"steps/{name}", STEP_SCALARS[name], **_growing(CHUNK_STEPS))
+            self._add(file, f"steps/{name}", STEP_SCALARS[name], **_growing(CHUNK_STEPS))
         for side, surface in self.surfaces.items():
             group = f"surface/{side}"
-            _add(file, f"{group}/s", OTHERS["surface/s"], surface.s)
-            _add(file, f"{group}/z", OTHERS["surface/z"], surface.z)
+            self._add(file, f"{group}/s", OTHERS["surface/s"], surface.s)
+            self._add(file, f"{group}/z", OTHERS["surface/z"], surface.z)
             for name in surface.depths:
-                _add(file, f"{group}/{name}", OTHERS[f"surface/{name}"], np.zeros(len(surface.s)))
+                self._add(file, f"{group}/{name}", OTHERS[f"surface/{name}"], np.zeros(surface.z.shape))
             file[group].attrs.update({"speed": surface.speed} | surface.statistics)
+
+    def _compression(self, dtype: np.dtype) -> dict[str, object]:
+        """Filters of a field: flags, rare ones, and all of the large frames of a plane are compressed.
+
+        A frame of a plane takes two thirds of its size, and a tenth of the time of its step to write.
+        """
+        if dtype != "u1" and self.y is None:
+            return {}
+        return {"compression": "gzip", "compression_opts": 1, "shuffle": dtype != "u1"}
+
+    def _add(
+        self,
+        file: h5py.File,
+        name: str,
+        quantity: Field,
+        values: np.ndarray | None = None,
+        **options: Any,
+    ) -> None:
+        """Create a dataset with a checksum, unit, name and dimension scales."""
+        options = {"dtype": quantity.dtype, "fletcher32": True} | options
+        dataset = file.create_dataset(name, data=values, **options)
+        dataset.attrs.update({"units": unit_in(quantity, self.kind), "long_name": quantity.long_name})
+        own_name, dims = name.rpartition("/")[2], dims_in(quantity, tuple(self.axes))
+        if dims == (own_name,):
+            dataset.make_scale(own_name)
+            return
+        if len(dims) < dataset.ndim:  # heights of a map
+            dims = ("y", *dims)
+        for axis, dim in enumerate(dims):
+            group = dataset.parent
+            dataset.dims[axis].attach_scale(group[dim] if dim in group else file[dim])
 
 
 def _growing(rows: int, *width: int) -> dict[str, tuple]:
     """Arguments of h5py for a dataset that is empty along time, in chunks of some rows."""
     return {"shape": (0, *width), "maxshape": (None, *width), "chunks": (rows, *width)}
-
-
-def _add(
-    file: h5py.File, name: str, quantity: Field, values: np.ndarray | None = None, **options: Any
-) -> None:
-    """Create a dataset with a checksum, unit, name and dimension scales."""
-    options = {"dtype": quantity.dtype, "fletcher32": True} | options
-    dataset = file.create_dataset(name, data=values, **options)
-    dataset.attrs.update({"units": unit_in(quantity), "long_name": quantity.long_name})
-    own_name, dims = name.rpartition("/")[2], dims_in(quantity)
-    if dims == (own_name,):
-        dataset.make_scale(own_name)
-        return
-    for axis, dim in enumerate(dims):
-        dataset.dims[axis].attach_scale(dataset.parent[dim])
 
 
 class ResultWriter:
@@ -138,7 +170,10 @@ class ResultWriter:
         contact_count: np.ndarray | None = None,
     ) -> None:
         self.path = path
-        self.contact_count = np.zeros(len(layout.x), "i8") + (0 if contact_count is None else contact_count)
+        self._shape = layout.shape
+        self.contact_count = np.zeros(self._shape, "i8")
+        if contact_count is not None:
+            self.contact_count += np.reshape(contact_count, self._shape)
         self._steps: list[dict] = []
         self._frames: list[dict] = []
         self._memory = io.BytesIO()
@@ -147,7 +182,7 @@ class ResultWriter:
                 self._create(self._memory, layout, attributes)
             else:
                 with replacing(path) as target:
-                    check_space(path, sum(24 * len(surface.s) for surface in layout.surfaces.values()))
+                    check_space(path, sum(24 * np.size(surface.z) for surface in layout.surfaces.values()))
                     self._create(target, layout, attributes)
                     if resume_step is not None and path.exists():
                         self._copy_up_to(path, resume_step)
@@ -161,6 +196,7 @@ class ResultWriter:
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
         common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
         # texts of fixed length, which may be overwritten while the file is read
+        common |= {"kind": layout.kind}
         ending = {"status": np.array(b"running", "S16"), "limits": np.array(b"", "S2000")}
         file.attrs.update(attributes | provenance | common | ending)
         layout.create_in(file)
@@ -176,13 +212,13 @@ class ResultWriter:
     ) -> None:
         """Add an accepted time step to the buffer, with its fields if `frame`; write the buffer if it is due.
 
-        Missing scalars become nan, missing counts 0.
+        Fields of a plane may be flat. Missing scalars become nan, missing counts 0.
         """
-        self.contact_count += in_contact
+        self.contact_count += in_contact.reshape(self._shape)
         self._steps.append({**scalars, "step": step, "time": time})
         if frame:
             values = {**fields, "in_contact": in_contact}
-            stored = {name: np.array(values[name]) for name in self._fields}
+            stored = {name: np.array(values[name]).reshape(self._shape) for name in self._fields}
             self._frames.append(stored | {"step": step, "time": time})
         if clock.monotonic() - self._flushed > FLUSH_SECONDS:
             self.flush()
@@ -192,7 +228,7 @@ class ResultWriter:
         file, scalars = self._file, list(self._file["steps"])
         with self._one_sentence():
             if self.path:
-                frame_bytes = 8 * len(self.contact_count) * len(self._fields)
+                frame_bytes = 8 * self.contact_count.size * len(self._fields)
                 check_space(self.path, len(self._frames) * frame_bytes + 8 * len(self._steps) * len(scalars))
             for name in scalars:
                 if name != "time":
@@ -200,7 +236,7 @@ class ResultWriter:
                     extend(file[f"steps/{name}"], [row.get(name, missing) for row in self._steps])
             for name in [*self._fields, "step"]:
                 extend(file[name], [row[name] for row in self._frames])
-            file["contact_count"][:] = self.contact_count
+            file["contact_count"][...] = self.contact_count
             file.flush()
             extend(file["steps/time"], [row["time"] for row in self._steps])
             extend(file["time"], [row["time"] for row in self._frames])
@@ -213,10 +249,13 @@ class ResultWriter:
         with self._one_sentence():
             self._file[f"surface/{side}/{name}"][:] = depth
 
-    def means(self) -> dict[str, float]:
-        """Means over the run, see :func:`ehlpetsc.results.means.means`."""
+    def means(self, case: Case | None = None) -> dict[str, float]:
+        """Means over the run, see :func:`ehlpetsc.results.means.means`; the case by default from its text."""
         self.flush()
-        return means(Result(self._file, self.path or Path()))
+        result = Result(self._file, self.path or Path())
+        if case is not None:  # the text of one with a map takes seconds to read
+            result.case = case
+        return means(result)
 
     def close(self, status: str, limits: Sequence[str] = ()) -> None:
         """Write the remaining rows, the status of the run and its limits, and close."""
@@ -255,13 +294,14 @@ class ResultWriter:
             if fault:
                 raise OutputError(f"{path}: cannot be continued, {fault}; give another -o")
             frames, count = int(np.sum(old.step <= step)), int(np.sum(old.steps("step") <= step))
-            rows = dict.fromkeys([*old.fields, "step", "time"], frames)
-            for name, end in (rows | {f"steps/{name}": count for name in old.scalars}).items():
-                for begin in range(0, end, ROWS_PER_BLOCK):
-                    block = old[name][begin : min(begin + ROWS_PER_BLOCK, end)]
+            ends = dict.fromkeys([*old.fields, "step", "time"], frames)
+            for name, end in (ends | {f"steps/{name}": count for name in old.scalars}).items():
+                rows = max(1, BLOCK_BYTES // (8 * math.prod(old[name].shape[1:])))
+                for begin in range(0, end, rows):
+                    block = old[name][begin : min(begin + rows, end)]
                     check_space(path, block.nbytes)
                     extend(file[name], block)
-            file["contact_count"][:] = self.contact_count
+            file["contact_count"][...] = self.contact_count
             restarts = int(old.attrs["restarts"]) + 1
             file.attrs.update({"restarts": restarts, "history": earlier_runs(old.attrs, step)})
 
@@ -269,7 +309,8 @@ class ResultWriter:
 def _misfit(file: h5py.File, old: Result, step: int) -> str | None:
     """Reason why a file is not an earlier part of the same run; None if it is one."""
     last = max(old.steps("step"), default=step)  # of a run that was stopped before its first step
-    if not np.array_equal(old.x, file["x"][:]):
+    y = file["y"][:] if "y" in file else None
+    if not np.array_equal(old.x, file["x"][:]) or not np.array_equal(old.y, y):
         return "it was computed on another mesh, or for another half-width"
     if {*old.fields, *old.scalars} != {name for name in FIELDS if name in file} | set(file["steps"]):
         return f"it stores other quantities ({', '.join([*old.fields, *old.scalars])})"

@@ -16,14 +16,26 @@ from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, l
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.forecast import START_SECONDS, file_size, lambda_line, steps, surface_lines, work_time
-from ehlpetsc.run.validity import domain_faults, warnings
+from ehlpetsc.run.forecast import (
+    START_SECONDS,
+    file_size,
+    lambda_line,
+    memory,
+    steps,
+    surface_lines,
+    wave_lines,
+    work_time,
+)
+from ehlpetsc.run.validity import domain_faults, load_unit, warnings
 from ehlpetsc.surfaces.contact_roughness import roughness_of
-from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.case.tables.contact import Contact
+    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
+    from ehlpetsc.surfaces.roughness import Roughness
+
+POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
 def main(words: list[str]) -> int:
@@ -44,11 +56,7 @@ def explain(case: Case) -> str:
     sections = [
         [case.title],
         _series(case) if case.series else [],
-        [
-            f"Contact: radius {scales.R:g} m, load {scales.load:g} N/m, reduced modulus "
-            f"{scales.E / 1e9:.4f} GPa",
-            f"Hertz: half-width a = {scales.a * 1e3:.6f} mm, maximum pressure p0 = {scales.p0 / 1e9:.6f} GPa",
-        ],
+        _dry(case, scales),
         _layer(case.contact, scales),
         _default_friction(case),
         _film(case, scales, rough),
@@ -59,6 +67,21 @@ def explain(case: Case) -> str:
         [f"Refused: {line}" for line in domain_faults(case, scales)],
     ]
     return "\n".join(line for section in sections for line in section)
+
+
+def _dry(case: Case, s: Scales) -> list[str]:
+    """Radii, load and the dry contact."""
+    load = f"load {s.load:g} {load_unit(case)}, reduced modulus {s.E / 1e9:.4f} GPa"
+    p0 = f"maximum pressure p0 = {s.p0 / 1e9:.6f} GPa"
+    if case.kind == "point":
+        return [
+            f"Contact: a point, radii {s.R:g} m along, {s.R * s.radius_ratio:g} m across, {load}",
+            f"Hertz: half-widths a = {s.a * 1e3:.6f} mm along, b = {s.b * 1e3:.6f} mm across, {p0}",
+        ]
+    width = 1e3 * s.grid.breadth * s.a
+    strip = [f"Strip: {width:.4g} mm of its length, periodic across"] if case.kind == "strip" else []
+    contact = f"Contact: radius {s.R:g} m, {load}"
+    return [contact, f"Hertz: half-width a = {s.a * 1e3:.6f} mm, {p0}", *strip]
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:
@@ -81,16 +104,17 @@ def _default_friction(case: Case) -> list[str]:
     return [f"Solids: coefficient of friction {default}, where they touch"]
 
 
-def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
+def _film(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
+    formulas = POINT_FORMULAS if case.kind == "point" else "Moes"
     oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
         *oil,
         f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
-        f"Expected smooth film (Moes, and the density under p0): central {central * 1e6:.3g} um, "
+        f"Expected smooth film ({formulas}, and the density under p0): central {central * 1e6:.3g} um, "
         f"minimum {minimum * 1e6:.3g} um",
         *lambda_line(case, s, rough),
     ]
@@ -133,15 +157,30 @@ def _variable(case: Case, s: Scales) -> list[str]:
     ]
 
 
-def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
+def _size(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
     seconds, passes = START_SECONDS + work_time(case, s, rough), case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
+    nodes, spacing = (
+        " x ".join(f(v) for v in vs[::-1]) for f, vs in ((str, s.grid.shape), (_um, s.grid.spacings))
+    )
+    across = ""
+    if case.kind != "line":
+        edge, unit = 0.5 * s.grid.breadth, "a"  # of a strip, half of its period
+        if case.kind == "point":
+            edge, unit = s.grid.axes[0][-1] * s.a / s.b, "b"
+        across = f" along, {-edge:g} to {edge:g} {unit} across"
     return [
-        f"Mesh: {s.grid.n} nodes from {s.x[0]:g} to {s.x[-1]:g} a, spacing {s.dx * 1e6:.3f} um; "
+        f"Mesh: {nodes} nodes from {s.x[0]:g} to {s.x[-1]:g} a{across}, spacing {spacing} um; "
         f"{2 * s.grid.n + 1} unknowns",
+        *wave_lines(case, s),
         f"Expected run time on one rank: about {duration(seconds)}; "
-        f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}",
+        f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}"
+        f"{f'; memory: about {1e-6 * memory(s):.0f} MB' if across else ''}",
     ]
+
+
+def _um(length: float) -> str:
+    return f"{1e6 * length:.3f}"
 
 
 def _series(case: Case) -> list[str]:
@@ -154,7 +193,7 @@ def _series(case: Case) -> list[str]:
     seconds, size = START_SECONDS, 0.0
     for _, member in members(case):
         scales = Scales.of(member)
-        seconds += work_time(member, scales, Roughness.of(member, scales))
+        seconds += work_time(member, scales, roughness_of(member, scales))
         size += file_size(member, scales)
     return [
         f"A series: {values}; below, the base case.",

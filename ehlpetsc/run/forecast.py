@@ -14,6 +14,7 @@ from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
 
@@ -23,30 +24,58 @@ START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
 SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
+LINE = "line"
+# of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
+PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.15, 0.3, 0.5
+# its growth with the nodes, and what does not grow [s]; steady start in steps
+GROWTH, STEP_SECONDS, PLANE_START = 1.15, 0.03, 10
+PLANE_MEMORY, NODE_MEMORY = 240e6, 9e3  # at the start and for each node [bytes]
+COMPRESSED = 0.6  # of the size of the fields
+# keys of the waves of a surface
+WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
 
 
-def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
+def lambda_ratio(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
     """Expected smooth minimum film over the combined root mean square height."""
     film, rq = film_formulas.smooth_films(s, case.fluid, s.conditions)[1], combined_rq(case, rough)
     return film / rq if rq > 0 else math.inf
 
 
-def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
+def work_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
     """Wall clock time of the iterations [s]."""
+    if case.kind != LINE:
+        return _plane_time(case, s, rough)
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
     each = ITERATION_SECONDS + NODE_SECONDS * s.grid.n
     return passes * (iterations(case, s, rough) + solves) * each
 
 
-def iterations(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Expected Newton iterations of a run."""
+def _plane_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+    """Wall clock time of the steps of a plane [s]."""
     fraction = _rough_fraction(case, s, rough)
-    mixed = rough and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
+    each = (1.0 - fraction) * SMOOTH_SECONDS
+    each += fraction * (MIXED_SECONDS if _is_mixed(case, s, rough) else FILM_SECONDS)
+    count = (steps(s) * case.time.passes if case.time else 0) + PLANE_START
+    return count * (STEP_SECONDS + each * (s.grid.n / PLANE_NODES) ** GROWTH)
+
+
+def memory(s: Scales) -> float:
+    """Expected memory of a run of a plane on one rank [bytes]."""
+    return PLANE_MEMORY + NODE_MEMORY * s.grid.n
+
+
+def _is_mixed(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> bool:
+    return bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
+
+
+def iterations(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+    """Expected Newton iterations of a run of a line contact."""
+    fraction, mixed = _rough_fraction(case, s, rough), _is_mixed(case, s, rough)
     each = (1.0 - fraction) * SMOOTH_ITERATIONS + fraction * (MIXED_ITERATIONS if mixed else FILM_ITERATIONS)
     return STEADY_ITERATIONS + (steps(s) if case.time else 0) * each
 
 
-def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
+def _rough_fraction(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
     """Fraction of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
@@ -63,24 +92,46 @@ def steps(s: Scales) -> int:
 
 
 def file_size(case: Case, s: Scales) -> float:
-    """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed."""
+    """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed.
+
+    Fields of a plane are compressed too.
+    """
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
     frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.grid.n * value))
     stored = set(case.output.fields) & set(of_case(FIELDS, case))
     fields = sum(FIELDS[name].dtype == "f8" for name in stored)
     scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
-    return fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
+    share = 1.0 if case.kind == LINE else COMPRESSED
+    return share * fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
 
 
-def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
+def surface_lines(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
     """Both surfaces: size, roughness and travel, a line each."""
     profiles = {side: rough and rough.side(side) for side in ("1", "2")}
     lines = {side: _profile(case, s, one) if one else ["smooth"] for side, one in profiles.items()}
     return [f"Surface {side}: {line}" for side in lines for line in lines[side]]
 
 
-def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
+def wave_lines(case: Case, s: Scales) -> list[str]:
+    """Nodes on the waves that a case prescribes for its surfaces, on a plane; a line for each surface."""
+    if case.kind == LINE:
+        return []
+    (dy, dx), lines = s.grid.spacings, []
+    for side in ("1", "2"):
+        spec = case.surface.side(side)
+        table = spec and (spec.synthetic or spec)
+        lengths = {key: getattr(table, key, None) for key in WAVES}
+        nodes = [
+            f"{key} of {1e6 * length:.4g} um: {length / (dy if key.endswith('across') else dx):.1f}"
+            for key, length in lengths.items()
+            if length
+        ]
+        lines += [f"Surface {side}: nodes a wave: {', '.join(nodes)}"] * bool(nodes)
+    return lines
+
+
+def lambda_line(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
     """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
     rq = combined_rq(case, rough)
     if case.fluid is None or rq <= 0.0:
@@ -94,18 +145,16 @@ def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     ]
 
 
-def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
-    """Size, roughness and travel of one profile, a line each."""
+def _profile(case: Case, s: Scales, profile: Profile | MovingTopography) -> list[str]:
+    """Size, roughness and travel of one surface, a line each."""
     from ehlpetsc.surfaces.profile_checks import entry_times
 
     samples, times = profile.given, entry_times(profile, s)
-    lines = [
-        f"Ra {profile.ra * 1e6:.4f} um, Rq {profile.rq * 1e6:.4f} um, Rsk {profile.rsk:.3f}",
-        *samples.notes,
-    ]
+    (mean, ra), (rms, rq), (skewness, rsk) = profile.statistics.items()  # Ra, Rq, Rsk or Sa, Sq, Ssk
+    heights = f"{mean.capitalize()} {ra * 1e6:.4f} um, {rms.capitalize()} {rq * 1e6:.4f} um"
+    lines = [f"{heights}, {skewness.capitalize()} {rsk:.3f}"]
+    lines += [samples.extent_text] * bool(samples.extent_text) + list(samples.notes)
     if samples.measured:
-        points = f"{samples.X.size} points {1e6 * samples.spacing:.4g} um apart"
-        lines.insert(1, f"{1e3 * samples.length:.4g} mm long, {points}")
         if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")
         if case.time is not None and times:
@@ -116,7 +165,7 @@ def _profile(case: Case, s: Scales, profile: Profile) -> list[str]:
     return lines
 
 
-def _part_in_contact(case: Case, s: Scales, profile: Profile, reaches: float) -> list[str]:
+def _part_in_contact(case: Case, s: Scales, profile: Profile | MovingTopography, reaches: float) -> list[str]:
     """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
     length, slower = profile.given.length, s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower
@@ -129,13 +178,15 @@ def _part_in_contact(case: Case, s: Scales, profile: Profile, reaches: float) ->
     return [f"{part}; the whole profile needs time.travel = {math.ceil(needed)}"]
 
 
-def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:
+def banner(case: Case, scales: Scales, rough: Roughness | ArealRoughness | None, ranks: int) -> list[str]:
     """Heading of a run in a few lines: title, size, surfaces."""
     length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
+    nodes, size = " x ".join(map(str, scales.grid.shape[::-1])), f"a = {1e3 * scales.a:.4f} mm"
+    size += f", b = {1e3 * scales.b:.4f} mm" * math.isfinite(scales.b)
     return [
         f"ehlpetsc {__version__}: {case.title}",
-        f"{scales.grid.n} nodes, {2 * scales.grid.n + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
-        f"a = {1e3 * scales.a:.4f} mm, p0 = {1e-9 * scales.p0:.4f} GPa",
+        f"{nodes} nodes, {2 * scales.grid.n + 1} unknowns, {length}; {ranks} rank{'s' * (ranks > 1)}; "
+        f"{size}, p0 = {1e-9 * scales.p0:.4f} GPa",
         *(surface_lines(case, scales, rough) if rough else []),
         *lambda_line(case, scales, rough),
     ]

@@ -216,7 +216,7 @@ class Simulation:
             No such time step is possible, or the simulation is at its end.
         """
         self._check_time_step(dt)
-        started = clock.monotonic()
+        started, gmres = clock.monotonic(), self._linear_iterations
         with self.options:
             try:
                 state = self._start(watch) if self.solution is None else self._step(dt, watch)
@@ -226,9 +226,14 @@ class Simulation:
                 raise NotConverged(str(error), self.state) from error
         problem, effects = self.stepper.problem, self.stepper.effects
         scalars, fields, in_contact = diagnostics(self.scene, problem, effects, state, started)
-        scalars |= {"step": state.step, "time": state.time}
+        scalars |= {"step": state.step, "time": state.time, "gmres": self._linear_iterations - gmres}
         self.state = AcceptedState(scalars, fields, in_contact, state)
         return self.state
+
+    @property
+    def _linear_iterations(self) -> int:
+        """GMRES iterations so far on the mesh of the case; the paper's sweeps have none."""
+        return getattr(self.stepper.solver, "linear_iterations", 0)
 
     def _check_time_step(self, dt: float | None) -> None:
         """Refuse an impossible length of a time step [s], and a step after the end."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM
+from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM, STEP_SCALARS, unit_in
 from ehlpetsc.case.checking import attribute
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
@@ -22,12 +22,14 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.flash_temperature import expected_friction
 from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.contact_roughness import roughness_of
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.case.tables.contact import Contact, Fluid
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
+    from ehlpetsc.surfaces.roughness import Roughness
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
 PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
@@ -103,7 +105,7 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
 
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
-    profiles = Roughness.of(case, scales)
+    profiles = roughness_of(case, scales)
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case.fluid), *domain_warnings(case, scales)]
     if profiles:
         from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
@@ -132,7 +134,7 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
         yield (
             f"Hertz' pressure p0 = {1e-9 * scales.p0:.3g} GPa: EHL contacts have "
             f"{1e-9 * LOW_PRESSURE:g} to {1e-9 * HIGH_PRESSURE:g} GPa; "
-            f"radius = {scales.R:g} m, load = {scales.load:g} N/m?"
+            f"radius = {scales.R:g} m, load = {scales.load:g} {load_unit(case)}?"
         )
     film = expected_film(case, scales) * scales.h if case.fluid else 0.0
     if film > MAX_EHL_FILM * scales.a:
@@ -143,12 +145,18 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
         )
 
 
+def load_unit(case: Case) -> str:
+    """Unit of the load of a case."""
+    return unit_in(STEP_SCALARS["load"], case.kind)
+
+
 def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
     friction = case.contact.boundary_friction if case.motion else None
     if case.motion and case.fluid:
         film = expected_film(case, scales) * scales.h
-        friction = expected_friction(case.fluid, scales.load, scales.a, scales.u1 - scales.u2, film)
+        sliding = scales.u1 - scales.u2
+        friction = expected_friction(case.fluid, scales.load_per_length, scales.a, sliding, film)
     return list(isothermal(case, scales, friction))
 
 
@@ -164,20 +172,25 @@ def _oil_warnings(fluid: Fluid | None) -> Iterator[str]:
         yield f'{", ".join(unused)}: not used by law = "{fluid.law}", density = "{fluid.density}"'
 
 
-def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
-    """Profiles whose heights are mostly a straight line, a tilt of the measurement."""
+def _tilt_warnings(case: Case, profiles: Roughness | ArealRoughness) -> Iterator[str]:
+    """Profiles and maps whose heights are mostly a straight line or plane, a tilt of the measurement."""
     for side in ("1", "2"):
         profile, spec = profiles.side(side), case.surface.side(side)
         if not profile or not profile.given.measured or spec.level:
             continue
-        X, z = profile.X, profile.heights
-        slope = np.polyfit(X - X.mean(), z, 1)[0]
-        fraction = slope**2 * X.var() / z.var() if z.any() else 0.0
+        z = np.atleast_2d(profile.given.z)
+        axes = [(profile.X, z.mean(axis=0))]
+        if len(z) > 1:
+            axes.append((profile.given.Y, z.mean(axis=1)))
+        slopes = [np.polyfit(X - X.mean(), heights, 1)[0] for X, heights in axes]
+        variance = sum(slope**2 * X.var() for slope, (X, _) in zip(slopes, axes, strict=True))
+        fraction = variance / z.var() if z.any() else 0.0
         if fraction > MAX_TILT_VARIANCE:
+            rises = [(abs(slope) * np.ptp(X), np.ptp(X)) for slope, (X, _) in zip(slopes, axes, strict=True)]
+            text = " and ".join(f"{1e6 * rise:.3g} um over {1e3 * length:.3g} mm" for rise, length in rises)
             yield (
-                f"surface.{side}: {100 * fraction:.0f} % of the height variance is a straight line "
-                f"({1e6 * abs(slope) * (X[-1] - X[0]):.3g} um over {1e3 * (X[-1] - X[0]):.3g} mm); "
-                "level = true takes it off"
+                f"surface.{side}: {100 * fraction:.0f} % of the height variance is a "
+                f"{'plane' if len(z) > 1 else 'straight line'} ({text}); level = true takes it off"
             )
 
 

@@ -32,7 +32,7 @@ class MovingTopography(MovingSurface):
     def __init__(self, topography: Topography, passage: Passage, y: np.ndarray, dy: float) -> None:
         super().__init__(passage)
         self.given, self.X, self.repeats = topography, topography.X, topography.repeats
-        self.rq, self._dy = topography.sq, dy
+        self.rq = topography.sq
         faces = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
         rows = topography.row_means(topography.middle + self._sign * faces)
         self._rows, self._spline = len(y), ContinuedSpline(topography.X, rows, topography.along)
@@ -60,9 +60,14 @@ class MovingTopography(MovingSurface):
             heights = self._entry_factor(X) * heights
         return np.broadcast_to(heights, (self._rows, len(s)))
 
-    def unresolved_variance(self, dx: float) -> float:
-        """Share of the height variance in wavelengths that a mesh of this spacing along x [m] does not resolve."""
-        return self.given.unresolved_variance(dx, self._dy)
+    def unresolved_variance(self, dx: float, dy: float) -> float:
+        """Share of the height variance in wavelengths that a mesh of these spacings [m] does not resolve."""
+        return self.given.unresolved_variance(dx, dy)
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        """Sa and Sq [m], Ssk of the whole map."""
+        return self.given.statistics
 
     @cached_property
     def s(self) -> np.ndarray:

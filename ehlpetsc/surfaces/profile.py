@@ -50,6 +50,11 @@ class Profile(MovingSurface):
         mean = self._spline.means(X + self._begin)
         return self._entry_factor(0.5 * (X[1:] + X[:-1])) * mean if self.is_moving else mean
 
+    @property
+    def statistics(self) -> dict[str, float]:
+        """Ra and Rq [m], Rsk of the samples."""
+        return {"ra": self.ra, "rq": self.rq, "rsk": self.rsk}
+
     @cached_property
     def s(self) -> np.ndarray:
         """Body points [m] that enter during the run, at least two, with the spacing of the samples."""

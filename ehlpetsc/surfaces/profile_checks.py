@@ -11,6 +11,7 @@ from ehlpetsc.surfaces.profile import WAVE_NODES
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
     from ehlpetsc.surfaces.profile import Profile
     from ehlpetsc.surfaces.roughness import Roughness
     from ehlpetsc.surfaces.samples import Samples
@@ -51,30 +52,42 @@ def _um(length: float) -> str:
 MAX_UNRESOLVED = 0.01  # of the height variance: more in unresolved wavelengths causes a warning
 
 
-def mesh_warnings(rough: Roughness | None, scales: Scales, limit: float = MAX_UNRESOLVED) -> list[str]:
-    """Messages on profiles of which the mesh does not resolve more than a share of the height variance."""
-    notes, shortest = [], 1e6 * WAVE_NODES * scales.dx
+def mesh_warnings(
+    rough: Roughness | ArealRoughness | None, scales: Scales, limit: float = MAX_UNRESOLVED
+) -> list[str]:
+    """Messages on surfaces of which the mesh does not resolve more than a share of the height variance."""
+    notes, spacings = [], scales.grid.spacings[::-1]
+    shortest = " x ".join(f"{1e6 * WAVE_NODES * spacing:.2f}" for spacing in dict.fromkeys(spacings))
     for side, profile in (rough.sides if rough else {}).items():
-        fraction = profile.unresolved_variance(scales.dx)
+        fraction = profile.unresolved_variance(*spacings)
         if fraction > limit:
+            kind = "map" if len(spacings) > 1 else "profile"
             notes.append(
-                f"surface.{side}: the mesh is too coarse for the profile: {100 * fraction:.1f} % of its "
-                f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest:.2f} um); "
+                f"surface.{side}: the mesh is too coarse for the {kind}: {100 * fraction:.1f} % of its "
+                f"height variance lies in wavelengths under {WAVE_NODES} nodes ({shortest} um); "
                 f"points_per_half_width = {_needed_points(profile, scales, limit)} brings that under "
                 f"{100 * limit:.0f} %"
             )
     return notes
 
 
-def _needed_points(profile: Profile, scales: Scales, limit: float) -> int:
-    """Nodes per half-width that leave at most a share `limit` of the height variance unresolved."""
-    points = scales.a / scales.dx
-    while profile.unresolved_variance(scales.a / points) > limit:
-        points *= 1.1
-    return int(np.ceil(points))
+def _needed_points(profile: Profile | MovingTopography, scales: Scales, limit: float) -> int | list[int]:
+    """Nodes per half-width that leave at most a share `limit` of the height variance unresolved.
+
+    Two, along and across, where the spacings of a plane differ; both are then reduced by one factor.
+    """
+    spacings, half_widths = scales.grid.spacings[::-1], (scales.a, scales.b)
+    factor = 1.0
+    while profile.unresolved_variance(*(spacing / factor for spacing in spacings)) > limit:
+        factor *= 1.1
+    needed = [
+        int(np.ceil(factor * (size if np.isfinite(size) else scales.a) / spacing))
+        for size, spacing in zip(half_widths, spacings, strict=False)
+    ]
+    return needed[0] if np.ptp(spacings) < 1e-9 * spacings[0] else needed
 
 
-def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
+def entry_times(profile: Profile | MovingTopography, scales: Scales) -> tuple[float, float] | None:
     """Travel of the faster surface [half-widths] when a profile reaches and fills the contact.
 
     Its first point is then at the near edge of the Hertz contact; its full heights, ramp included, at the far
@@ -91,7 +104,7 @@ def entry_times(profile: Profile, scales: Scales) -> tuple[float, float] | None:
     return edge * slower, (edge + 2.0 + profile.ramp / scales.a) * slower
 
 
-def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[str]:
+def entry_warnings(case: Case, scales: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
     """Warnings of profiles that do not fill the contact before the end of the run, one line each."""
     notes = []
     for side, profile in (rough.sides if rough else {}).items():

@@ -45,6 +45,12 @@ class Samples:
         return self.length / (self.X.size - 1)
 
     @property
+    def extent_text(self) -> str:
+        """Length and points for messages; "" of a synthetic profile."""
+        points = f"{self.X.size} points {1e6 * self.spacing:.4g} um apart"
+        return f"{1e3 * self.length:.4g} mm long, {points}" if self.measured else ""
+
+    @property
     def rms_slope(self) -> float:
         """Root mean square slope between neighbouring samples."""
         return float(np.sqrt(np.mean((np.diff(self.z) / np.diff(self.X)) ** 2)))

@@ -86,6 +86,23 @@ class Topography:
         """Root mean square height [m]."""
         return float(self._once.std())
 
+    @property
+    def extent_text(self) -> str:
+        """Size and points for messages; "" of a synthetic map."""
+        if self.is_ridge:
+            points = f"{1e3 * self.length:.4g} mm long, {len(self.X)} points {1e6 * self.dx:.4g} um apart; "
+            return f"{points if self.measured else ''}a profile: a ridge across the width"
+        width, steps = 1e3 * float(self.Y[-1] - self.Y[0]), f"{1e6 * self.dx:.4g} x {1e6 * self.dy:.4g}"
+        points = f"{len(self.X)} x {len(self.Y)} points {steps} um apart"
+        return f"{1e3 * self.length:.4g} x {width:.4g} mm, {points}" if self.measured else ""
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        """Sa and Sq [m], Ssk, see :class:`.ArealParameters`."""
+        z, sq = self._once - self._once.mean(), self.sq
+        skewness = float(((z / sq) ** 3).mean()) if sq > 0 else 0.0
+        return {"sa": float(np.abs(z).mean()), "sq": sq, "ssk": skewness}
+
     @cached_property
     def parameters(self) -> ArealParameters:
         """Roughness parameters of the map."""
@@ -122,6 +139,14 @@ class Topography:
 
     def unresolved_variance(self, dx: float, dy: float) -> float:
         """Fraction of the height variance in waves shorter than `WAVE_NODES` spacings of the mesh [m]."""
+        power, in_y, in_x = self._spectrum
+        short = np.logical_or.outer(in_y * WAVE_NODES * dy > 1.0, in_x * WAVE_NODES * dx > 1.0)
+        total = power.sum()
+        return float(power[short].sum() / total) if total > 0 else 0.0
+
+    @cached_property
+    def _spectrum(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Power of the heights and its wave numbers across and along [1/m]."""
         from scipy.fft import dctn
 
         z = self.z
@@ -132,6 +157,4 @@ class Topography:
         power[0, 0] = 0.0
         lengths = (2 * max(n - 1, 1) * step for n, step in zip(z.shape, (self.dy, self.dx), strict=True))
         in_y, in_x = (np.arange(n) / length for n, length in zip(z.shape, lengths, strict=True))
-        short = np.logical_or.outer(in_y * WAVE_NODES * dy > 1.0, in_x * WAVE_NODES * dx > 1.0)
-        total = power.sum()
-        return float(power[short].sum() / total) if total > 0 else 0.0
+        return power, in_y, in_x

@@ -19,6 +19,9 @@ OUTPUT_KEYS = {
     "every": Key("steps between stored fields", "", 1, 10**9, kind=int, default=1),
     "fields": Key("stored fields", choices=FIELDS, many="list", default=STORED),
     "precision": Key("of the stored fields", choices=("float64", "float32"), default="float64"),
+    "xdmf": Key(
+        "of a point or strip: RESULT.xdmf for ParaView, beside the result file", kind=bool, default=False
+    ),
     "thin_film": Key("mixed contact: films below it count as thin", "boundary films", 1, 1000, default=2.0),
     "checkpoint": Key("time between restart files", "minutes", gt=0, le=1e5, default=10.0),
 }

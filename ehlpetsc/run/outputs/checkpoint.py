@@ -44,11 +44,17 @@ class Checkpoint(NamedTuple):
     totals: dict[str, float]
 
 
+def axes_of(scales: Scales) -> dict[str, np.ndarray]:
+    """Nodes in half-widths by the name of their axis."""
+    return dict(zip("xy", reversed(scales.grid.axes), strict=False))
+
+
 def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
     """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
     case, scales, state = simulation.case, simulation.scales, simulation.solution
     smooth_q, smooth_w = simulation.stepper.baseline
-    values = {"x": scales.x * scales.a, "contact_count": contact_count}
+    values = {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
+    values |= {"contact_count": contact_count}
     values |= {"smooth_q": smooth_q, "smooth_w": smooth_w, "pass_number": simulation.pass_number}
     values |= {"case": case.text, "contact_law": case.contact.law}
     values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
@@ -103,11 +109,14 @@ def _checkpoint(values: dict[str, Any]) -> Checkpoint:
 
 def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -> str | None:
     """Reason why a file does not fit the case; None if it fits."""
-    x, now = values["x"] / values["a"], scales.x
-    if len(x) != len(now):
-        return f"has {len(x)} nodes, the case {len(now)}; [mesh] must be as it was"
-    if np.abs(x - now).max() > NODE_TOLERANCE * np.ptp(now):
-        return f"begins at {x[0]:.6g} half-widths, the case at {now[0]:.6g}; [mesh] must be as it was"
+    for axis, now in axes_of(scales).items():
+        x, where = values.get(axis, np.zeros(1)) / values["a"], " across" if axis == "y" else ""
+        if len(x) != len(now):
+            return f"has {len(x)} nodes{where}, the case {len(now)}; [mesh] must be as it was"
+        if np.abs(x - now).max() > NODE_TOLERANCE * np.ptp(now):
+            return (
+                f"begins at {x[0]:.6g} half-widths{where}, the case at {now[0]:.6g}; [mesh] must be as it was"
+            )
     if ("fluid" in earlier) != (case.fluid is not None) or values["contact_law"] != case.contact.law:
         return "of another contact model, or of oil where there is none now; both must be as they were"
     if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):

@@ -19,6 +19,7 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
+from ehlpetsc.results.xdmf import write_xdmf
 from ehlpetsc.run.outputs.checkpoint import load, save
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.validity import limits
@@ -26,8 +27,6 @@ from ehlpetsc.stepping.time_stepping import on_level
 
 if TYPE_CHECKING:
     from ehlpetsc.run.simulation import AcceptedState, Simulation
-
-STATISTICS = ("ra", "rq", "rsk")  # of a profile, stored as attributes
 
 
 class Recorder:
@@ -133,7 +132,7 @@ class Recorder:
     def _create(self, step: int | None, count: np.ndarray | None) -> None:
         case, scales = self.simulation.case, self.simulation.scales
         stored = of_case(FIELDS, case)
-        attributes = {name: getattr(scales, name) for name in ("a", "p0", "u1", "u2")}
+        attributes = {name: getattr(scales, name) for name in ("a", "b", "p0", "u1", "u2")}
         attributes |= {
             "title": case.title,
             "case": case.text,
@@ -149,6 +148,8 @@ class Recorder:
             scalars=of_case(STEP_SCALARS, case),
             precision=case.output.precision,
             surfaces=self._surfaces,
+            y=None if case.kind == "line" else scales.grid.axes[0] * scales.a,
+            kind=case.kind,
         )
         self._writer = ResultWriter(self.output, layout, attributes, resume_step=step, contact_count=count)
 
@@ -166,11 +167,13 @@ class Recorder:
                 for side, depth in zip(("1", "2"), pair, strict=True):
                     if depth is not None:
                         self._writer.put_depth(side, name, depth)
-        self.totals = Totals(self.totals.values, self._writer.means())
+        self.totals = Totals(self.totals.values, self._writer.means(simulation.case))
         figures = self.totals.values | self.totals.means
         friction = max(self._boundary_friction, simulation.case.contact.boundary_friction)
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures, friction)
         self._writer.close(status.words, self.limits)
+        if simulation.case.output.xdmf and self.output:
+            write_xdmf(self.output)
 
     def _save(self) -> None:
         self._writer.flush()
@@ -192,11 +195,11 @@ def stored_surfaces(simulation: Simulation) -> dict[str, StoredSurface]:
     for side, speed, extent in zip("12", (scales.u1, scales.u2), simulation.operation.extent(), strict=True):
         profile = rough and rough.side(side)
         if profile:
-            statistics = {name: getattr(profile, name) for name in STATISTICS}
-            surfaces[side] = StoredSurface(profile.s, profile.z, speed, statistics, depths)
+            surfaces[side] = StoredSurface(profile.s, profile.z, speed, profile.statistics, depths)
         elif depths:
             ends = scales.x[[0, -1]] * scales.a
             s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.dx)
-            flat = dict.fromkeys(STATISTICS, 0.0)
-            surfaces[side] = StoredSurface(s, np.zeros_like(s), speed, flat, depths)
+            smooth = np.zeros((*scales.grid.shape[:-1], len(s)))
+            flat = dict.fromkeys(("ra", "rq", "rsk") if smooth.ndim == 1 else ("sa", "sq", "ssk"), 0.0)
+            surfaces[side] = StoredSurface(s, smooth, speed, flat, depths)
     return surfaces

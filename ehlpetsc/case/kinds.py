@@ -1,0 +1,64 @@
+"""Keys that only some kinds of contact have: faults of the others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ehlpetsc.base.declarations import Values
+from ehlpetsc.case.checking import Fault, Tables, is_point
+from ehlpetsc.case.messages import show
+from ehlpetsc.case.tables.motion import MAX_NODES
+from ehlpetsc.case.tables.surface import areal_keys
+from ehlpetsc.physics.geometry import GEOMETRIES
+from ehlpetsc.physics.scales import reduced_modulus
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+
+LINE = "line"  # the kind of contact whose surfaces are profiles
+VARIABLE = ("gears", "operation")  # tables
+
+
+def variable_point(data: Tables) -> list[Fault]:
+    """Fault of a point contact whose load, radius or speeds change with time."""
+    table = next((name for name in VARIABLE if name in data), None)
+    if table is None or not is_point(data):
+        return []
+    given = f"contact.radius = {show(data['contact']['radius'])}"
+    text = (
+        f"{given}: a point contact has no [{table}]; leave the radius out (mesh.width: a strip), or [{table}]"
+    )
+    return [Fault("contact.radius", text)]
+
+
+def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+    """Faults of keys that a line contact, or a plane, does not have; `surfaces` by side."""
+    if case.kind == LINE:
+        reason = "of maps, and a line contact has profiles; leave it out"
+        keys = [
+            f"surface.{side}.{key}" for side, spec in surfaces.items() if spec for key in areal_keys(spec)
+        ]
+        faults = [Fault("", f"{key}: {reason}") for key in keys]
+        file = "output.xdmf = true: of points and strips, and a line contact has no plane; leave it out"
+        return faults + [Fault("output.xdmf", file)] * case.output.xdmf
+    faults = []
+    if "near_field" in data["mesh"]:
+        text = (
+            f"mesh.near_field = {case.mesh.near_field}: of line contacts, not of a {case.kind}; leave it out"
+        )
+        faults.append(Fault("mesh.near_field", text))
+    if case.life:
+        faults.append(Fault("life", f"[life]: of line contacts, not of a {case.kind}; leave it out"))
+    return faults + _size_faults(case)
+
+
+def _size_faults(case: Case) -> list[Fault]:
+    """Fault of a plane with too many nodes."""
+    geometry, contact = GEOMETRIES[case.kind], case.contact
+    dry = geometry.dry(contact, reduced_modulus(contact.youngs_modulus, contact.poisson_ratio))
+    rows = geometry.rows(case.mesh, dry)
+    if rows * case.mesh.nodes <= MAX_NODES:
+        return []
+    size = f"{case.mesh.nodes} x {rows} nodes; allowed: {MAX_NODES} in all"
+    cure = "a smaller mesh.width or mesh.points_per_half_width (two: along and across) has fewer"
+    return [Fault("mesh", f"mesh: {size}; {cure}")]

@@ -1,0 +1,166 @@
+"""Results of points and strips: files, sections, comparison, restart, XDMF."""
+
+import h5py
+import numpy as np
+import pytest
+
+import ehlpetsc
+from ehlpetsc.analysis import compare, summary
+from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.run.outputs.recorder import Recorder
+
+BALL = {
+    "title": "ball",
+    "contact": {"radius": [0.0125, 0.0125], "load": 20.0, "material": "100Cr6", "model": "mixed"},
+    "fluid": {"viscosity": 0.04, "law": "roelands", "pressure_viscosity": 22e-9, "density": "incompressible"},
+    "motion": {"entrainment_speed": 0.5, "slide_roll_ratio": 0.3},
+    "mesh": {"inlet": -1.75, "outlet": 1.25, "points_per_half_width": 16, "width": 3.0},
+    "surface": {"1": {"synthetic": {"kind": "sine", "amplitude": 2e-8, "wavelength": 8e-5}}},
+    "time": {"travel": 0.1},
+}
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    path = tmp_path_factory.mktemp("plane") / "ball.h5"
+    ehlpetsc.solve(BALL | {"output": {"xdmf": True}}, output=path)
+    return path
+
+
+def test_point_has_fields_over_time_y_and_x(path):
+    with h5py.File(path) as file:
+        shape = file["y"].size, file["x"].size
+        assert file["pressure"].shape == (file["time"].size, *shape) == (5, 49, 49)
+        assert [dim.keys()[0] for dim in file["pressure"].dims] == ["time", "y", "x"]
+        assert [dim.keys()[0] for dim in file["contact_count"].dims] == ["y", "x"]
+        assert file["surface/1/z"].shape == (49, file["surface/1/s"].size)
+        assert file.attrs["kind"] == "point" and file.attrs["b"] == file.attrs["a"]
+        pressure, cell = file["pressure"][-1], np.diff(file["x"][:2]) * np.diff(file["y"][:2])
+        assert pressure.sum() * cell == pytest.approx(20.0, rel=1e-9)
+        assert np.allclose(pressure, pressure[::-1], rtol=1e-6, atol=1.0)  # symmetric about y = 0
+        units = {
+            name: file[f"steps/{name}"].attrs["units"] for name in ("load", "contact_length", "friction")
+        }
+        assert units == {"load": "N", "contact_length": "m^2", "friction": "N"}
+        assert (file["steps/gmres"][:] >= file["steps/newton"][:]).all()
+        assert file["pressure"].id.get_storage_size() < 0.9 * file["pressure"].size * 8
+
+
+def test_integrals_of_a_strip_are_per_metre():
+    mesh = BALL["mesh"] | {"width": 0.5}
+    strip = {"radius": 0.0125, "load": 5e4}
+    tables = {key: value for key, value in BALL.items() if key not in ("time", "surface")}
+    result = ehlpetsc.solve(tables | {"mesh": mesh, "contact": BALL["contact"] | strip})
+    assert result.attrs["kind"] == "strip" and np.isinf(result.attrs["b"])
+    assert result.unit("steps/load") == "N/m"
+    assert result.steps.load[0] == pytest.approx(5e4, rel=1e-9)
+
+
+def test_frames_in_single_precision_are_half_as_large(path, tmp_path):
+    small = ehlpetsc.solve(BALL | {"output": {"precision": "float32"}}, output=tmp_path / "s.h5")
+    with ehlpetsc.read_result(path) as result:
+        assert small.pressure == pytest.approx(result.pressure, rel=1e-6)
+        sizes = [one["pressure"].id.get_storage_size() for one in (small, result)]
+    assert sizes[0] < 0.6 * sizes[1]
+
+
+def test_section_is_the_result_of_a_line(path):
+    with ehlpetsc.read_result(path) as result:
+        row = result.section(0.3 * result.attrs["b"])
+        k = int(np.argmin(np.abs(result.y - row.place)))
+        assert abs(row.place - 0.3 * result.attrs["b"]) <= 0.5 * (result.y[1] - result.y[0])
+        assert row.y is None and row.attrs["kind"] == "line"
+        assert np.array_equal(row.pressure, result.pressure[:, k])
+        assert np.array_equal(row.frame("film_thickness", -1), result.film_thickness[-1, k])
+        assert np.array_equal(row["pressure"][1:3, 5], result.pressure[1:3, k, 5])
+        assert row.profile("1")[1].shape == row.profile("1")[0].shape
+        assert row.to_xarray().pressure.dims == ("time", "x")
+        assert len(row.plot().axes) == 2
+        with pytest.raises(OutputError, match="section: y = 1 m; allowed: on the mesh"):
+            result.section(1.0)
+        with pytest.raises(OutputError, match="a line contact, which has no sections"):
+            row.section()
+
+
+def test_xarray_has_three_dimensions(path):
+    with ehlpetsc.read_result(path) as result:
+        data = result.to_xarray()
+    assert data.pressure.dims == ("time", "y", "x") and data.contact_count.dims == ("y", "x")
+    peak = data.pressure.isel(time=-1).argmax(("y", "x"))
+    assert float(data.y[peak["y"]]) == pytest.approx(0.0, abs=1e-12) and data.y.units == "m"
+
+
+def test_comparison_names_the_place_across(path, tmp_path, capsys):
+    other = tmp_path / "other.h5"
+    other.write_bytes(path.read_bytes())
+    with h5py.File(other, "r+") as file:
+        file["pressure"][2, 40, 30] += 1e7
+        y = file["y"][40]
+    with ehlpetsc.read_result(path) as one, ehlpetsc.read_result(other) as two:
+        found = {d.name: d for d in compare.compare(one, two)}
+    assert (found["pressure"].max, found["pressure"].y) == (pytest.approx(1e7), y)
+    assert found["film_thickness"].max == 0.0
+    assert compare.main([str(path), str(other)]) == 1
+    assert "at y/a" in capsys.readouterr().out
+
+
+def test_point_and_strip_are_not_compared(path, tmp_path, capsys):
+    other = tmp_path / "other.h5"
+    other.write_bytes(path.read_bytes())
+    with h5py.File(other, "r+") as file:
+        file.attrs["kind"] = "strip"
+    assert compare.main([str(path), str(other)]) == 2
+    assert "a point and a strip contact" in capsys.readouterr().err
+
+
+def test_summary_of_a_frame_lists_x_and_y(path, capsys):
+    assert summary.main([str(path), "--frame", "2"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("x [m],y [m],") and len(lines) == 1 + 49 * 49
+
+
+def test_stopped_run_continues_to_the_same_result(path, tmp_path):
+    part = tmp_path / "ball.h5"
+    case = ehlpetsc.load(BALL | {"output": {"xdmf": True}})
+    simulation = ehlpetsc.Simulation(case)
+    with simulation.options, Recorder(simulation, part) as recorder:
+        recorder.lock_output()
+        for state in simulation:
+            recorder.write(state)
+            if state.step == 2:
+                break
+        recorder.close(ExitStatus.STOPPED)
+    ehlpetsc.solve(case, output=part)  # the same call
+    assert compare.main([str(path), str(part)]) == 0  # within 1e-6
+    with ehlpetsc.read_result(part) as result:
+        assert result.attrs["restarts"] == 1 and result.attrs["status"] == "done"
+
+
+def test_restart_on_another_width_is_refused(tmp_path):
+    case = ehlpetsc.load(BALL)
+    simulation = ehlpetsc.Simulation(case)
+    with simulation.options, Recorder(simulation, tmp_path / "a.h5") as recorder:
+        recorder.write(simulation.advance())
+        recorder.write(simulation.advance())
+        recorder.close(ExitStatus.STOPPED)
+    wider = ehlpetsc.load(BALL, {"mesh.width": 3.5})
+    with pytest.raises(OutputError, match=r"has 49 nodes across, the case 57; \[mesh\] must be as it was"):
+        ehlpetsc.solve(wider, output=tmp_path / "b.h5", restart=tmp_path / "a.restart.h5")
+
+
+def test_xdmf_opens_in_vtk(path):
+    xdmf = pytest.importorskip("vtkmodules.vtkIOXdmf2", reason="VTK from PyPI")
+    convert = pytest.importorskip("vtkmodules.util.numpy_support")
+    reader = xdmf.vtkXdmfReader()
+    reader.SetFileName(str(path.with_suffix(".xdmf")))
+    reader.UpdateInformation()
+    key = reader.GetExecutive().TIME_STEPS()
+    times = reader.GetOutputInformation(0).Get(key)
+    with ehlpetsc.read_result(path) as result:
+        assert times == pytest.approx(result.time, rel=1e-6)
+        reader.UpdateTimeStep(times[-1])
+        grid = reader.GetOutputDataObject(0)
+        pressure = convert.vtk_to_numpy(grid.GetPointData().GetArray("pressure"))
+        assert np.array_equal(pressure.reshape(49, 49), result.pressure[-1])
+        assert grid.GetBounds()[:2] == pytest.approx((result.x[0], result.x[-1]), rel=1e-6)
+        assert grid.GetBounds()[2:4] == pytest.approx((result.y[0], result.y[-1]), rel=1e-6)
