@@ -17,8 +17,7 @@ import h5py
 from ehlpetsc.base import environment
 from ehlpetsc.base.errors import CaseError, ExitStatus
 from ehlpetsc.results import reader
-from ehlpetsc.results.reader import open_result
-from ehlpetsc.results.section import Section
+from ehlpetsc.results.reader import Section, open_result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,6 +38,8 @@ class Result(reader.Result):
     ) -> Figure:
         """Pressure and film over x/a at the frame nearest to a step or a time [s], contacts marked.
 
+        Of a point contact or strip maps and sections.
+
         By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`; `window` limits x/a.
 
         Examples
@@ -53,6 +54,11 @@ class Result(reader.Result):
         from ehlpetsc.pictures import frames, style
 
         indices = frames.choose_frames([self], step, time)
+        if self.y is not None:
+            from ehlpetsc.pictures.plane import fill_figure
+
+            figure = pyplot.figure(layout="constrained")
+            return fill_figure(figure, self, indices[0], frames.view([self], window))
         figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
         frames.fill_frame(axes, [self], indices, frames.view([self], window))
         style.set_title(figure, *frames.panel_title([self], indices))
@@ -64,7 +70,7 @@ class Result(reader.Result):
 
 
 class DrawnSection(Section, Result):
-    """Section of a result, see :class:`ehlpetsc.results.section.Section`."""
+    """Section of a result, see :class:`ehlpetsc.results.reader.Section`."""
 
 
 def read_result(path: str | PathLike) -> Result:

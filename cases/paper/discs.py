@@ -1,6 +1,7 @@
 """Friction of twin discs beside measurements: table on two meshes and picture.
 
-``./run_mpi.sh python cases/paper/discs.py [-o PICTURE]`` computes `cases/discs.toml` with the oils and speeds of
+``./run_mpi.sh python cases/paper/discs.py [-o PICTURE]`` computes `cases/discs.toml` with the oils and
+    speeds of
 `MEASURED` on a/30 and a/60, prints measured and computed friction with their ratio, and draws them over the
 slide/roll ratio.
 """

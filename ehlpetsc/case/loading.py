@@ -21,6 +21,7 @@ from ehlpetsc.case.kinds import LINE, faults_of_kind, variable_point
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.law import Law
@@ -148,8 +149,20 @@ def _checked(
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
-        faults += [Fault("mesh", line) for line in reversed_flow]
+        faults += [Fault("mesh", line) for line in reversed_flow] + _contact_faults(cast(Case, case))
     return (case if case and not faults else None), faults + found
+
+
+def _contact_faults(case: Case) -> list[Fault]:
+    """Faults of effects that do not serve the kind of contact."""
+    if not (case.contact and case.mesh):  # their own faults are reported
+        return []
+    faults = []
+    for kind in EFFECTS:
+        if kind.is_in(case) and case.kind not in kind.contacts:
+            key, served = kind.table.name if kind.table else kind.name, " and ".join(kind.contacts)
+            faults.append(Fault(key, f"{key}: of {served} contacts, and this is a {case.kind}; leave it out"))
+    return faults
 
 
 def _file_fault(data: Tables, error: ProfileError) -> Fault:

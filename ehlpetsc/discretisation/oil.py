@@ -36,7 +36,7 @@ class Oil(Protocol):
         """Oil of one solve, which may keep a state from one evaluation to start the next one from."""
         ...
 
-    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
         """Fill in the properties of `nodes` of the mesh at their q and h.
 
         `at`: shape (rows, columns): one for each node, and one for each row of nodes along x that `nodes`
@@ -73,7 +73,7 @@ class IsothermalOil:
         """The oil itself, which has no state."""
         return self
 
-    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
         """As :meth:`Oil.fill`."""
         nodal(q, h, self.viscosity, self.density, (*self.units, 1.0 / self.fluid.viscosity), at)
 

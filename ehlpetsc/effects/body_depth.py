@@ -20,7 +20,7 @@ from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import StepInputs
     from ehlpetsc.effects.effect import Step
-    from ehlpetsc.surfaces.profile import Profile
+    from ehlpetsc.surfaces.moving_surface import MovingSurface
 
 
 class DepthRecord(Protocol):
@@ -46,7 +46,7 @@ class BodyDepth(Effect[D]):
     def start(self, before: D | None = None, **entries: np.ndarray) -> D:
         """Depth zero with further entries of the record, or the record of the previous pass."""
         if before is None:
-            zero = BodyFields.zero(self.scene.scales.dx)
+            zero = self.scene.mesh_on_bodies.zero
             return self.record(depth=zero, hidden=zero, **entries)
         return before._replace(hidden=self._ahead_of_profiles(before.depth))
 
@@ -55,7 +55,7 @@ class BodyDepth(Effect[D]):
         return replace(inputs, phi=inputs.phi + sum(self.in_gap(record, step)) / self.scene.scales.h)
 
     def in_gap(self, record: D, step: Step) -> list[np.ndarray]:
-        """Depths of both bodies in the gap at the nodes [m], shape (nx,) each."""
+        """Depths of both bodies in the gap at the nodes [m]."""
         depths = self.scene.mesh_on_bodies.means(record.depth, step.travelled)
         hidden = self.scene.mesh_on_bodies.means(record.hidden, step.travelled)
         return [depth - hidden_depth for depth, hidden_depth in zip(depths, hidden, strict=True)]
@@ -73,10 +73,10 @@ class BodyDepth(Effect[D]):
         return BodyFields(*map(_ahead, depth, profiles, faces))
 
 
-def _ahead(field: BodyField, profile: Profile | None, faces: np.ndarray) -> BodyField:
-    """Depth ahead of a profile, in excess of the minimum between the faces of the mesh at the start."""
-    if profile is None or not profile.is_moving or not profile.body_offset or not len(field.depth):
-        return BodyField(field.spacing, 0, np.zeros(0))
+def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -> BodyField:
+    """Depth ahead of a profile, in excess of that of its row, the minimum in the mesh at the start."""
+    if profile is None or not profile.is_moving or not profile.body_offset or not field.cells:
+        return BodyField(field.spacing, 0, field.depth[..., :0])
     centres = 0.5 * (field.edges[1:] + field.edges[:-1]) - profile.body_offset
-    excess = np.maximum(field.depth - field.means(faces).min(), 0.0)
+    excess = np.maximum(field.depth - field.means(faces).min(axis=-1, keepdims=True), 0.0)
     return field._replace(depth=(1.0 - profile.entered(centres)) * excess)

@@ -7,7 +7,7 @@ The record is saved in restart files by its field names; only the effect reads i
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar, get_type_hints
@@ -98,6 +98,7 @@ class Effect(Generic[R]):
     `name`: name of the record in the state and in restart files.
     `record`: type of the record, a NamedTuple.
     `table`: table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
+    `contacts`: kinds of contact that it serves; others are refused.
     `moves_with_surfaces`: whether its contribution to the gap moves with the surfaces from the first step on.
     `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.base.quantities`: fields
     over the nodes, scalars of every time step, depths along each surface at the end of the run.
@@ -106,6 +107,7 @@ class Effect(Generic[R]):
     name = ""
     record: type = NoRecord
     table: KeyTable | None = None
+    contacts: Collection[str] = ("line", "strip", "point")
     moves_with_surfaces = False
     fields: dict = {}
     scalars: dict = {}

@@ -50,7 +50,7 @@ class PlasticDeformation(BodyDepth[PlasticRecord]):
             over_run="last",
             summary=".4g",
             compared=True,
-            of=lambda o: o.state.records["plastic_deformation"].depth.volume,
+            of=lambda o: o.scene.mesh_on_bodies.volume(o.state.records["plastic_deformation"].depth),
         ),
     }
     surface = {"set": Field("m", "depth of the plastic deformation at the end", ("s",))}

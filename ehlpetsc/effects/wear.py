@@ -64,7 +64,7 @@ class Wear(BodyDepth[WearRecord]):
             over_run="last",
             summary=".4g",
             compared=True,
-            of=lambda o: o.state.records["wear"].depth.volume,
+            of=lambda o: o.scene.mesh_on_bodies.volume(o.state.records["wear"].depth),
         )
     }
     surface = {"wear": Field("m", "wear depth at the end", ("s",))}

@@ -30,9 +30,13 @@ DEFAULTS = {
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
-# of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its pressures
+# of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its
+# pressures
 PLANE = {
     "ksp_rtol": "1e-2",  # a convolution an iteration: tighter saves no Newton iteration
+    # stiff asperities: without it the basis loses its orthogonality, and the residual found is not the true
+    # one
+    "ksp_gmres_cgs_refinement_type": "refine_ifneeded",
     "pc_type": "python",
     "pc_python_type": "ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm",
 }

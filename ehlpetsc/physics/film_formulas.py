@@ -40,7 +40,8 @@ def moes_central_film(M: float, L: float) -> float:
 
 
 def nijenbanning_central_film(M: float, L: float, ratio: float) -> float:
-    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes (1994).
+    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes
+    (1994).
 
     .. math:: H=\left\{\left[H_{RI}^{3/2}+(H_{EI}^{-4}+H_{00}^{-4})^{-3/8}\right]^{2s/3}+
        (H_{RP}^{-8}+H_{EP}^{-8})^{-s/8}\right\}^{1/s},\qquad s=1.5\,(1+e^{-1.2H_{EI}/H_{EP}})
@@ -64,18 +65,18 @@ def nijenbanning_central_film(M: float, L: float, ratio: float) -> float:
     return (isoviscous + (rigid_piezo**-8 + elastic_piezo**-8) ** (-s / 8.0)) ** (1.0 / s)
 
 
-def hamrock_dowson_ratio(U: float, G: float, W: float, ratio: float) -> float:
-    r"""Minimum over central film of an elliptic contact (Hamrock and Dowson 1977).
+def hamrock_dowson_films(U: float, G: float, W: float, ratio: float) -> tuple[float, float]:
+    r"""Central and minimum film of an elliptic contact over :math:`R_x` (Hamrock and Dowson 1977).
 
-    :math:`H_{min}=3.63U^{0.68}G^{0.49}W^{-0.073}(1-e^{-0.68k})`,
-    :math:`H_c=2.69U^{0.67}G^{0.53}W^{-0.067}(1-0.61e^{-0.73k})`, :math:`k=1.03(R_y/R_x)^{0.64}`,
+    :math:`H_c=2.69U^{0.67}G^{0.53}W^{-0.067}(1-0.61e^{-0.73k})`,
+    :math:`H_{min}=3.63U^{0.68}G^{0.49}W^{-0.073}(1-e^{-0.68k})`, :math:`k=1.03(R_y/R_x)^{0.64}`,
     :math:`W=F/(E'R_x^2)`.
 
     `ratio`: :math:`R_y/R_x`.
     """
     k = 1.03 * ratio**0.64
-    minimum = 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1.0 - math.exp(-0.68 * k))
-    return minimum / (2.69 * U**0.67 * G**0.53 * W**-0.067 * (1.0 - 0.61 * math.exp(-0.73 * k)))
+    central = 2.69 * U**0.67 * G**0.53 * W**-0.067 * (1.0 - 0.61 * math.exp(-0.73 * k))
+    return central, 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1.0 - math.exp(-0.68 * k))
 
 
 def smooth_films(scales: Scales, fluid: Fluid, conditions: Conditions) -> tuple[float, float]:

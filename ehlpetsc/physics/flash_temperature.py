@@ -1,4 +1,4 @@
-"""Flash temperature of a line contact by Blok's formula, and the friction expected of a case."""
+"""Flash temperature of a contact by Blok's formula, and the friction expected of a case."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def expected_friction(fluid: Fluid, load: float, a: float, sliding: float, film:
 
 
 def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Solid] = (STEEL, STEEL)) -> float:
-    """Blok's flash temperature [K] of a contact with a coefficient of friction, of a point in its middle."""
+    """Blok's flash temperature [K] of a contact, of its middle row, with a coefficient of friction."""
     effusivities = [solid.effusivity for solid in solids]
     conditions = scales.load_per_length, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
     return blok_flash_temperature(friction, *conditions, effusivities)

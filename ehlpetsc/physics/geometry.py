@@ -1,7 +1,7 @@
 r"""Kinds of contact: dry smooth contact, nodes and dimensionless groups of each.
 
-A line contact is of infinite length; a strip is a line contact whose roughness varies along its length, periodic over
-the width of the mesh; a point contact is an ellipse.
+A line contact is of infinite length; a strip is a line contact whose roughness varies along its length,
+periodic over the width of the mesh; a point contact is an ellipse.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from ehlpetsc.physics.film_formulas import (
     MIN_OVER_CENTRAL_FILM,
-    hamrock_dowson_ratio,
+    hamrock_dowson_films,
     moes_central_film,
     nijenbanning_central_film,
 )
@@ -29,7 +29,7 @@ POINT_WIDTH = 4.0  # half-widths b: of the mesh of a point contact across, unles
 
 
 class Dry(NamedTuple):
-    """Dry smooth contact: half-widths along and across [m], across infinite in a line; maximum pressure [Pa]."""
+    """Dry smooth contact: half-widths along and across, infinite in a line [m]; maximum pressure [Pa]."""
 
     a: float
     b: float
@@ -43,8 +43,8 @@ class Geometry(NamedTuple):
     `rows`: rows of nodes across, of [mesh] and the dry contact.
     `grid`: of [contact], [mesh] and the dry contact.
     `moes`: Moes' M and L of viscosity, mean speed, alpha, load, radius along x and E'.
-    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and the ratio of the radii: central film
-        of an incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
+    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and the ratio of the radii:
+        central film of an incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
     `expected_film`: central film of the smooth flooded contact in a^2/R.
     """
 
@@ -138,7 +138,7 @@ def line_groups(
 def point_groups(
     viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float
 ) -> tuple[float, float]:
-    r"""Moes' load and lubricant numbers of a point contact, :math:`M=F/(E'R^2)\,(2U)^{-3/4}`; L as in a line."""
+    r"""Moes' numbers of a point contact, :math:`M=F/(E'R^2)\,(2U)^{-3/4}`; L as in a line."""
     two_u = 2.0 * viscosity * speed / (modulus * radius)
     return load / (modulus * radius**2 * two_u**0.75), alpha * modulus * two_u**0.25
 
@@ -159,8 +159,8 @@ def point_films(
     M, L = point_groups(viscosity, speed, alpha, load, radius, modulus)
     two_u = 2.0 * viscosity * speed / (modulus * radius)
     central = radius * math.sqrt(two_u) * nijenbanning_central_film(M, L, ratio)
-    lowest = hamrock_dowson_ratio(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
-    return central, lowest, hertz_ellipse(load, radius, radius * ratio, modulus).p0
+    of_hamrock = hamrock_dowson_films(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
+    return central, of_hamrock[1] / of_hamrock[0], hertz_ellipse(load, radius, radius * ratio, modulus).p0
 
 
 def line_film(scales: Scales) -> float:

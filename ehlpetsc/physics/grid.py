@@ -74,7 +74,7 @@ class Grid:
 
     @property
     def cell_size(self) -> float:
-        """Weight of a node in a sum over the contact: length or area of its cell, in a strip per length across."""
+        """Weight of a node in a sum over the contact: length or area of its cell, in a strip by length."""
         return self.spacings[-1] / self.shape[0] if self.periodic else math.prod(self.spacings)
 
     @cached_property

@@ -61,7 +61,8 @@ def hertz_ellipse(load: float, radius_x: float, radius_y: float, modulus: float)
        \frac{1}{2R_+}=\frac{2p_0}{E'}\frac{k}{e^2c_+}(K-E),\qquad
        F=\frac{2\pi}{3}p_0c_+c_-,\qquad \delta=\frac{2p_0}{E'}c_-K
 
-    (Johnson 1985, eqs. 4.24 to 4.32), plus and minus for the direction of the larger and the smaller semi-axis.
+    (Johnson 1985, eqs. 4.24 to 4.32), plus and minus for the direction of the larger and the smaller
+    semi-axis.
 
     Parameters
     ----------

@@ -126,7 +126,7 @@ SHEAR_LAWS = {  # a law is that of the case whose first key, its stress, is give
 _shear_stress = switched(SHEAR_LAWS, 1)
 
 
-def shear_law(fluid: Fluid) -> str:
+def shear_law(fluid: FluidValues) -> str:
     """Name of the shear law of a case."""
     keys = {name: next(iter(law.keys)) for name, law in SHEAR_LAWS.items() if law.keys}
     return next((name for name, key in keys.items() if getattr(fluid, key, None) is not None), "newton")

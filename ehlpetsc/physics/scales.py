@@ -99,7 +99,7 @@ class Scales:
 
     @property
     def stiffness(self) -> float:
-        r"""Deflection of a half-space by a pressure p0 on a^2 at the distance a, :math:`2p_0R/(\pi E'a)` in a^2/R."""
+        r"""Deflection by p0 on a^2 at the distance a, :math:`2p_0R/(\pi E'a)`, in a^2/R."""
         return 2.0 * self.p0 * self.R / (np.pi * self.E * self.a)
 
     @property

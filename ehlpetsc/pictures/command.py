@@ -1,9 +1,10 @@
 """Draw results: ``ehlpetsc plot RESULT.h5 [...]``, or the index of a series or of passes,
 OUTPUT.series.json, OUTPUT.passes.json; or the profiles of a CASE.toml as they will be used.
 
-Pressure and film of one frame, by default that with the maximum load on the solids from when both profiles
-fill the contact or, without load on solids, the maximum pressure; several results at the same travel in one
-picture. The file name after -o determines the format (png, svg, pdf, eps ...).
+Pressure and film of one frame, of a point contact or strip as maps with sections through the middle, by
+default that with the maximum load on the solids from when both profiles fill the contact or, without load on
+solids, the maximum pressure; several results at the same travel in one picture, points and strips by their
+sections along y = 0. The file name after -o determines the format (png, svg, pdf, eps ...).
 Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
@@ -37,11 +38,17 @@ FIGURES = {
     "temperatures": (draw_temperatures, "temperatures of film and surfaces, with [heat]"),
     "running_in": (draw_running_in, "surfaces and pressure pass by pass"),
 }
+MAPS = {  # of a point contact or strip
+    "fringes": "film as interference fringes, of a point or strip",
+    "contacts": "share of the steps in which nodes are in contact, of a point or strip",
+}
 OTHERS = {  # that are no pictures: endings of their files, help
     "report": (PAGES, "one result as one HTML page with slider and zoom"),
     "movie": ((".gif",), "pressure and film over time, as a GIF"),
 }
-OF_ONE = ("over_time", "map", "temperatures", "report")  # kinds of a single result
+OF_ONE = ("over_time", "map", "temperatures", "report", *MAPS)  # kinds of a single result
+OF_SCALARS = ("over_time", "stribeck", "traction")  # kinds that show no field
+IN_PLANE = (None, "movie", "report", *MAPS)  # kinds that show a point contact or strip in both directions
 
 
 def arguments() -> CommandParser:
@@ -54,11 +61,12 @@ def arguments() -> CommandParser:
     instant.add_argument("--step", type=int, help="number of the time step [maximum load on solids]")
     instant.add_argument("--time", type=float, help="time [s]")
     parser.add_argument("--window", type=float, nargs=2, metavar=("LOW", "HIGH"), help="limits of x/a")
+    parser.add_argument("--section", type=float, metavar="Y", help="y/a of a point or strip, drawn as a line")
     parser.add_argument("--dpi", type=float, default=style.DPI, help="dots per inch of a png [%(default)s]")
     parser.add_argument("--size", type=float, nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches")
     parser.add_argument("--no-title", action="store_true", help="without the title above the panels")
     kind = parser.add_mutually_exclusive_group()
-    for name, (_, text) in (FIGURES | OTHERS).items():
+    for name, (*_, text) in (FIGURES | {name: (text,) for name, text in MAPS.items()} | OTHERS).items():
         option = f"--{name.replace('_', '-')}"
         kind.add_argument(option, dest="kind", action="store_const", const=name, help=text)
     return parser
@@ -68,7 +76,8 @@ def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     options = arguments().parse_args(words)
     allowed = OTHERS[options.kind][0] if options.kind in OTHERS else PICTURES
-    kind = f".{options.kind}" if options.kind in FIGURES else ""
+    kind = f".{options.kind}" if options.kind in FIGURES | MAPS else ""
+    kind = kind or ("" if options.section is None else ".section")
     output = options.output or Path(_stem(options.results) + kind + allowed[0])
     return exit_status("plot", lambda: _run(options, output, allowed), (ValueError,), output)
 
@@ -93,6 +102,16 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
     """Draw one picture or movie into a file."""
     if options.kind in OF_ONE and len(results) > 1:
         raise OutputError(f"{len(results)} results; allowed: --{options.kind.replace('_', '-')} of one")
+    planes = [result for result in results if result.y is not None]
+    if not planes and (options.kind in MAPS or options.section is not None):
+        word = "section" if options.section is not None else options.kind
+        raise OutputError(f"{results[0].path}: a line contact; allowed: --{word} of a point contact or strip")
+    if len(results) == 1 and planes and options.section is None and options.kind in IN_PLANE:
+        return draw_plane(results[0], options, output)
+    if options.kind not in OF_SCALARS:
+        results = [section_of(result, options.section or 0.0) for result in results]
+    elif options.section is not None:
+        raise OutputError(f"--section: of pictures over x, not of --{options.kind.replace('_', '-')}")
     low, high = frames.view(results, options.window)
     for result in results:
         if not len(result.time):
@@ -107,6 +126,27 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
     else:
         function = FIGURES[options.kind][0] if options.kind else frames.draw_frame
         style.save(function(results, options), output, chosen=options)
+
+
+def section_of(result: Result, y: float) -> Result:
+    """Section of a point contact or strip at y [half-widths]; a line contact as it is."""
+    return result if result.y is None else result.section(y * result.attrs["a"])
+
+
+def draw_plane(result: Result, options: argparse.Namespace, output: Path) -> None:
+    """Draw one picture, movie or page of a point contact or strip in both directions into a file."""
+    from ehlpetsc.pictures import fringes, plane, plane_over_time
+
+    if options.kind == "report":
+        return save_report(result, output)
+    if options.kind == "movie":
+        return plane_over_time.save_movie(result, options, output)
+    functions = {
+        None: plane.draw_frame,
+        "fringes": fringes.draw_fringes,
+        "contacts": plane_over_time.draw_contacts,
+    }
+    style.save(functions[options.kind](result, options), output, chosen=options)
 
 
 def _stem(paths: list[str]) -> str:

@@ -18,6 +18,7 @@ from ehlpetsc.results.reader import Result
 
 PRESSURE = "pressure [GPa]"
 FILM = "film thickness [µm]"
+GAP = "gap [µm]"  # of a dry contact
 WINDOW = (-1.6, 1.4)  # limits of x/a by default
 SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
@@ -142,7 +143,7 @@ def fill_frame(
     style.legend_beside(lower)
     lower.set(xlabel=ACROSS, xlim=window, ylim=(0.0, 1.15 * thickest or 1.0))
     upper.set(ylabel=PRESSURE, ylim=(0.0, 1.05 * highest))
-    lower.set_ylabel(FILM if any(result.case.fluid for result in results) else "gap [µm]")
+    lower.set_ylabel(FILM if any(result.case.fluid for result in results) else GAP)
     if len({float(result.attrs["a"]) for result in results}) == 1:
         style.scale_above(upper, 1e3 * results[0].attrs["a"], "x [mm]")
     mark_flow(upper, results, indices)

@@ -91,7 +91,10 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
         panel.set_yscale("log" if panel.dataLim.y1 > 0.0 else "linear")
     axes[2].yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes[1].set_ylim(bottom=max(axes[1].get_ylim()[0], MIN_LOAD_FRACTION))
-    conditions = {(r.case.fluid and r.case.fluid.viscosity, r.case.contact.load) for r in results}
+    loads = [Scales.of(r.case).load_per_length for r in results]
+    conditions = {
+        (r.case.fluid and r.case.fluid.viscosity, load) for r, load in zip(results, loads, strict=True)
+    }
     if len(conditions) == 1 and results[0].case.fluid:
         [(viscosity, load)] = conditions
         hersey = "Hersey number: viscosity × speed over load per length"
@@ -136,9 +139,9 @@ def _lines(settings: str) -> str:
 
 
 def correlations(result: Result, ratios: np.ndarray) -> dict[str, np.ndarray]:
-    """Friction coefficients of smooth surfaces by published correlations, by their names."""
+    """Friction coefficients of smooth lines, of the middle row of points, by published correlations."""
     case, scales = result.case, Scales.of(result.case)
-    u, eta, load = abs(scales.u), case.fluid.viscosity, case.contact.load
+    u, eta, load = abs(scales.u), case.fluid.viscosity, scales.load_per_length
     return {
         "Xu & Kahraman 2007": xu_kahraman(scales.p0, ratios, u, eta, case.contact.radius, 0.0),
         "Benedict & Kelley 1961": benedict_kelley(load, ratios * u, 2.0 * u, eta, 0.0),

@@ -1,10 +1,11 @@
-"""Profiles of a case before a run, with the part that passes the contact; passes of running-in."""
+"""Profiles or maps of a case before a run, with the part that passes the contact; passes of running-in."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,9 +19,12 @@ from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
+from ehlpetsc.surfaces.contact_roughness import roughness_of
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times
-from ehlpetsc.surfaces.roughness import Roughness
+
+if TYPE_CHECKING:
+    from ehlpetsc.surfaces.areal_roughness import MovingTopography
 
 CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
@@ -29,18 +33,15 @@ FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 
 def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
-    """Profiles of a case file; overrides as in `ehlpetsc.load`."""
+    """Profiles or maps of a case file; overrides as in `ehlpetsc.load`."""
     case = load(path, overrides)
     scales = Scales.of(case)
-    rough = Roughness.of(case, scales)
+    rough = roughness_of(case, scales)
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    size = (CASE_SIZE[0], CASE_SIZE[1] * len(sides) + 0.5)
-    figure, axes = style.new_figure(len(sides), 1, size, squeeze=False)
-    for panel, side in zip(axes[:, 0], sides, strict=True):
-        draw_heights(panel, rough.side(side), case, scales, style.SURFACES[side])
-        panel.set_ylabel(f"surface {side} [µm]")
+    draw: Callable[..., Figure] = _draw_profiles if case.kind == "line" else _draw_maps
+    figure = draw({side: rough.side(side) for side in sides}, case, scales)
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.conditions is not None:
         texts.append("of the widest contact; conditions over time")
@@ -50,7 +51,23 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     return figure
 
 
-def passing(profile: Profile, case: Case, scales: Scales) -> tuple[float, float]:
+def _draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> Figure:
+    size = (CASE_SIZE[0], CASE_SIZE[1] * len(surfaces) + 0.5)
+    figure, axes = style.new_figure(len(surfaces), 1, size, squeeze=False)
+    for panel, (side, profile) in zip(axes[:, 0], surfaces.items(), strict=True):
+        draw_heights(panel, profile, case, scales, style.SURFACES[side])
+        panel.set_ylabel(f"surface {side} [µm]")
+    return figure
+
+
+def _draw_maps(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
+    from ehlpetsc.pictures.case_maps import draw_maps
+
+    parts = [passing(surface, case, scales) for surface in surfaces.values()]
+    return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)
+
+
+def passing(profile: Profile | MovingTopography, case: Case, scales: Scales) -> tuple[float, float]:
     """Ends [m] of the part of a profile that passes the whole contact; equal if there is none."""
     first, last = float(profile.X[0]), float(profile.X[-1])
     arrives = entry_times(profile, scales)

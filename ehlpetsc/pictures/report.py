@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 import re
@@ -17,6 +16,7 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show, travel_of, view
+from ehlpetsc.pictures.page_values import binned, packed
 from ehlpetsc.pictures.style import hertz_at
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
@@ -57,12 +57,19 @@ def save_report(result: Result, path: Path) -> None:
 
 
 def report_data(result: Result) -> dict:
-    """Data of the page, for JSON."""
-    return {
+    """Data of the page, for JSON; of a point contact or strip maps, and frames of the section at y = 0."""
+    line, chosen, of_plane = result, chosen_frames(result, MAX_FRAMES), {}
+    if result.y is not None:
+        from ehlpetsc.pictures import plane_report
+
+        line, window = result.section(), view([result])
+        chosen = chosen_frames(result, min(MAX_FRAMES, plane_report.frames_on_page(result, window)))
+        of_plane = {"maps": plane_report.maps(result, chosen, window)}
+    return of_plane | {
         "title": str(result.attrs["title"]),
         "facts": facts(result),
         "case": str(result.attrs["case"]),
-        "frames": frames(result),
+        "frames": frames(line, chosen),
         "steps": scalars_over_time(result),
         "damage": damage(result),
     }
@@ -70,10 +77,11 @@ def report_data(result: Result) -> dict:
 
 def facts(result: Result) -> list[tuple[str, str]]:
     """Names and values of the table at the top; means as of `ehlpetsc.results.means`."""
+    nodes = len(result.x) if result.y is None else f"{len(result.x)} x {len(result.y)}"
     rows = [
         ("ended as", str(result.attrs["status"])),
         ("contact", f"{result.case.contact.model} contact, {style.conditions([result])}"),
-        ("nodes, steps", f"{len(result.x)}, {len(result.steps('time')) - 1}"),
+        ("nodes, steps", f"{nodes}, {len(result.steps('time')) - 1}"),
     ]
     for name in EXTREMES:
         if name in result.scalars and np.isfinite(values := result.steps(name)).any():
@@ -95,15 +103,18 @@ def _with_unit(result: Result, name: str, value: float) -> str:
     return f"{factor * value:.4g} {unit}".strip()
 
 
-def frames(result: Result) -> dict:
-    """Pressure, film, contacts and Hertz contact of stored frames in view."""
+def chosen_frames(result: Result, most: int) -> np.ndarray:
+    """Indices of at most so many frames for the page, and of the one it shows first."""
+    return np.unique(np.append(style.spread(len(result.time), most), frame_to_show(result)))
+
+
+def frames(result: Result, chosen: np.ndarray) -> dict:
+    """Pressure, film, contacts and Hertz contact of chosen frames in view."""
     x, a = result.x / result.attrs["a"], result.attrs["a"]
     columns = style.in_view(x, view([result]))
     width = -(-len(x[columns]) // MAX_NODES)
-    shown = frame_to_show(result)
-    chosen = np.unique(np.append(style.spread(len(result.time), MAX_FRAMES), shown))
     fields = {
-        name: _packed([binned(factor * result.frame(name, k)[columns], width, reduce) for k in chosen])
+        name: packed([binned(factor * result.frame(name, k)[columns], width, reduce) for k in chosen])
         for name, (factor, reduce) in FIELDS.items()
         if name in result
     }
@@ -111,14 +122,14 @@ def frames(result: Result) -> dict:
     rows = (result.contacts_at(k, columns) if "in_contact" in result else 0.0 * x[columns] for k in chosen)
     touching = [binned(row, width, np.max) for row in rows]
     return {
-        "x": _packed(binned(x[columns], width, np.mean)),
-        "time": _packed(1e6 * result.time[chosen]),
+        "x": packed(binned(x[columns], width, np.mean)),
+        "time": packed(1e6 * result.time[chosen]),
         "step": [int(step) for step in result.step[chosen]],
         "travel": travel_of(result)[chosen].tolist(),
-        "first": int(np.searchsorted(chosen, shown)),
+        "first": int(np.searchsorted(chosen, frame_to_show(result))),
         "hertz": [[half_width / a, 1e-9 * p0] for half_width, p0 in hertz],
         "width": width,
-        "contact": _packed(touching, np.uint8),
+        "contact": packed(touching, np.uint8),
         **fields,
     }
 
@@ -127,7 +138,7 @@ def scalars_over_time(result: Result) -> dict:
     """Varying scalars of the steps over time; empty for a steady result."""
     time = result.steps("time")
     if len(time) < 2:
-        return {"time": _packed([]), "figures": []}
+        return {"time": packed([]), "figures": []}
     width, figures = -(-len(time) // MAX_ROWS), []
     for name in (name for name in STEP_SCALARS if name in result.scalars and name not in HIDDEN_SCALARS):
         values = result.steps(name).astype(float)[1:]
@@ -137,8 +148,8 @@ def scalars_over_time(result: Result) -> dict:
         unit, factor = _shown_unit(result, name)
         reduce = np.fmin.reduce if name in MINIMUM_SCALARS else np.fmax.reduce
         label = STEP_SCALARS[name].long_name + (f" [{unit}]" if unit else "")
-        figures.append({"name": label, "y": _packed(binned(factor * values, width, reduce))})
-    return {"time": _packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
+        figures.append({"name": label, "y": packed(binned(factor * values, width, reduce))})
+    return {"time": packed(binned(1e6 * time[1:], width, np.mean)), "figures": figures, "width": width}
 
 
 def damage(result: Result) -> dict | None:
@@ -149,25 +160,10 @@ def damage(result: Result) -> dict | None:
     width = -(-len(post.s) // MAX_POINTS)
     decades = {side: np.log10(np.where(values > 0.0, values, np.nan)) for side, values in post.damage.items()}
     return {
-        "s": _packed(binned(post.s / post.a, width, np.mean)),
+        "s": packed(binned(post.s / post.a, width, np.mean)),
         "depths": post.z.tolist(),
         "surfaces": {
-            side: [_packed(binned(row, width, np.fmax.reduce)) for row in rows]
+            side: [packed(binned(row, width, np.fmax.reduce)) for row in rows]
             for side, rows in decades.items()
         },
     }
-
-
-def binned(values: np.ndarray, width: int, reduce: np.ufunc) -> np.ndarray:
-    """Groups of `width` values reduced by `reduce(values, axis=-1)`."""
-    values = np.asarray(values)
-    if width == 1:
-        return values
-    padded = np.concatenate([values, np.repeat(values[-1:], -len(values) % width)])
-    return reduce(padded.reshape(-1, width), axis=-1)
-
-
-def _packed(values: np.ndarray, kind: type = np.float32) -> str:
-    """Numbers as little-endian bytes in base64."""
-    raw = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<"))
-    return base64.b64encode(raw).decode("ascii")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import textwrap
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -13,7 +14,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.hertz import hertz_ellipse, hertz_line
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.output_guard import replacing
@@ -27,10 +28,12 @@ SOLIDS = "#e08214"  # pressure of the solids
 SECOND = "#cc3311"  # a second curve beside `SINGLE`
 DARK = "#222222"
 FAINT = "0.65"
+EQUAL = 1e-3  # relative difference up to which both half-widths are shown as one
 DPI = 160
 ACROSS = "x/a"
 SMALL = dict(fontsize="small", title_fontsize="small")  # of legends
 LEGEND_ENTRIES = 12
+LETTERS = 12.0  # of a title in an inch, in the usual size
 FULL_WIDTH, MIN_FONT = 6.0, 0.65  # width [inches] below which text shrinks with it, down to this fraction
 
 
@@ -57,12 +60,22 @@ def save(
     """Write a figure, in the format of each file name; `chosen` are the options of the command."""
     if chosen:
         dpi = chosen.dpi
-        figure.set_size_inches(chosen.size or figure.get_size_inches())
+        if chosen.size:
+            figure.set_size_inches(chosen.size)
+            for title in figure.texts:
+                title.set_text(folded(title.get_text(), chosen.size[0]))
         if chosen.no_title:
             figure.suptitle("")
     for path in paths:
         with replacing(Path(path)) as temporary:
             figure.savefig(temporary, dpi=dpi)
+
+
+def folded(text: str, width: float) -> str:
+    """Text whose lines are broken after commas to fit a width [inches] in the font of :func:`fonts`."""
+    letters = int(LETTERS * width / min(1.0, max(MIN_FONT, width / FULL_WIDTH)))
+    kept = [line.replace(" ", "\xa0").replace(",\xa0", ", ") for line in text.splitlines()]
+    return "\n".join(textwrap.fill(line, letters, break_long_words=False) for line in kept)
 
 
 def shades(count: int) -> list:
@@ -131,12 +144,25 @@ def speeds_at(result: Result, frame: int) -> tuple[float, float]:
 
 
 def hertz_at(result: Result, frame: int) -> tuple[float, float]:
-    """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame."""
+    """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame, of a section at its y."""
+    a, p0 = _whole_hertz_at(result, frame)
+    if (place := getattr(result, "place", None)) is None or result.case.kind != "point":
+        return a, p0
+    b = a * float(result.attrs["b"] / result.attrs["a"])
+    share = np.sqrt(max(1.0 - (place / b) ** 2, 1e-12))  # not 0: widths divide
+    return share * a, share * p0
+
+
+def _whole_hertz_at(result: Result, frame: int) -> tuple[float, float]:
     if "load_given" not in result.scalars:
         return float(result.attrs["a"]), float(result.attrs["p0"])
     contact = result.case.contact
     modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
-    return hertz_line(_at(result, "load_given", frame), _at(result, "radius", frame), modulus)
+    load, radius = _at(result, "load_given", frame), _at(result, "radius", frame)
+    if result.case.kind == "point":
+        a, _, p0, _ = hertz_ellipse(load, radius, radius * contact.radius_across / contact.radius, modulus)
+        return a, p0
+    return hertz_line(load, radius, modulus)
 
 
 def _at(result: Result, name: str, frame: int) -> float:
@@ -163,8 +189,13 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
         texts += [f"u = {u:.4g} m/s", ratio]
     a, p0 = result.attrs["a"], result.attrs["p0"]
     texts.append(f"a = {1e3 * a:.3g} mm")
+    if case.kind == "point" and abs(result.attrs["b"] / a - 1.0) > EQUAL:
+        texts.append(f"b = {1e3 * result.attrs['b']:.3g} mm")
     if "load_given" in result.scalars and frame is not None:  # a, of the widest contact, is the unit of x
-        width, p0 = hertz_at(result, frame)
+        width, p0 = _whole_hertz_at(result, frame)
         texts.append(f"half-width {width / a:.3g} a")
     texts.append(f"p0 = {1e-9 * p0:.3g} GPa")
-    return [*texts, f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry"]
+    texts.append(f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry")
+    if (place := getattr(result, "place", None)) is not None:
+        texts.append(f"section at y = {place / a:.3g} a" if place else "section at y = 0")
+    return texts

@@ -173,7 +173,8 @@ class PostResult:
         """Result along x in the row of a plane nearest to y [m], as that of a line contact."""
         if self.y is None:
             raise OutputError(f"{self.path}: a line contact has no sections")
-        row, one = int(np.argmin(np.abs(self.y - y))), copy.copy(self)
+        row = int(np.argmin(np.abs(self.y - y)))
+        one = copy.copy(self)
         one.y, one.section_y = None, float(self.y[row])
         one.damage = {side: values[:, row] for side, values in self.damage.items()}
         one.criteria = {

@@ -141,10 +141,11 @@ class Series:
         self.world, self.stop, self.overwrite = world, stop, overwrite
         self.members = members_of(case, output)
         varied = {name: value for name, value in tomllib.loads(case.text)["series"].items() if name in VARIED}
-        self.index = Index(output.with_name(f"{output.stem}.series.json"), case, "members", **varied)
-        self.index.rows = [
+        index = Index(output.with_name(f"{output.stem}.series.json"), case, "members", **varied)
+        index.rows = [
             {"value": member.value, "file": member.output.name, "state": WAITING} for member in self.members
         ]
+        self.index = index
 
     def run(self) -> ExitStatus:
         """Run the missing members; returns the exit status."""

@@ -2,7 +2,8 @@ r"""Depth field of a body on cells fixed to it.
 
 A step's contribution at the nodes of the mesh is distributed to these cells by overlap, and the mesh gets the
 means over its own cells back: both conserve the volume. Nothing is moved from cell to cell, hence nothing is
-smeared, however far the body travels.
+smeared, however far the body travels. In the plane each row of the mesh has cells of its own: bodies move
+along x.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ class BodyField(NamedTuple):
 
     `spacing`: width of the cells [m].
     `first`: the abscissas of the edges are ``(first + k) spacing``.
-    `depth`: mean depth of each cell [m], shape (cells,).
+    `depth`: mean depth of each cell [m], shape (cells,), in the plane (rows, cells).
     """
 
     spacing: float
@@ -31,52 +32,68 @@ class BodyField(NamedTuple):
     depth: np.ndarray
 
     @classmethod
-    def zero(cls, cell: float) -> Self:
-        """Depth zero, for a mesh with cells of the width `cell` [m]."""
-        return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros(0))
+    def zero(cls, cell: float, rows: tuple[int, ...] = ()) -> Self:
+        """Depth zero, for a mesh with cells of the width `cell` [m], in the plane of a number of rows."""
+        return cls(cell / CELLS_PER_MESH_CELL, 0, np.zeros((*rows, 0)))
+
+    @property
+    def cells(self) -> int:
+        """Number of cells along x."""
+        return self.depth.shape[-1]
 
     @property
     def edges(self) -> np.ndarray:
         """Edges of the cells [m], shape (cells + 1,)."""
-        return self.spacing * (self.first + np.arange(len(self.depth) + 1))
+        return self.spacing * (self.first + np.arange(self.cells + 1))
 
     @property
     def volume(self) -> float:
-        """Integral of the depth over the body [m^2]."""
+        """Integral of the depth along x [m^2], in the plane summed over the rows."""
         return float(self.depth.sum() * self.spacing)
 
     def means(self, faces: np.ndarray) -> np.ndarray:
-        """Mean depths [m] between faces, increasing abscissas of the body [m], shape (n + 1,)."""
-        if not len(self.depth):
-            return np.zeros(len(faces) - 1)
-        below = np.concatenate([[0.0], np.cumsum(self.depth)]) * self.spacing
-        return np.diff(np.interp(faces, self.edges, below)) / np.diff(faces)
+        """Mean depths [m] of each row between faces, increasing abscissas of the body [m], shape (n + 1,)."""
+        if not self.cells:
+            return np.zeros((*self.depth.shape[:-1], len(faces) - 1))
+        return np.diff(_interpolated(faces, self.edges, _summed(self.depth) * self.spacing)) / np.diff(faces)
 
     def add(self, faces: np.ndarray, depth: np.ndarray) -> BodyField:
         """Field with depths [m] added between faces.
 
         `faces`: shape (n + 1,).
-        `depth`: shape (n,).
+        `depth`: shape (n,), in the plane (rows, n).
         """
-        where = np.flatnonzero(depth)
+        where = np.flatnonzero(np.atleast_2d(depth).any(axis=0))
         if not len(where):
             return self
         faces = faces[where[0] : where[-1] + 2]
         wider = self._covering(faces[0], faces[-1])
-        volume = np.concatenate([[0.0], np.cumsum(depth[where[0] : where[-1] + 1] * np.diff(faces))])
-        added = np.diff(np.interp(wider.edges, faces, volume)) / self.spacing
+        volume = _summed(depth[..., where[0] : where[-1] + 1] * np.diff(faces))
+        added = np.diff(_interpolated(wider.edges, faces, volume)) / self.spacing
         return wider._replace(depth=wider.depth + np.maximum(added, 0.0))
 
     def _covering(self, begin: float, end: float) -> BodyField:
         """Field extended by cells of depth zero to reach from begin to end [m]."""
         first = int(np.floor(begin / self.spacing)) - 1
         last = int(np.ceil(end / self.spacing)) + 1
-        if not len(self.depth):
-            return self._replace(first=first, depth=np.zeros(last - first))
-        before, after = max(self.first - first, 0), max(last - self.first - len(self.depth), 0)
+        rows = [(0, 0)] * (self.depth.ndim - 1)
+        if not self.cells:
+            return self._replace(first=first, depth=np.pad(self.depth, [*rows, (0, last - first)]))
+        before, after = max(self.first - first, 0), max(last - self.first - self.cells, 0)
         if not before and not after:
             return self
-        return self._replace(first=self.first - before, depth=np.pad(self.depth, (before, after)))
+        return self._replace(first=self.first - before, depth=np.pad(self.depth, [*rows, (before, after)]))
+
+
+def _summed(values: np.ndarray) -> np.ndarray:
+    """Sums of the values of each row before its edges, one more than values."""
+    return np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
+
+
+def _interpolated(at: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Linear interpolation of each row of values at `x`."""
+    rows = [np.interp(at, x, row) for row in values.reshape(-1, len(x))]
+    return np.reshape(rows, (*values.shape[:-1], len(at)))
 
 
 class BodyFields(NamedTuple):
@@ -86,13 +103,13 @@ class BodyFields(NamedTuple):
     surface_2: BodyField
 
     @classmethod
-    def zero(cls, cell: float) -> Self:
-        """Depth zero on both bodies, for a mesh with cells of the width `cell` [m]."""
-        return cls(BodyField.zero(cell), BodyField.zero(cell))
+    def zero(cls, cell: float, rows: tuple[int, ...] = ()) -> Self:
+        """Depth zero on both bodies, see :meth:`BodyField.zero`."""
+        return cls(BodyField.zero(cell, rows), BodyField.zero(cell, rows))
 
     @property
     def volume(self) -> float:
-        """Integral of both depths [m^2]."""
+        """Integral of both depths along x [m^2], in the plane summed over the rows."""
         return sum(field.volume for field in self)
 
 
@@ -103,9 +120,19 @@ class MeshOnBodies:
     """
 
     def __init__(self, scales: Scales, offsets: Sequence[float] = (0.0, 0.0)) -> None:
-        self.cell, self.offsets = scales.dx, offsets
+        self.cell, self.offsets, self._rows = scales.dx, offsets, scales.grid.shape[:-1]
+        self._breadth = scales.grid.cell_size / scales.dx
         x = scales.x * scales.a
         self._faces = np.append(x - 0.5 * self.cell, x[-1] + 0.5 * self.cell)
+
+    @property
+    def zero(self) -> BodyFields:
+        """Depth zero on both bodies."""
+        return BodyFields.zero(self.cell, self._rows)
+
+    def volume(self, fields: BodyFields) -> float:
+        """Integral of both depths [m^2], of a point contact [m^3]; of a strip per metre of width."""
+        return self._breadth * fields.volume
 
     def faces(self, travelled: Sequence[float]) -> list[np.ndarray]:
         """Faces of the mesh [m] in both bodies after distances travelled [m], shape (nx + 1,) each."""
@@ -114,19 +141,22 @@ class MeshOnBodies:
         ]
 
     def means(self, fields: BodyFields, travelled: Sequence[float]) -> list[np.ndarray]:
-        """Means of both bodies' depths over the cells of the mesh [m], shape (nx,) each."""
-        return [field.means(faces) for field, faces in zip(fields, self.faces(travelled), strict=True)]
+        """Means of both bodies' depths over the cells of the mesh [m], one for each node."""
+        return [
+            field.means(faces).ravel() for field, faces in zip(fields, self.faces(travelled), strict=True)
+        ]
 
     def add(self, fields: BodyFields, travelled: Sequence[float], depths: Sequence[np.ndarray]) -> BodyFields:
-        """Fields with depths at the nodes [m], shape (nx,) for each body, added.
+        """Fields with depths at the nodes [m] of each body added.
 
         `travelled`: distances travelled by both bodies [m].
         """
         bodies = zip(fields, self.faces(travelled), depths, strict=True)
-        return BodyFields(*(field.add(faces, depth) for field, faces, depth in bodies))
+        shape = *self._rows, -1
+        return BodyFields(*(field.add(faces, depth.reshape(shape)) for field, faces, depth in bodies))
 
     def at_points(self, fields: BodyFields, points: Sequence[np.ndarray | None]) -> list[np.ndarray | None]:
-        """Mean depths [m] around equally spaced points s of each body [m]; None without points."""
+        """Mean depths [m] of each row around equally spaced points s of each body [m]; None: no points."""
         depths = []
         for field, s, offset in zip(fields, points, self.offsets, strict=True):
             half = None if s is None else 0.5 * (s[1] - s[0])

@@ -69,16 +69,17 @@ class Roughness:
 
         `positions`: by default both profiles begin to enter with their first point.
         """
+        specs, positions = [case.surface.side(side) for side in ("1", "2")], positions or SurfacePositions()
+        if not any(specs):
+            return None
         from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
 
-        sides, positions = {}, positions or SurfacePositions()
+        sides = []
         speeds = directed_speeds(case, scales)
-        for k, side in enumerate(("1", "2")):
-            spec = case.surface.side(side)
-            sides[side] = spec and Profile(
-                samples(case.path.parent, spec), passage(case, scales, speeds[k], k, positions)
-            )
-        return cls(sides["1"], sides["2"]) if any(sides.values()) else None
+        for k, spec in enumerate(specs):
+            given = passage(case, scales, speeds[k], k, positions)
+            sides.append(spec and Profile(samples(case.path.parent, spec), given))
+        return cls(*sides)
 
     def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
         """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2).

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 from benchmarks import accuracy
 from benchmarks.extremes import extremes, table
+from benchmarks.extremes_plane import FLOODED, MAX_DISTANCE, drawn
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.physics.film_formulas import expected_film
+from ehlpetsc.physics.scales import Scales
 
 
 @pytest.mark.slow
@@ -29,6 +32,19 @@ def test_every_row_of_the_whole_table_loads(far, count, model):
         case = load(line.base, line.overrides)
         own = any(word.startswith("contact.model") for word in line.overrides[2:])
         assert model is None or own or case.contact.asperity_height == 10e-9
+
+
+def test_hypercube_of_points_is_as_drawn_and_flooded():
+    cases = drawn(60)
+    assert min(case.p0 for case in cases) < 0.11e9 and max(case.p0 for case in cases) > 2.9e9
+    for extreme in cases:
+        case = extreme.case(16, 0.25)
+        scales = Scales.of(case)
+        assert (scales.p0, scales.moes_l) == pytest.approx((extreme.p0, extreme.L), rel=1e-6)
+        assert scales.b / scales.a == pytest.approx(extreme.ratio**0.64, rel=0.1)
+        gap = 0.5 * (case.mesh.inlet**2 - 1.0)
+        assert gap >= FLOODED * expected_film(case, scales) or case.mesh.inlet <= -MAX_DISTANCE
+        assert scales.grid.n < 100_000
 
 
 def measured(error, contact=0.0):

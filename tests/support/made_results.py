@@ -156,3 +156,33 @@ def save_life(life, path):
     file = LifeFile(path)
     file.store(life)
     file.close("done")
+
+
+def make_plane(path, *, kind="point", ratio=2.0, nodes=(41, 57), steps=5, attrs=None):
+    """Write a result of an elliptic contact with solids, of b = `ratio` a, or of a strip, over 40 us.
+
+    Its fields are those of a line contact at the same distance from the middle, thinner towards the sides.
+    """
+    n_y, n_x = nodes
+    x, edge = np.linspace(-2.5, 1.5, n_x), 1.0 if kind == "strip" else 2.0 * ratio
+    y = np.linspace(-edge, edge, n_y)
+    b = np.inf if kind == "strip" else ratio
+    case = changed_case(TABLE_1.format(viscosity=0.005, speed=5.0), PLANES[kind])
+    root = {"title": "made up", "case": case, "a": A, "b": b * A, "p0": P0, "h_scale": A**2 / RADIUS}
+    root |= {"u1": 5.6, "u2": 4.4, "ranks": 1, "petsc_options": ""} | (attrs or {})
+    layout = Layout(x * A, [*DIRECT, "contact_pressure"], y=y * A, kind=kind)
+    writer = ResultWriter(path, layout, root)
+    distance = np.hypot(x, y[:, np.newaxis] / b) * np.where(x < 0.0, -1.0, 1.0)
+    for step, time in enumerate(np.linspace(0, 40e-6, steps)):
+        values, contact = fields_at(distance, time, 0.005)
+        values["contact_pressure"] = np.where(contact, 0.8 * values["pressure"], 0.0)
+        scalars = {"dt": 10e-6, "contacts": contact.sum(), "p_max": values["pressure"].max()}
+        writer.append(step, time, values, scalars | {"h_min": 0.0, "load": 100.0}, contact)
+    writer.close("done")
+    return path
+
+
+PLANES = {  # keys beside those of `TABLE_1`
+    "point": {"contact.radius": [RADIUS, 3.0 * RADIUS], "contact.load": 100.0},
+    "strip": {"mesh.width": 2.0},
+}

@@ -12,8 +12,9 @@ from support.driving import Scene
 from support.running import PYTHON, SCRIPT, called
 
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.case.loading import stored_case
+from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.heat.effect import Heat
 
 PAGE = CASES / "own_laws.md"
 
@@ -108,6 +109,46 @@ def test_built_in_names_are_refused(folder, kind):
     done = called([PYTHON, "-m", "ehlpetsc", "keys", "fluid"], folder, SCRIPT | {"EHLPETSC_OWN": "bad"})
     assert done.returncode == 2
     assert done.stderr == f"{REPLACED[kind]} of this name is built in; allowed: another name\n"
+
+
+BALL = {
+    "title": "ball",
+    "contact": {"radius": [0.0125, 0.0125], "load": 20.0, "material": "100Cr6", "model": "mixed"},
+    "fluid": {
+        "viscosity": 0.04,
+        "law": "roelands",
+        "pressure_viscosity": 20e-9,
+        "density": "dowson-higginson",
+    },
+    "motion": {"entrainment_speed": 0.5},
+    "mesh": {"inlet": -1.8, "outlet": 1.4, "points_per_half_width": 10, "width": 3.0},
+    "time": {"travel": 0.3},
+}
+IN_A_POINT = f"""
+import ehlpetsc, my_supply
+case = ehlpetsc.load({BALL} | {{"starving": {{"loss": 0.5}}}}, effects=my_supply.EFFECTS)
+simulation = ehlpetsc.Simulation(case)
+state = list(simulation)[-1]
+oil = simulation.scales.grid.rows(state.film_thickness * (1.0 - state.void_fraction))[:, 0]
+print(state.supply / 0.15e-6, abs(oil / state.supply - 1.0).max())
+"""
+
+
+def test_effect_of_the_page_in_a_point(folder):
+    """The oil of every row at the inlet is the supply."""
+    supply, difference = map(float, call(folder, "-c", IN_A_POINT).split())
+    assert supply == pytest.approx(0.5**0.3, rel=1e-6)
+    assert difference < 1e-6
+
+
+def test_effects_are_refused_in_contacts_that_they_do_not_serve(monkeypatch):
+    case = BALL | {"heat": {"bulk_temperature": 363.0}}
+    load(case)
+    monkeypatch.setattr(Heat, "contacts", ("line", "strip"))
+    with pytest.raises(CaseError) as refused:
+        load(case)
+    assert str(refused.value) == "case: heat: of line and strip contacts, and this is a point; leave it out"
+    load(BALL)
 
 
 class Additive(Effect):

@@ -1,13 +1,12 @@
 """Conduction into a half-space against closed forms: uniform flux, sinusoid, Jaeger's moving band."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from support.exact_solutions import moving_band
 
 from ehlpetsc.effects.heat.half_spaces import Body, StepWeights, diffuse, exponentials
 from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
+from ehlpetsc.physics.grid import Grid
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 FLUX = 1e9  # W/m^2
@@ -35,8 +34,8 @@ def test_uniform_flux(steps):
 
 
 def body(speed, spacing, nodes, dt=None):
-    scales = SimpleNamespace(nx=nodes, dx=spacing)
-    return Body(STEEL, speed, scales, dt or 0.5 * spacing / speed)
+    grid = Grid((np.arange(nodes),), (spacing,), (1.0,), (1.0,), 1.0)
+    return Body(STEEL, speed, grid, dt or 0.5 * spacing / speed)
 
 
 @pytest.mark.parametrize("peclet", [0.1, 1.0, 10.0, 100.0])
@@ -138,6 +137,81 @@ def test_temperatures_stay_above_bulk_at_any_step():
         implicit = max(0.5 * ratio, ratio - 0.5)  # no more of it than keeps the explicit part positive
         kept = spread[20] - implicit * (spread[19] - 2.0 * spread[20] + spread[21])
         assert kept == pytest.approx(max(1.0 - ratio, 0.0), abs=1e-8)
+
+
+def plane(nodes, half, ny, periodic=False):
+    """Grid of square cells; lengths in the half-width `half` [m], 1.6 ahead of and behind its middle."""
+    step = 1.0 / nodes
+    x, y = step * np.arange(-int(1.6 * nodes), int(1.6 * nodes) + 1), step * (np.arange(ny) - 0.5 * (ny - 1))
+    return Grid((y, x), (step * half, step * half), (1.0, 1.0), (1.0, 1.0), 1.0, periodic=periodic)
+
+
+def moving_point(x, y, half, speed):
+    r"""Temperature at x, y in half-widths under the elliptic flux of a circle, by Jaeger's (1942) integral.
+
+    :math:`T=\frac1{2\pi k}\int\frac qRe^{-u(R-x+x')/(2\chi)}dA'`, in polar coordinates about the point.
+    """
+    points, weights = np.polynomial.legendre.leggauss(300)
+    angle, root = np.pi * (points + 1.0)[:, None], 0.5 * (points + 1.0)
+    R, cosine = 2.2 * root**2, np.cos(angle)
+    square = (x - R * cosine) ** 2 + (y - R * np.sin(angle)) ** 2
+    flux = FLUX * np.sqrt(np.maximum(1.0 - square, 0.0))
+    kernel = np.exp(-0.5 * speed * half / STEEL.diffusivity * R * (1.0 - cosine))
+    return (
+        half * np.pi * weights @ (flux * kernel) @ (2.2 * root * weights) / (2 * np.pi * STEEL.conductivity)
+    )
+
+
+@pytest.mark.parametrize("peclet", [2.0, 50.0])
+def test_moving_point(peclet):
+    """Elliptic flux of a circle, Peclet number u a/(2 chi); steady, and a step from it."""
+    half = 1e-4
+    grid, speed = plane(20, half, 81), 2.0 * STEEL.diffusivity * peclet / half
+    y, x = grid.coordinates
+    flux = FLUX * np.sqrt(np.maximum(1.0 - x**2 - y**2, 0.0))
+    dt = 0.5 * grid.spacings[1] / speed
+    one = Body(STEEL, speed, grid, dt)
+    rise, terms = one.steady(flux, speed)
+    moved = one.advance(one.record(flux, terms), speed * dt, dt, speed)
+    after = moved.history + moved.response * flux
+    for at_x, at_y in ((0.0, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.5, 0.5), (0.0, -0.75)):
+        node, exact = np.argmin((x - at_x) ** 2 + (y - at_y) ** 2), moving_point(at_x, at_y, half, speed)
+        assert rise[node] == pytest.approx(exact, rel=0.005)
+        assert after[node] == pytest.approx(exact, rel=0.01)
+
+
+def test_rows_alike_are_the_row_alone():
+    grid, speed, dt = plane(20, 1e-4, 5), 3.0, 1e-6
+    row = np.random.default_rng(3).uniform(0.0, FLUX, grid.shape[1])
+    line = Grid(grid.axes[1:], grid.spacings[1:], (1.0,), (1.0,), 1.0)
+    rises = []
+    for one, flux in ((Body(STEEL, speed, line, dt), row), (Body(STEEL, speed, grid, dt), np.tile(row, 5))):
+        record = one.record(flux, one.steady(flux, speed)[1])
+        for step in range(1, 4):
+            moved = one.advance(record, step * speed * dt, dt, speed)
+            record = one.accept(moved, flux)
+        rises.append(moved.history)
+    np.testing.assert_allclose(rises[1].reshape(5, -1), np.tile(rises[0], (5, 1)), rtol=1e-12)
+
+
+@pytest.mark.parametrize("periodic", [True, False], ids=["strip", "point"])
+def test_a_sinusoid_across_the_surface(periodic):
+    r"""Flux cos(ky) on a body at rest from time 0: T = q erf(sqrt(chi k^2 t))/(k conductivity)."""
+    from scipy.special import erf
+
+    grid, dt, steps = plane(10, 1e-5, 64, periodic), 2e-9, 40
+    wave = 2.0 * np.pi / 32 if periodic else np.pi / 32  # whole waves, or half ones with crests at the sides
+    flux = np.repeat(FLUX * np.cos(wave * (np.arange(64) + 0.5)), grid.shape[1])
+    one = Body(STEEL, 0.0, grid, dt)
+    record = one.cold()
+    for _ in range(steps):
+        moved = one.advance(record, 0.0, dt, 0.0)
+        record = one.accept(moved, flux)
+    rise, k = moved.history + moved.response * flux, wave / grid.spacings[0]
+    middle = grid.shape[1] // 2
+    rise, flux = (grid.rows(values)[:, middle] for values in (rise, flux))
+    exact = erf(k * np.sqrt(STEEL.diffusivity * steps * dt)) / (k * STEEL.conductivity)
+    np.testing.assert_allclose(rise, exact * flux, atol=0.01 * exact * FLUX)
 
 
 def test_blok_is_the_largest_temperature_of_a_fast_hertz_band():

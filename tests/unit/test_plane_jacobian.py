@@ -10,10 +10,12 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.plane.kernel import free_kernel
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
+from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -113,3 +115,13 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name):
         residual = b.duplicate()
         system.operator.mult(x, residual)
     assert (residual - b).norm() < 1.01e-6 * b.norm()
+
+
+def test_coarse_functions_around_an_isolated_node_are_independent():
+    space = CoarseSpace(free_kernel(9, 9, 0.1, 0.1), False)
+    assert space.spacing == 2
+    mask = np.zeros((9, 9), dtype=bool)
+    mask[:, 2:5] = mask[5, 7] = True  # the last one lies between four coarse nodes
+    functions, deflections = space.chosen(mask.ravel())
+    assert functions.shape[1] == len(deflections) == 10
+    assert np.linalg.matrix_rank(functions.toarray()) == functions.shape[1]

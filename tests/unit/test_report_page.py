@@ -4,14 +4,13 @@ import base64
 import html.parser
 import json
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from plotly.offline import get_plotlyjs
+from support.browser import BROWSER, visited
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.pictures import command as plot
@@ -120,9 +119,6 @@ def test_report_shows_damage_in_decades(tmp_path, page):
     np.testing.assert_allclose(rows, [[-3, np.nan, -5], [np.nan, -7, -8]], rtol=1e-6)
 
 
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-FLAGS = """headless no-sandbox disable-gpu disable-quic no-first-run disable-background-networking
-disable-component-update disable-sync window-size=1200,2400 virtual-time-budget=9000 dump-dom""".split()
 VISITOR = (Path(__file__).parents[1] / "data" / "report_visitor.js").read_text(encoding="utf-8")
 
 
@@ -132,14 +128,7 @@ def test_slider_map_and_zoom_of_the_page(tmp_path, page):
     """What a visitor sees who slides, clicks into the map and zooms, without a network."""
     path = with_solids(make_result(tmp_path / "r.h5"))
     page(path)
-    path = path.with_suffix(".html")
-    text = path.read_text(encoding="utf-8").replace("<head>", f"<head><script>{VISITOR}</script>")
-    path.write_text(text, encoding="utf-8")
-    options = [*FLAGS, f"user-data-dir={tmp_path / 'profile'}", "host-resolver-rules=MAP * ~NOTFOUND"]
-    command = [BROWSER, *(f"--{option}" for option in options), path.as_uri()]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    (answer,) = re.findall("<output>(.*?)</output>", done.stdout)
-    found = json.loads(answer)
+    found = visited(path.with_suffix(".html"), VISITOR)
     assert found["errors"] == []
     assert found["first"]["pressure"] == pytest.approx(1.4)
     assert found["first"]["when"] == "step 0, 0 µs, travel 0.00 a"

@@ -152,13 +152,13 @@ MESH_KEYS = {
     "inlet": Required("first node", "half-widths", -100, lt=-1),
     "outlet": Required("last node", "half-widths", gt=1, le=100),
     "points_per_half_width": Required(
-        "nodes `a/dx`, at most 200000 nodes in all; two: along, and across per half-width b of a point, a of a strip",
+        "nodes `a/dx`, at most 200000 in all; two: along, and across per half-width b of a point, a of a strip",
         *("", 4, 100_000),
         kind=int,
         many="axes",
     ),
     "width": Key(
-        "of a point contact in b [4]; with one radius, in a: a strip, periodic across, with roughness in two dimensions",
+        "of a point contact in b [4]; with one radius, in a: a strip, periodic across",
         *("half-widths", 0.01, 1000),
     ),
     "near_field": Key("nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3),

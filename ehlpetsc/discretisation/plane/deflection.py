@@ -3,9 +3,9 @@ r"""The deflection rows in the plane: separation, pressure and approach in integ
 .. math:: s_g\Big(g-h_{00}-C\sum_{kl}K_{|i-k|,|j-l|}\,p_{kl}\Big),
 
 g the separation of the solids less that of their undeformed shapes, K of :mod:`.kernel`. The scale
-:math:`s_g=\sqrt{\Delta x\Delta y}/h_s`, :math:`h_s` that of the films, makes the norm of the rows a relative error of
-the film. The sum is a convolution by FFT: along x, and across for a point contact, over twice the nodes, because the
-domain is free; across a strip over its period.
+:math:`s_g=\sqrt{\Delta x\Delta y}/h_s`, :math:`h_s` that of the films, makes the norm of the rows a relative
+error of the film. The sum is a convolution by FFT: along x, and across for a point contact, over twice the
+nodes, because the domain is free; across a strip over its period.
 
 Points of a rank are whole rows along x. The transform along x is local; before the one across, a
 :class:`Transposition` hands each rank all rows of some wave numbers.
@@ -132,7 +132,7 @@ class Deflection:
     ):
         self.owned = owned
         (n_y, n_x), (dy, dx) = shape, spacings
-        self.cell, self.periodic = dx * dy, periodic
+        self.cell, self.periodic, self.stiffness = dx * dy, periodic, stiffness
         self.row_scale = np.sqrt(self.cell) / film_scale
         kernel = stiffness * (periodic_kernel if periodic else free_kernel)(n_x, n_y, dx, dy)
         self.kernel = kernel

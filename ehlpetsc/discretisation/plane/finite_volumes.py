@@ -1,20 +1,20 @@
 r"""Finite volumes of the Reynolds equation in the plane: balance of the cells (compiled).
 
-Along x the fluxes are those of a line contact (:mod:`ehlpetsc.discretisation.finite_volumes`). Across there is no
-entrainment; the pressure flow between two rows is central, with the film of the face and both nodes' fluidities, as
-along x.
+Along x the fluxes are those of a line contact (:mod:`ehlpetsc.discretisation.finite_volumes`). Across there
+is no entrainment; the pressure flow between two rows is central, with the film of the face and both nodes'
+fluidities, as along x.
 
-Flow across a sliding non-Newtonian film: the stress of sliding, :math:`\tau_m`, is along x and of the order of the
-Eyring stress, the one of the cross flow is small beside it. It then flows with the viscosity
-:math:`\eta_e=\tau_m/\dot\gamma_m` of the film that slides (the secant, whereas flow along x sees the tangent), as
-Ehret, Dowson and Taylor (1998) and Greenwood (2000) have it,
+Flow across a sliding non-Newtonian film: the stress of sliding, :math:`\tau_m`, is along x and of the order
+of the Eyring stress, the one of the cross flow is small beside it. It then flows with the viscosity
+:math:`\eta_e=\tau_m/\dot\gamma_m` of the film that slides (the secant, whereas flow along x sees the
+tangent), as Ehret, Dowson and Taylor (1998) and Greenwood (2000) have it,
 
 .. math:: M_y=\frac{h^3}{12\eta}\Big[S_0^2+\Big(\frac{\eta}{\eta_e}\Big)^2-1\Big]^{1/2},\qquad
    \frac{\eta}{\eta_e}=\frac{\eta|u_1-u_2|}{h\,\tau(\eta|u_1-u_2|/h)},
 
-for Eyring's law :math:`\zeta/\operatorname{asinh}\zeta`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`. :math:`S_0` is the
-factor of the cross flow without sliding: the limits of a Newtonian oil, of pure rolling and of slow cross flow are
-exact.
+for Eyring's law :math:`\zeta/\operatorname{asinh}\zeta`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`. :math:`S_0`
+is the factor of the cross flow without sliding: the limits of a Newtonian oil, of pure rolling and of slow
+cross flow are exact.
 """
 
 import numpy as np
@@ -83,7 +83,8 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
 
     Derivatives are with respect to (q, h) of both nodes.
 
-    `at`, `table`: as of `finite_volumes.flux_through`, and `law` with the spacing across; its stress and rise.
+    `at`, `table`: as of `finite_volumes.flux_through`, and `law` with the spacing across; its stress and
+        rise.
     `flow`: shear law, its stress at zero pressure.
     """
     per_length, per_film, stress, rise, sliding, _, layer = law
@@ -144,18 +145,21 @@ def balance(
     Parameters
     ----------
     at : shape (10 or 13, (n_y + 2) (n_x + 1))
-        Nodal properties of the local rows, of one more on either side and of a node beyond the outlet in each.
+        Nodal properties of the local rows, of one more on either side and of a node beyond the outlet in
+        each.
     shape
         n_y, n_x: local rows, nodes along x.
     laws
         Constants of the flux along x and across, see `flux_through`.
     storage
-        `m`, `extrapolated`, shape (n_y n_x,), and `k` of :class:`.step_inputs.FilmHistory`; cell over time step, 0:
+        `m`, `extrapolated`, shape (n_y n_x,), and `k` of :class:`.step_inputs.FilmHistory`; cell over time
+            step, 0:
         steady.
     weights
         Of the fluxes along x and across.
     rows
-        Filled in: residual, shape (n_y n_x,); derivatives with respect to q and h of the `STENCIL`, (n_y n_x, 12).
+        Filled in: residual, shape (n_y n_x,); derivatives with respect to q and h of the `STENCIL`, (n_y
+        n_x, 12).
     """
     (n_y, n_x), (along, across), (m_old, extrapolated, k, rate) = shape, laws, storage
     (weight_x, weight_y), (residual, derivatives) = weights, rows

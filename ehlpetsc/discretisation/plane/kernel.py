@@ -1,14 +1,15 @@
 r"""Deflection of a half-space by the pressure of one cell: linear along x (hat), constant across the cell.
 
-With lengths in half-widths a, the pressure in p0 and the deflection in a^2/R, the pressure of node (0, 0) deflects
-node (i, j) by
+With lengths in half-widths a, the pressure in p0 and the deflection in a^2/R, the pressure of node (0, 0)
+deflects node (i, j) by
 
 .. math:: C K_{ij},\qquad K_{ij}=\int\!\!\int\frac{\Lambda(s/\Delta x)}{|(x_i-s,\,y_j-t)|}\,ds\,dt,\qquad
    C=\frac{2p_0R}{\pi E'a},
 
 the second difference in x (over :math:`\Delta x`) and the first difference in y of
 
-.. math:: G(x,y)=\frac{x^2}{2}\operatorname{asinh}\frac{y}{|x|}+|x|y\operatorname{asinh}\frac{|x|}{y}-\frac{yr}{2},
+.. math::
+   G(x,y)=\frac{x^2}{2}\operatorname{asinh}\frac{y}{|x|}+|x|y\operatorname{asinh}\frac{|x|}{y}-\frac{yr}{2},
    \qquad\partial_x^2\partial_yG=\frac1r .
 
 Its sum over y is the kernel of a line contact, :math:`-2\Delta x\,g_k` with the hat functions of
@@ -76,9 +77,9 @@ def cell_potential(x: np.ndarray, y: np.ndarray, dx: float, dy: float) -> np.nda
 def periodic_kernel(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
     r"""K of a strip, summed over all periods n_y dy across, shape (n_y, n_x).
 
-    The mean across is the kernel of the line contact, :math:`-2\ln|x|` instead of the diverging sum. The rest is
-    the sum over the nearest periods; the others, seen from afar, are the integral of 1/r over all distances beyond
-    them (midpoint rule with its first correction).
+    The mean across is the kernel of the line contact, :math:`-2\ln|x|` instead of the diverging sum. The
+    rest is the sum over the nearest periods; the others, seen from afar, are the integral of 1/r over all
+    distances beyond them (midpoint rule with its first correction).
     """
     period, kernel = n_y * dy, np.zeros((n_y, n_x))
     near = min(n_x, int(NEGLIGIBLE_WAVES * period / dx) + 2)

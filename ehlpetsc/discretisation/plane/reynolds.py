@@ -1,11 +1,13 @@
 r"""Discrete Reynolds equation with mass-conserving cavitation in the plane.
 
-.. math:: F\equiv\frac{\partial\rho h(1-\theta)}{\partial t}+\frac{\partial}{\partial x}\Big[\rho\bar uh(1-\theta)-
-   M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial p}{\partial y}\Big]=0
+.. math:: F\equiv\frac{\partial\rho h(1-\theta)}{\partial t}+\frac{\partial}{\partial x}\Big[\rho\bar
+   uh(1-\theta)- M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial
+   p}{\partial y}\Big]=0
 
-Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.reynolds`; the sum of F over the nodes is the mass
-defect over that of a film `film_scale` that enters over a half-width across. Beyond the outlet and, in a point
-contact, beyond the sides the oil has ambient pressure and the film of the last node. A strip is periodic across.
+Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.reynolds`; the sum of F over the nodes is
+the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the outlet and,
+in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A strip is
+periodic across.
 """
 
 from __future__ import annotations
@@ -57,10 +59,11 @@ class Reynolds:
         return rho * (1.0 + np.minimum(q, 0.0)) * h
 
     def properties(self, q: np.ndarray, h: np.ndarray, oil: Oil) -> np.ndarray:
-        """Nodal properties of the rows of the window, with a node beyond the outlet and rows beyond the sides.
+        """Nodal properties of the rows of the window, with a node beyond the outlet and rows beyond the
+        sides.
 
-        Shape (properties, (n_y + 2) (n_x + 1)). Beyond the sides the oil is that beyond the outlet, under the film of
-        the last row.
+        Shape (properties, (n_y + 2) (n_x + 1)). Beyond the sides the oil is that beyond the outlet, under
+        the film of the last row.
         """
         (n_y, n_x), (has_lower, has_upper), rows = self.shape, self.has_sides, len(q) // self.shape[1]
         flat = np.empty((oil.rows, len(q) + rows))
@@ -122,7 +125,8 @@ class Reynolds:
 
 
 class NoOil:
-    """Rows of a dry contact: the Reynolds unknown vanishes, in direct contact it is the pressure of the solids.
+    """Rows of a dry contact: the Reynolds unknown vanishes, in direct contact it is the pressure of the
+    solids.
 
     `owned`: local nodes in the window.
     """

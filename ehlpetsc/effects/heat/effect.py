@@ -127,19 +127,18 @@ class Heat(Effect[HeatRecord]):
         return HeatStep(self.scene)
 
     @cached_property
-    def _contact(self) -> slice:
-        """Slice of the nodes in the Hertz contact."""
-        inside = np.flatnonzero(np.abs(self.scene.scales.x) <= 1.0)
-        return slice(inside[0], inside[-1] + 1)
+    def _contact(self) -> np.ndarray:
+        """Mask of the nodes in the Hertz contact."""
+        return self.scene.scales.grid.inside(1.0)
 
     def start(self, before: HeatRecord | None = None) -> HeatRecord:
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
-        n, steps = self.scene.scales.nx, self._steps
+        n, steps = self.scene.scales.grid.n, self._steps
         cold: dict[str, Any] = dict.fromkeys(HeatRecord._fields, np.zeros(n))
         cold |= dict.fromkeys(("film", "base", "solved"), np.full(n, steps.inlet))
         for side, bulk, body in zip("12", steps.bulk, steps.bodies, strict=True):
             cold |= {f"wall_{side}": np.full(n, bulk), f"body_{side}": body.cold()}
-        return HeatRecord(**cold | {"flow": np.zeros(n + 1), "heat": 0.0, "error": 0.0, "levels": 0})
+        return HeatRecord(**cold | {"flow": np.zeros(n + steps.rows), "heat": 0.0, "error": 0.0, "levels": 0})
 
     def inputs(self, record: HeatRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Oil at the film's temperature; the first steady solution is isothermal."""

@@ -30,6 +30,7 @@ from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_te
 from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
+from ehlpetsc.effects.heat.rows import in_rows
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
@@ -42,11 +43,11 @@ class FilmHeat(NamedTuple):
 
     `isothermal`: oil without heat; None: dry.
     `law`: constants of the oil.
-    `of_nodes`: rows `A` to `REFERENCE`, of :mod:`.film_law`, shape (11, nx): one array,
+    `of_nodes`: rows `A` to `REFERENCE`, of :mod:`.film_law`, shape (11, n): one array,
         as numba looks up the types of many in a tuple anew in some calls, slowly.
-    `guess`: state of the film to start from, rows `BASE` to `MEAN`, shape (3, nx).
-    `walls`: temperatures without the flux of the step [K], shape (2, nx).
-    `stored`: heat capacity of the oil carried over, over the step [W/(m^2 K)], shape (nx,).
+    `guess`: state of the film to start from, rows `BASE` to `MEAN`, shape (3, n).
+    `walls`: temperatures without the flux of the step [K], shape (2, n).
+    `stored`: heat capacity of the oil carried over, over the step [W/(m^2 K)], shape (n,).
     `bodies`: both bodies at the end of the step; None: steady.
     """
 
@@ -77,7 +78,7 @@ class FilmHeat(NamedTuple):
         """Oil of one solve, which starts an evaluation from the state of the film in the last one."""
         return SolvedFilm(*self._replace(guess=self.guess.copy()))
 
-    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
         """As :meth:`.oil.Oil.fill`, from `guess`."""
         self.begin().fill(q, h, nodes, at)
 
@@ -92,7 +93,7 @@ class FilmHeat(NamedTuple):
 class SolvedFilm(FilmHeat):
     """Oil of one solve: its `guess` becomes the state of the film at the nodes last filled in."""
 
-    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice, at: np.ndarray) -> None:
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
         """As :meth:`.oil.Oil.fill`; changes `guess`."""
         state, of_nodes = (np.ascontiguousarray(rows[:, nodes]) for rows in (self.guess, self.of_nodes))
         oil = self.isothermal
@@ -237,3 +238,19 @@ def faces(
             rate = max(sliding / (stress * at[H, i] * fluidities(at, i, i)[0]), MIN_RATE)
             spread[i] = stress_spread(0.5 * at[H, i] * abs(gradient[i]) / stress, np.log(rate), table)
     couette[0] = couette[1]
+
+
+def faces_in_rows(
+    rows: int, at: np.ndarray, law: tuple, table: np.ndarray, oil: np.ndarray, max_flow: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Results of :func:`faces` of each row of nodes, flat: Couette flow, heat, spread, gradient.
+
+    `at`: nodes of all rows, then the nodes beyond their outlets, as of :meth:`.oil.Oil.fill`.
+    """
+    n = len(oil)
+    nodes, beyond = in_rows(at[:, :n], rows), in_rows(at[:, n:], rows)
+    couette, of_nodes = np.zeros((rows, n // rows + 1)), np.empty((3, rows, n // rows))
+    for k, row_oil in enumerate(np.split(oil, rows)):
+        row_at = np.concatenate([nodes[k], beyond[k]], axis=1)
+        faces(row_at, law, table, row_oil, max_flow, couette[k], *of_nodes[:, k])
+    return couette.ravel(), *of_nodes.reshape(3, n)

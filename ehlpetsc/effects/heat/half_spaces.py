@@ -8,7 +8,8 @@ The surface temperature under a flux q is, in the frame of the body,
 
 :math:`\chi=k/(\rho c)` (Carslaw & Jaeger 1959, sections 2.9 and 10.3). Each term obeys
 :math:`\dot A_m=-\lambda_mA_m+\chi\partial_{ss}A_m+q`, and :math:`T=\sum w_mA_m/\sqrt{k\rho c}`, so that no
-history is stored.
+history is stored. In the plane :math:`\partial_{yy}` is beside :math:`\partial_{ss}`: each row of cells along
+x is that of a line contact, conduction between rows in :mod:`.rows`.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.effects.heat.record import BodyHeat
+from ehlpetsc.effects.heat.rows import Across
 from ehlpetsc.physics.flash_temperature import Solid
-from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.grid import Grid
 
 STEP = 1.2  # of the trapezoidal rule in y: its relative error is 2 |Gamma(1/2 + 2 pi i/STEP)|/sqrt(pi) = 8e-4
 FASTEST = 30.0  # rate of the fastest term times the time step
@@ -230,7 +232,8 @@ class BodyStep(NamedTuple):
     """One body at the end of a step, but for the flux there.
 
     `body`: its terms with the flux of the begin of the step.
-    `history`: temperature above bulk at the nodes without the flux at the end of the step [K], shape (nx,).
+    `history`: temperature above bulk at the nodes without the flux at the end of the step [K], shape
+        (nodes,).
     `response`: temperature per flux at the end of the step [m^2 K/W].
     `end`: contribution of that flux to the terms [s], shape (terms,).
     `fraction`: fraction of a cell by which the nodes are ahead of the cells.
@@ -244,14 +247,15 @@ class BodyStep(NamedTuple):
 
 
 class Body:
-    """Conduction into one body.
+    """Conduction into one body, in rows of cells along x.
 
     `speed`: of its surface at the start [m/s].
     `dt`: nominal time step [s].
     """
 
-    def __init__(self, solid: Solid, speed: float, scales: Scales, dt: float) -> None:
-        self.solid, self.n, self.dx = solid, scales.grid.n, scales.dx
+    def __init__(self, solid: Solid, speed: float, grid: Grid, dt: float) -> None:
+        self.solid, self.n, self.dx = solid, grid.shape[-1], grid.spacings[-1]
+        self.across = Across(grid)
         chi, speed = solid.diffusivity, abs(speed)
         length = self.n * self.dx
         slow = MAX_DIFFUSION_AREA / chi
@@ -262,12 +266,24 @@ class Body:
         self.padding = int(min(np.ceil(reach), self.n)) + 2
 
     def steady(self, flux: np.ndarray, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """Temperatures above bulk [K] at the nodes under a steady flux, and the terms of the cells."""
-        q = np.pad(flux, (self.padding, self.padding + 1))
-        terms = np.empty((len(q), len(self.rates)))
-        moving_terms(q, self.rates, self.solid.diffusivity, speed, self.dx, terms)
-        rise = terms @ self.weights / self.solid.effusivity + self._tail * q
-        return rise[self.padding : self.padding + self.n], terms
+        """Temperatures above bulk [K] at the nodes under a steady flux, and the terms of the cells.
+
+        A mode across decays faster than the mean by its own rate.
+        """
+        q, across, chi = self._on_cells(flux), self.across, self.solid.diffusivity
+        terms = np.empty((*q.shape, len(self.rates)))
+        for mode, decay, out in zip(across.mixed(q, across.modes.T), across.decay, terms, strict=True):
+            moving_terms(mode, self.rates + chi * decay, chi, speed, self.dx, out)
+        cells = across.mixed(terms, across.modes).reshape(-1, len(self.rates))
+        rise = cells @ self.weights / self.solid.effusivity + self._tail * q.ravel()
+        return self._rows(rise)[:, self.padding : self.padding + self.n].ravel(), cells
+
+    def _on_cells(self, flux: np.ndarray) -> np.ndarray:
+        """Flux at the nodes on the cells of a body at its place at the start, shape (rows, cells)."""
+        return np.pad(self._rows(flux), ((0, 0), (self.padding, self.padding + 1)))
+
+    def _rows(self, values: np.ndarray) -> np.ndarray:
+        return values.reshape(self.across.rows, -1, *values.shape[1:])
 
     @property
     def _tail(self) -> float:
@@ -276,12 +292,11 @@ class Body:
 
     def record(self, flux: np.ndarray, terms: np.ndarray) -> BodyHeat:
         """Record of a steady flux."""
-        q = np.pad(flux, (self.padding, self.padding + 1))
-        return BodyHeat(-self.padding, terms, q, self.rates, self.weights)
+        return BodyHeat(-self.padding, terms, self._on_cells(flux).ravel(), self.rates, self.weights)
 
     def cold(self) -> BodyHeat:
         """Record of a body without heat."""
-        cells = self.n + 1 + 2 * self.padding
+        cells = self.across.rows * (self.n + 1 + 2 * self.padding)
         zeros = np.zeros((cells, len(self.rates)))
         return BodyHeat(-self.padding, zeros, np.zeros(cells), self.rates, self.weights)
 
@@ -293,27 +308,29 @@ class Body:
         `dt`: [s]
         `speed`: [m/s], signed.
         """
-        cells = len(body.flux)
         position = -travelled / self.dx
-        base = int(np.floor(position))
-        padding = (cells - self.n - 1) // 2
+        base, padding = int(np.floor(position)), self._padding_of(body)
         shift = base - padding - body.first
         moved = -speed * dt / self.dx
         if abs(shift - moved) > RENUMBERED:  # the distance is counted from another place now
             shift = int(np.floor(moved))
         step = StepWeights.of(body.rates, dt, self.solid.effusivity)
-        ratio = self.solid.diffusivity * dt / self.dx**2
-        terms, flux, rise = advance_terms(
-            body.terms, body.flux, shift, step.decay, step.begin, ratio, body.weights / self.solid.effusivity
-        )
+        area = self.solid.diffusivity * dt
+        before = (self._rows(self.across.spread(values, area)) for values in (body.terms, body.flux))
+        given = shift, step.decay, step.begin, area / self.dx**2, body.weights / self.solid.effusivity
+        after = [advance_terms(*row, *given) for row in zip(*before, strict=True)]
+        terms, flux, rise = map(np.concatenate, zip(*after, strict=True))
         body, fraction = body._replace(first=base - padding, terms=terms, flux=flux), position - base
-        here, next_one = rise[padding : padding + self.n], rise[padding + 1 : padding + self.n + 1]
-        history = (1.0 - fraction) * here + fraction * next_one
-        return BodyStep(body, history, step.response, step.end, fraction)
+        rises = self._rows(rise)[:, padding : padding + self.n + 1]
+        history = (1.0 - fraction) * rises[:, :-1] + fraction * rises[:, 1:]
+        return BodyStep(body, history.ravel(), step.response, step.end, fraction)
+
+    def _padding_of(self, body: BodyHeat) -> int:
+        return (len(body.flux) // self.across.rows - self.n - 1) // 2
 
     def accept(self, step: BodyStep, flux: np.ndarray) -> BodyHeat:
-        """Record with the flux at the end of the step, shape (nx,), shared out to the cells by overlap."""
-        body = step.body
-        padding = (len(body.flux) - self.n - 1) // 2
-        terms, shared = add_flux(body.terms, np.ascontiguousarray(flux), padding, step.fraction, step.end)
-        return body._replace(terms=terms, flux=shared)
+        """Record with the flux at the end of the step, shape (nodes,), shared out to the cells by overlap."""
+        given = self._padding_of(step.body), step.fraction, step.end
+        rows = zip(self._rows(step.body.terms), self._rows(np.ascontiguousarray(flux)), strict=True)
+        terms, shared = map(np.concatenate, zip(*(add_flux(*row, *given) for row in rows), strict=True))
+        return step.body._replace(terms=terms, flux=shared)

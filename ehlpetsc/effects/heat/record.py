@@ -6,9 +6,9 @@ import numpy as np
 
 
 class BodyHeat(NamedTuple):
-    """Heat of one body.
+    """Heat of one body, in rows of cells along x; arrays are flat, x fastest.
 
-    `first`: position of the first cell in the body, in cells.
+    `first`: position of the first cell of each row in the body, in cells.
     `terms`: :math:`A_m` [J/m^2], shape (cells, terms).
     `flux`: heat flux at the time level [W/m^2], shape (cells,).
     `rates`, `weights`: of the sum of exponentials, shape (terms,).
@@ -22,7 +22,8 @@ class BodyHeat(NamedTuple):
 
 
 class HeatRecord(NamedTuple):
-    """Temperatures and heat at a time level; arrays of shape (nx,) but for `flow`, (nx + 1,).
+    """Temperatures and heat at a time level; arrays over the nodes, but for `flow` over the faces
+    of each row, one more than nodes.
 
     `film`, `wall_1`, `wall_2`: temperatures [K].
     `flux_1`, `flux_2`: heat fluxes into both bodies [W/m^2].
@@ -38,7 +39,7 @@ class HeatRecord(NamedTuple):
     `pressure`: of the oil [Pa].
     `rate`: change of the film's temperature over the last step [K/s]; 0: steady.
     `extrapolated`: heat of the film beyond that at its temperature, see :mod:`.transport` [J/m^2].
-    `heat`: dissipated [W/m].
+    `heat`: dissipated [W/m], in a point contact [W].
     `error`: its imbalance over it.
     `levels`: number of solutions before this level; 0: none yet.
     """

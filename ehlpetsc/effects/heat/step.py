@@ -10,15 +10,15 @@ import numpy as np
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.oil import IsothermalOil
-from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.discretisation.reynolds import flow_table_of, shear_constants
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.effects.effect import Scene, Step
-from ehlpetsc.effects.heat.film import FilmHeat, faces, last_profile
+from ehlpetsc.effects.heat.film import FilmHeat, faces_in_rows, last_profile
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
-from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken, transport
+from ehlpetsc.effects.heat.transport import Film, explicit_in_rows, heat_taken_in_rows, transport_in_rows
 from ehlpetsc.physics.flash_temperature import Solid
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
@@ -61,12 +61,11 @@ class HeatStep:
         s, self.bulk, self.inlet = self.scales, case.heat.bulk_temperature, case.heat.oil_inlet_temperature
         solids = map(Solid, self.heat.conductivity, self.heat.density, self.heat.heat_capacity)
         dt = s.dt or 0.5 * s.dx / s.u_max
-        self.bodies = [Body(solid, u, s, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
+        self.bodies = [Body(solid, u, s.grid, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
         self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
         # of films that close the shear would heat without limit, and not at all once they are closed
         self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
-        layer = case.contact.asperity_height or 0.0
-        self.reynolds = None if self.fluid is None else Reynolds(s, 1.0, 0, s.grid.n, layer=layer)
+        self.layer, self.rows = case.contact.asperity_height or 0.0, s.grid.n // s.nx
         self.coldest = min(self.inlet, *self.bulk)
 
     def film_heat(self, record: HeatRecord, inputs: StepInputs, step: Step) -> FilmHeat:
@@ -88,7 +87,8 @@ class HeatStep:
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-        rows = *explicit_transport(stored, record.flow, record.film, self.inlet), record.source, record.spread
+        balance = explicit_in_rows(self.rows, stored, record.flow, record.film, self.inlet)
+        rows = *balance, record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
         between, middle = np.ones(n), record.base.copy()
@@ -105,7 +105,7 @@ class HeatStep:
     ) -> tuple[Temperatures, Film, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures and heat of an accepted solution.
 
-        Returns both, and `source`, `spread`, `solved` of :class:`.record.HeatRecord`, shape (nx,).
+        Returns both, and `source`, `spread`, `solved` of :class:`.record.HeatRecord`, shape (n,).
         """
         s, loads = self.scales, solution.loads
         heat = solution.inputs.oil  # of the first steady solution, and without oil, isothermal
@@ -116,7 +116,7 @@ class HeatStep:
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.grid.n)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            carried = blank, blank, blank, np.zeros(s.grid.n + 1)
+            carried = blank, blank, blank, np.zeros(s.grid.n + self.rows)
             film = Film(blank, thickness, np.ones(s.grid.n), record.film, *carried, rubbing)
             source = spread = blank
         else:
@@ -143,28 +143,31 @@ class HeatStep:
         self, solution: Solution, heat: FilmHeat
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Temperatures of the film in the solve; results of `film.faces`."""
-        n, nodes, backward = self.scales.grid.n, solution.nodes, solution.inputs.conditions.entrainment < 0.0
+        nodes, backward = solution.nodes, solution.inputs.conditions.entrainment < 0.0
         given = solution.inputs, nodes.reynolds_unknown, nodes.film, solution.loads.oil_mask, heat.guess
         inputs, q, h, oil, guess = map(mirrored, given) if backward else given
-        filled = inputs.oil.begin()
-        couette, *of_nodes = np.zeros(n + 1), np.empty(n), np.empty(n), np.empty(n)
-        at = self.reynolds.properties(q, h, filled)
+        filled, at = inputs.oil.begin(), np.empty((inputs.oil.rows, len(q) + self.rows))
+        filled.fill(q, h, slice(0, len(q)), at)
         solved = filled.guess if isinstance(filled, FilmHeat) else guess
-        limits = self._max_flow(h, oil, inputs)
-        law = self.reynolds.face_law(inputs), self.reynolds.flow_table(inputs)
-        faces(at, *law, oil, limits, couette, *of_nodes)
-        pressure_heat, spread, gradient = of_nodes
+        law = self._face_law(inputs), flow_table_of(inputs)
+        of_faces = faces_in_rows(self.rows, at, *law, oil, self._max_flow(h, oil, inputs))
+        couette, pressure_heat, spread, gradient = of_faces
         if backward:
             solved, couette, pressure_heat, spread, gradient = map(
                 mirrored, (solved, -couette, pressure_heat, spread, -gradient)
             )
         return solved, couette, pressure_heat, spread, gradient
 
+    def _face_law(self, inputs: StepInputs) -> tuple:
+        """Constants of :func:`.finite_volumes.flux_through`."""
+        s = self.scales
+        return s.p0 / (s.a * s.grid.dx), s.h, *shear_constants(inputs, s), self.layer
+
     def _max_flow(self, h: np.ndarray, oil: np.ndarray, inputs: StepInputs) -> tuple[float, float]:
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
         if oil.all():
             return np.inf, np.inf
-        speed, contact = MAX_FLOW_RATIO * abs(inputs.conditions.entrainment), np.abs(self.scales.x) <= 1.0
+        speed, contact = MAX_FLOW_RATIO * abs(inputs.conditions.entrainment), self.scales.grid.inside(1.0)
         return speed, speed * h[contact].mean() * self.scales.h
 
     def _compression(
@@ -189,10 +192,9 @@ class HeatStep:
         """State of the film, both fluxes, the heat of shear, e and the shear stress."""
         rubbed, fractions = _rubbed(walls, responses, film.rubbing)
         heat = heat.with_rows((W1, W2, R1, R2), (*rubbed, *responses))
-        state, rows, couette = state.copy(), np.array(film[:-2]), film.couette
-        *fluxes, shear, extrapolated, stress = out = np.empty((5, state.shape[1]))
-        ambient = self.inlet, self.coldest
-        transport(state, rows, couette, ambient, tuple(heat.law), heat.of_nodes, out)
+        given = state, np.array(film[:-2]), film.couette, (self.inlet, self.coldest)
+        state, out = transport_in_rows(self.rows, *given, tuple(heat.law), heat.of_nodes)
+        *fluxes, shear, extrapolated, stress = out
         fluxes = [q + part * film.rubbing for q, part in zip(fluxes, fractions, strict=True)]
         return state, fluxes, shear, extrapolated, stress
 
@@ -211,7 +213,7 @@ class HeatStep:
     def _steady(self, record: HeatRecord, heat: FilmHeat, film: Film, step: Step) -> Temperatures:
         """Temperatures of a steady solution: those of film and surfaces made to agree."""
         speeds = step.conditions.u1, step.conditions.u2
-        heated = (np.abs(self.scales.x) < HEATED) * 1.0
+        heated = (np.abs(self.scales.grid.coordinates[-1]) < HEATED) * 1.0
         responses = [body.steady(heated, u)[0] for body, u in zip(self.bodies, speeds, strict=True)]
         responses = [np.maximum(response, response.max() * MIN_RESPONSE) for response in responses]
         temperatures = None
@@ -242,19 +244,23 @@ class HeatStep:
         return temperatures
 
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
-        """Heat dissipated [W/m], and its imbalance with the heat that bodies and oil take, over it.
+        """Heat dissipated [W/m], in a point contact [W], and the imbalance with what takes it, over it.
 
-        Next to no heat, as at rest, is not the measure of the imbalance, but the heat that warms by
-        `MIN_TEMPERATURE_RISE` the oil that is stored and carried, or a film of a^2/R at the maximum speed.
+        Bodies and oil take it. Next to no heat, as at rest, is not the measure of the imbalance, but the heat
+        that warms by `MIN_TEMPERATURE_RISE` the oil that is stored and carried, or in each row a film of
+        a^2/R at the maximum speed.
         """
         total = (temperatures.shear + source + film.rubbing).sum()
         of_film = film.old, film.stored, film.extrapolated, film.couette
-        taken = heat_taken(*of_film, self.inlet, temperatures.film, temperatures.extrapolated)
+        taken = heat_taken_in_rows(
+            self.rows, *of_film, self.inlet, temperatures.film, temperatures.extrapolated
+        )
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
         s = self.scales
-        moved = max(np.abs(film.couette).max(), self.capacity * s.u_max * s.h / s.dx)
+        flow = np.abs(film.couette.reshape(self.rows, -1)).max(axis=1)
+        moved = np.maximum(flow, self.capacity * s.u_max * s.h / s.dx).sum()
         least = MIN_TEMPERATURE_RISE * (moved + film.stored.sum())
-        return s.dx * total, abs(missing) / max(abs(total), least)
+        return s.grid.cell_size * total, abs(missing) / max(abs(total), least)
 
 
 def _rubbed(

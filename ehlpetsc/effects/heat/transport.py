@@ -28,6 +28,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import FilmLaw
+from ehlpetsc.effects.heat.rows import in_rows, joined
 
 SWEEPS = 50
 PRESSURE, THICKNESS, LEFT, OLD, STORED, CHANGE, EXTRAPOLATED = range(7)  # rows: fields of a Film
@@ -36,7 +37,7 @@ SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the swe
 
 
 class Film(NamedTuple):
-    """Film of a solution; arrays of shape (nx,).
+    """Film of a solution; arrays over the nodes.
 
     `pressure`, `thickness`: of the oil [Pa]; [m], 0 where the solids are in direct contact.
     `left`: fraction of the gap that is full of oil.
@@ -44,8 +45,8 @@ class Film(NamedTuple):
     `stored`: heat capacity of the oil carried over, over the step [W/(m^2 K)]; 0: steady.
     `change`: by which the temperature would change in the step as fast as in the one before [K].
     `extrapolated`: e at the begin of the step, over the step [W/m^2].
-    `couette`: heat capacity that the mean speed moves through the faces, per cell [W/(m^2 K)], shape (nx +
-        1,).
+    `couette`: heat capacity that the mean speed moves through the faces of each row, per cell [W/(m^2 K)],
+        shape (rows (nx + 1),).
     `rubbing`: heat of the solids [W/m^2], which arises in the walls.
     """
 
@@ -231,3 +232,47 @@ def heat_taken(
         taken += stored[i] * (t[i] - old[i]) + extrapolated[i] - before_step[i]
         taken -= (flow[i + 1] - flow[i]) * (t[i] - inlet)
     return taken
+
+
+def explicit_in_rows(
+    rows: int, stored: np.ndarray, flow: np.ndarray, t: np.ndarray, inlet: float
+) -> list[np.ndarray]:
+    """Results of :func:`explicit_transport` of each row of nodes, flat."""
+    parts = zip(*(np.split(values, rows) for values in (stored, flow, t)), strict=True)
+    return [
+        np.concatenate(row) for row in zip(*(explicit_transport(*part, inlet) for part in parts), strict=True)
+    ]
+
+
+def transport_in_rows(
+    rows: int,
+    state: np.ndarray,
+    film: np.ndarray,
+    flow: np.ndarray,
+    ambient: tuple[float, float],
+    law: tuple,
+    of_nodes: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """State and `out` of :func:`transport` of each row of nodes, over all nodes."""
+    states, films, constants = (in_rows(values, rows) for values in (state.copy(), film, of_nodes))
+    out = np.empty((rows, 5, films.shape[-1]))
+    for k, row_flow in enumerate(np.split(flow, rows)):
+        transport(states[k], films[k], row_flow, ambient, law, constants[k], out[k])
+    return joined(states), joined(out)
+
+
+def heat_taken_in_rows(
+    rows: int,
+    old: np.ndarray,
+    stored: np.ndarray,
+    before_step: np.ndarray,
+    flow: np.ndarray,
+    inlet: float,
+    t: np.ndarray,
+    extrapolated: np.ndarray,
+) -> float:
+    """:func:`heat_taken` of all rows of nodes."""
+    parts = zip(
+        *(np.split(values, rows) for values in (old, stored, before_step, flow, t, extrapolated)), strict=True
+    )
+    return sum(heat_taken(*before, inlet, *now) for *before, now in ((*p[:4], p[4:]) for p in parts))

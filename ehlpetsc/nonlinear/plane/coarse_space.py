@@ -1,9 +1,9 @@
 r"""Coarse correction of the pressures of a contact in the plane, for the long waves.
 
-An incomplete factorisation reduces waves of a few nodes; those of pressure ahead of the contact, where the flow obeys
-nearly Poisson's equation, and in it, where film and deflection are in balance, take it ever longer on finer meshes. On
-bilinear functions P over some nodes the Reynolds rows, with flow :math:`A` and transport :math:`\Gamma` by the
-separation, have the matrix
+An incomplete factorisation reduces waves of a few nodes; those of pressure ahead of the contact, where the
+flow obeys nearly Poisson's equation, and in it, where film and deflection are in balance, take it ever
+longer on finer meshes. On bilinear functions P over some nodes the Reynolds rows, with flow :math:`A` and
+transport :math:`\Gamma` by the separation, have the matrix
 
 .. math:: P^TAP+(P^T\Gamma P)\,K_c,
 
@@ -66,7 +66,7 @@ class CoarseSpace:
     def chosen(self, mask: np.ndarray) -> tuple[csr_matrix, np.ndarray]:
         """Functions cut off outside of a mask of nodes, and their deflections K_c.
 
-        Only of the coarse nodes in the mask: what is left of others may be linearly dependent.
+        Those whose own coarse node is in the mask: cut off more, several may be the same but for a factor.
         """
         cut = (diags(mask.astype(float)) @ self.functions).tocsc()
         kept = np.flatnonzero(mask.reshape(self.shape)[:: self.spacing, :: self.spacing])
@@ -78,8 +78,8 @@ class CoarseSpace:
 class CoarseCorrection:
     """Correction of Reynolds rows at the nodes of a mask.
 
-    `flow`, `transport`: derivatives of the rows by pressures and by separations of the nodes i-2 .. i+1, below and
-        above, every second column; shape (nodes, 12).
+    `flow`, `transport`: derivatives of the rows by pressures and by separations of the nodes i-2 .. i+1,
+        below and above, every second column; shape (nodes, 12).
     """
 
     def __init__(self, space: CoarseSpace, flow: np.ndarray, transport: np.ndarray, mask: np.ndarray):

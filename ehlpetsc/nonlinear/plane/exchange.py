@@ -1,4 +1,4 @@
-"""Exchange of unknowns, pressures and wave numbers of a contact in the plane between ranks, which own whole rows."""
+"""Exchange of unknowns, pressures and wave numbers in the plane between ranks, which own whole rows."""
 
 from __future__ import annotations
 

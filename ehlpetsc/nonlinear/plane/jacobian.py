@@ -34,7 +34,8 @@ class PlaneJacobian(Jacobian):
 
     `elimination`: of the preconditioner, kept between solves.
 
-    `deflected`: last change of the unknowns whose deflection is known, and that deflection: the preconditioner,
+    `deflected`: last change of the unknowns whose deflection is known, and that deflection: the
+        preconditioner,
     which computes it for the vector that GMRES multiplies next, saves every second convolution.
     """
 

@@ -2,16 +2,17 @@ r"""Preconditioner of a contact in the plane: film and load eliminated, the pres
 
 For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equation and load:
 
-1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put into
-   the Reynolds rows (:mod:`.reduction`).
+1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put
+   into the Reynolds rows (:mod:`.reduction`).
 2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and from the sparse form
-   (:mod:`.screened_poisson`) by PETSc's preconditioner of the user's options, ``-pc_type``, by default incomplete
-   LU. The load is an additional row and column.
+   (:mod:`.screened_poisson`) by PETSc's preconditioner of the user's options, ``-pc_type``, by default
+   incomplete LU. The load is an additional row and column.
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
    exact.
 
 Every time step begins with the matrices of the smooth contact (:meth:`Elimination.keep`), on which it depends
-neither before nor after a restart. They are assembled anew, for the rest of the step, when GMRES takes more than
+neither before nor after a restart. They are assembled anew, for the rest of the step, when GMRES takes more
+than
 `MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 """
 
@@ -39,7 +40,8 @@ MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
 class EliminatedFilm:
     """Context of PETSc's Python preconditioner.
 
-    Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm`` (the default).
+    Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm`` (the
+    default).
     """
 
     def setUp(self, pc: PETSc.PC) -> None:
@@ -129,7 +131,7 @@ class Elimination:
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
         self.coarse_space = CoarseSpace(problem.deflection.kernel, problem.grid.periodic)
-        self.terms = fitted_terms(problem.deflection, problem.grid.steps)
+        self.terms = fitted_terms(problem.deflection.stiffness, problem.grid.steps)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.factors: Factors | None = None

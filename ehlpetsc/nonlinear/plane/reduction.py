@@ -1,13 +1,13 @@
 r"""Elimination of the film from the linear system of a contact in the plane, node by node.
 
-The row of the deflection, :math:`\delta s-\delta h_{00}-D\,\delta p=b`, gives the change of the separation s by those of
-all pressures. What is left are one or two unknowns a node, by which of its quantities depend on both of its unknowns
-(q, w):
+The row of the deflection, :math:`\delta s-\delta h_{00}-D\,\delta p=b`, gives the change of the separation s
+by those of all pressures. What is left are one or two unknowns a node, by which of its quantities depend on
+both of its unknowns (q, w):
 
 * `PRESSURE`: pressure and separation are independent; unknown: the pressure, row: Reynolds.
 * `VOID`: the pressure is constant (a cavity, yielding solids); unknown: that of the Reynolds equation.
-* `CONTACT`: the separation follows from the pressure (solids that touch, stiff asperities in a cavity); unknowns:
-  pressure with the row of the deflection, and that of the Reynolds equation.
+* `CONTACT`: the separation follows from the pressure (solids that touch, stiff asperities in a cavity);
+  unknowns: pressure with the row of the deflection, and that of the Reynolds equation.
 * `BOUND`: as `CONTACT`, without a Reynolds row (a film at its bound).
 """
 
@@ -24,12 +24,13 @@ STIFF_SLOPE = 1e-3  # p0 per a^2/R: from this slope of the asperities' pressure 
 
 
 class Reduction(NamedTuple):
-    """Changes of the quantities of each node by those of the unknowns that are left; arrays of shape (nodes,).
+    """Changes of the quantities of each node by those of the unknowns left; arrays of shape (nodes,).
 
     `kind`: as in the module.
     `r_p`, `r_s`, `h_p`, `h_s`: of Reynolds unknown r and film h by pressure p and separation s.
     `s_p`: of the separation by the pressure, at `CONTACT` and `BOUND`.
-    `back`: of q and w by the first (p; at `VOID` r) and the second quantity (s; at `CONTACT` r), shape (4, nodes).
+    `back`: of q and w by the first (p; at `VOID` r) and the second quantity (s; at `CONTACT` r), shape (4,
+        nodes).
     """
 
     kind: np.ndarray

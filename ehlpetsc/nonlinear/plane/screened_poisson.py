@@ -5,11 +5,11 @@ The deflection, :math:`2\pi C/|k|` over the wave numbers k, is a full matrix; th
 .. math:: \frac{2\pi C}{|k|}\approx\sum_j\frac{c_j}{k^2+s_j^2},\qquad
    D\,p\approx\sum_jc_ju_j,\quad(-\nabla^2+s_j^2)\,u_j=p
 
-is a sparse one, of three more unknowns a node that obey screened Poisson equations (five-point stencils, zero beyond
-the mesh). The weights are positive and fit the convolution of the mesh to 10 to 20 %.
+is a sparse one, of three more unknowns a node that obey screened Poisson equations (five-point stencils,
+zero beyond the mesh). The weights are positive and fit to 10 to 20 %.
 
-Unknowns of a node, in this order: u_1, u_2, u_3, v, and r where solids touch anywhere. v is the pressure, in a
-cavity the unknown of the Reynolds equation.
+Unknowns of a node, in this order: u_1, u_2, u_3, v, and r where solids touch anywhere. v is the pressure, in
+a cavity the unknown of the Reynolds equation.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from __future__ import annotations
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID
 
 TERMS = 3
@@ -25,23 +24,19 @@ LONGEST = 1.0  # smallest s_j, in 1/a
 MAX_ROW = 6 * (TERMS + 2)  # entries of a Reynolds row
 
 
-def fitted_terms(deflection: Deflection, spacings: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients c_j and squares of s_j that fit the spectrum of the deflection, shape (TERMS,) each."""
+def fitted_terms(stiffness: float, spacings: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients c_j and squares of s_j for C of the deflection, shape (TERMS,) each.
+
+    Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, of the
+    logarithm of a strip above all, swings about it and through zero.
+    """
     from scipy.optimize import nnls
 
     dy, dx = spacings
-    shortest = np.pi / max(dx, dy)
-    s_2 = np.geomspace(LONGEST, shortest, TERMS) ** 2
-    convolution = deflection.convolution
-    k_y = 2.0 * np.pi * np.fft.fftfreq(convolution.length_y)[:, None]
-    k_x = 2.0 * np.pi * np.fft.rfftfreq(convolution.length_x)[None, convolution.waves_here]
-    laplacian = (2.0 - 2.0 * np.cos(k_x)) / dx**2 + (2.0 - 2.0 * np.cos(k_y)) / dy**2
-    fits = (laplacian > LONGEST**2) & (convolution.spectrum > 0.0)
-    chosen = np.flatnonzero(fits)[:: max(np.count_nonzero(fits) // 4000, 1)]
-    laplacian, target = laplacian.ravel()[chosen], convolution.spectrum.ravel()[chosen]
-    weight = 1.0 / np.sqrt(laplacian)  # each octave of wave numbers counts the same
-    matrix = 1.0 / (laplacian[:, None] + s_2) / target[:, None]
-    return nnls(matrix * weight[:, None], weight)[0], s_2
+    s_2 = np.geomspace(LONGEST, np.pi / max(dx, dy), TERMS) ** 2
+    k_2 = np.geomspace(LONGEST**2, 4.0 / dx**2 + 4.0 / dy**2, 200)  # the largest of the five-point stencil
+    matrix = np.sqrt(k_2)[:, None] / (k_2[:, None] + s_2) / (2.0 * np.pi * stiffness)
+    return nnls(matrix, np.ones(len(k_2)))[0], s_2
 
 
 @compiled
@@ -77,8 +72,8 @@ def fill(
     `scales`: of the deflection rows; dy; dx.
     `mesh`: n_x, nodes, first, last, whether periodic, unknowns of a node.
     `csr`: row pointers, columns, values.
-    `by_pressure`, `by_separation`: of the local Reynolds rows by v and by the separation at the nodes of their
-        stencil, (last - first, 6).
+    `by_pressure`, `by_separation`: of the local Reynolds rows by v and by the separation at the nodes of
+        their stencil, (last - first, 6).
     `border`: of the local rows by h00.
     """
     (kind, r_p, r_s, h_p, h_s, s_p), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales

@@ -2,6 +2,7 @@
 // Charts by Plotly, which stands above this script; what is drawn comes from the JSON before it.
 
 const BLUE = "#1f4e79", SOLIDS = "#e08214", CONTACT = "#d62728", GREY = "#999";
+const FILMS = [[0, "#f7fbff"], [0.25, "#c8dcf0"], [0.5, "#73b2d8"], [0.75, "#2979b9"], [1, "#08306b"]];
 const CONFIG = { displaylogo: false, responsive: true, modeBarButtonsToRemove: ["select2d", "lasso2d"] };
 const MARGIN = { l: 70, r: 20, t: 30, b: 45 };
 const LETTERS = 60;  // of a line above a small chart
@@ -31,11 +32,37 @@ function folded(text) {
 
 const largest = values => values.reduce((most, v) => (v > most ? v : most), 0);
 const data = JSON.parse(document.getElementById("data").textContent);
-instantAndMap(data.frames);
+instantAndMap(data.frames, data.maps ? planeMaps(data.maps, data.frames.hertz) : () => {}, data.maps ? "x/a along y = 0" : "x/a");
 overTime(data.steps);
 damage(data.damage);
 
-function instantAndMap(frames) {
+// maps of a point contact or strip; returns the function that shows frame k
+function planeMaps(maps, hertz) {
+  const x = unpacked(maps.x), y = unpacked(maps.y), n = x.length, contact = unpacked(maps.contact, Uint8Array);
+  const [pressure, film] = [maps.pressure, maps.film].map(field => { const levels = unpacked(field.levels, Uint16Array); return i => levels[i] * field.unit; });
+  const rows = (of, k) => Array.from(y, (_, j) => Array.from(x, (_, i) => of((k * y.length + j) * n + i)));
+  const about = { type: "heatmap", x, y, zmin: 0, hoverongaps: false };
+  const bar = (text, at) => ({ title: { text, side: "right" }, x: at, thickness: 14 });
+  const traces = [
+    { ...about, zmax: maps.highest, colorscale: "Viridis", colorbar: bar("pressure [GPa]", 0.43), hovertemplate: "%{x:.3f}, %{y:.3f} a: %{z:.3f} GPa<extra></extra>" },
+    { ...about, zmax: maps.thickest, colorscale: FILMS, colorbar: bar("film [µm]", 1), xaxis: "x2", yaxis: "y2", hovertemplate: "%{x:.3f}, %{y:.3f} a: %{z:.4f} µm<extra></extra>" },
+    { ...about, zmax: 1, colorscale: [[0, CONTACT], [1, CONTACT]], showscale: false, xaxis: "x2", yaxis: "y2", hovertemplate: "%{x:.3f}, %{y:.3f} a: in contact<extra></extra>" },
+  ];
+  const edge = (k, end, color) => {
+    const a = hertz[k][0], about = { xref: "x" + end, yref: "y" + end, line: { color, width: 1 } };
+    if (maps.aspect) return [{ ...about, type: "circle", x0: -a, x1: a, y0: -a * maps.aspect, y1: a * maps.aspect }];
+    return [-a, a].map(at => ({ ...about, type: "line", x0: at, x1: at, y0: y[0], y1: y[y.length - 1] }));
+  };
+  const ratio = (y[y.length - 1] - y[0]) / (x[n - 1] - x[0]), compact = ratio > 0.4 && ratio < 2.5;
+  const across = end => ({ title: { text: "y/a" }, zeroline: false, anchor: "x" + end, ...(compact ? { scaleanchor: "x" + end, constrain: "domain" } : {}), ...(end ? { matches: "y" } : {}) });
+  const along = { title: { text: "x/a" }, zeroline: false, constrain: "domain" };
+  const box = chart("instant", Math.min(Math.max(420 * ratio, 240), 700) + 80, traces, {
+    xaxis: { ...along, domain: [0, 0.42] }, xaxis2: { ...along, domain: [0.57, 0.99], anchor: "y2", matches: "x" }, yaxis: across(""), yaxis2: across("2"),
+  });
+  return k => Plotly.update(box, { z: [rows(pressure, k), rows(film, k), rows(i => (contact[i] ? 1 : null), k)] }, { shapes: [...edge(k, "", "#fff"), ...edge(k, "2", "#000")] });
+}
+
+function instantAndMap(frames, maps, along) {
   const x = unpacked(frames.x), time = unpacked(frames.time), n = x.length, many = time.length > 1;
   const fields = {}, contact = unpacked(frames.contact, Uint8Array);
   for (const name of ["pressure", "contact_pressure", "film_thickness"]) if (frames[name]) fields[name] = unpacked(frames[name]);
@@ -57,17 +84,18 @@ function instantAndMap(frames) {
   const highest = Math.max(largest(frames.hertz.map(([, p0]) => p0)), pressure ? largest(pressure) : 0);
   const thickest = film ? largest(film.filter((_, i) => Math.abs(x[i % n]) <= 1)) : 1;
   const box = chart("instant", 520, traces, {
-    xaxis: { title: { text: "x/a" }, range: [x[0], x[n - 1]], anchor: "y2", zeroline: false },
+    xaxis: { title: { text: along }, range: [x[0], x[n - 1]], anchor: "y2", zeroline: false },
     yaxis: { title: { text: "pressure [GPa]" }, range: [0, 1.05 * highest], domain: [0.54, 1] },
     yaxis2: { title: { text: "film [µm]" }, range: [0, 1.15 * thickest || 1], domain: [0, 0.46] },
   });
-  const map = many && pressure && pressureMap(x, time, pressure, contact);
+  const map = many && pressure && pressureMap(x, time, pressure, contact, along);
   const slider = document.getElementById("slider"), play = document.getElementById("play");
 
   function show(k) {
     Plotly.restyle(box, { y: moving.map(values => values(k)) }, moving.map((_, i) => i));
     document.getElementById("when").textContent = many ? `step ${frames.step[k]}, ${Number(time[k].toPrecision(4))} µs, travel ${frames.travel[k].toFixed(2)} a` : "";
     slider.value = k;
+    maps(k);
     if (map) Plotly.relayout(map, { "shapes[0].y0": time[k], "shapes[0].y1": time[k] });
   }
 
@@ -84,7 +112,7 @@ function instantAndMap(frames) {
   show(frames.first);
 }
 
-function pressureMap(x, time, pressure, contact) {
+function pressureMap(x, time, pressure, contact, along) {
   const n = x.length, sorted = Float32Array.from(pressure).sort();
   const rows = of => Array.from(time, (_, k) => Array.from({ length: n }, (_, i) => of(k * n + i)));
   const about = { type: "heatmap", x, y: time, hovertemplate: "x/a %{x:.3f}, %{y:.2f} µs" };
@@ -97,7 +125,7 @@ function pressureMap(x, time, pressure, contact) {
     hovertemplate: about.hovertemplate + ": in contact<extra></extra>", hoverongaps: false,
   };
   return chart("over-time", 440, [field, contacts], {
-    xaxis: { title: { text: "x/a" } }, yaxis: { title: { text: "time [µs]" } },
+    xaxis: { title: { text: along } }, yaxis: { title: { text: "time [µs]" } },
     shapes: [{ type: "line", xref: "paper", x0: 0, x1: 1, y0: time[0], y1: time[0], line: { color: "#fff", width: 1 } }],
   });
 }

@@ -1,0 +1,170 @@
+"""Central films of a ball on glass beside optical measurements: table on two meshes and picture.
+
+``ehlpetsc python cases/paper/optical_films.py [-o PICTURE]`` computes the point contact of `CASE` at the
+measured speeds on a/16 and a/32, prints measured and computed films with their ratio, and draws them over the
+speed.
+"""
+
+from __future__ import annotations
+
+import argparse
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ehlpetsc.case.loading import Case, load
+from ehlpetsc.physics.film_formulas import hamrock_dowson_films
+from ehlpetsc.physics.laws import density
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.pictures import style
+from ehlpetsc.run.simulation import Simulation
+
+CASE = {
+    "title": "Ball on a glass disc",
+    "contact": {
+        "radius": [9.525e-3, 9.525e-3],
+        "load": 20.0,
+        "youngs_modulus": [207e9, 75e9],
+        "poisson_ratio": [0.3, 0.22],
+    },
+    "motion": {"entrainment_speed": 1.0},
+    "mesh": {"inlet": -4.5, "outlet": 1.5, "width": 6.0},
+}
+INDEX = 1.48  # refractive index of the oils at ambient pressure, about
+MESHES = (16, 32)  # nodes per half-width
+RANGE = (0.06, 1.1)  # m/s, of the mean ratio: slower films scatter, faster ones jump by a fringe
+
+
+class Oil(NamedTuple):
+    """Oil by name, title and temperature [degrees C] with its films [m/s, nm].
+
+    `logged_index`: refractive index with which the films were logged.
+    `changes`: keys of `[fluid]` beside the oil.
+    """
+
+    name: str
+    title: str
+    temperature: float
+    logged_index: float
+    speeds: tuple[float, ...]
+    logged: tuple[float, ...]
+    changes: dict[str, float | None] = {}
+
+    @property
+    def films(self) -> np.ndarray:
+        """Measured films [nm], by the refractive index of the oil at ambient pressure."""
+        return np.array(self.logged) * self.logged_index / INDEX
+
+
+FVA3 = Oil(
+    "fva3",
+    "FVA 3",
+    25.0,
+    1.48,
+    (
+        *(0.0210, 0.02435, 0.02885, 0.03553, 0.04226, 0.05008, 0.06013, 0.07135, 0.08593, 0.1028, 0.1239),
+        *(0.1486, 0.1777, 0.2122, 0.2549, 0.3064, 0.3664, 0.4408, 0.5289, 0.6353, 0.7624, 0.9149, 1.098),
+        *(1.318, 1.584, 1.899),
+    ),
+    (
+        *(49.7, 55.9, 66.5, 81.3, 94.3, 108.5, 132.5, 153.5, 167.5, 187.0, 220.0),
+        *(249.8, 284.4, 321.2, 372.5, 412.7, 464.6, 524.6, 589.4, 652.7, 724.1, 800.9, 860.2),
+        *(945.7, 992.8, 1199.0),
+    ),
+)
+"""Steel ball of 19.05 mm driven by the disc, 20 N: github.com/ngocminhdao88/dao_masterarbeit (logs, 2018)."""
+SHC320 = Oil(
+    "shc320",
+    "SHC 320",
+    38.8,
+    1.40,
+    (0.1205, 0.1725, 0.2480, 0.4282, 0.6142, 0.8853, 1.064),
+    (191.9, 235.2, 292.0, 390.1, 461.9, 530.7, 576.5),
+)
+THINNING = SHC320._replace(
+    title="SHC 320, Carreau",
+    changes={"fluid.carreau_stress": 0.5e6, "fluid.carreau_exponent": 0.3, "fluid.eyring_stress": None},
+)  # fitted to these films
+OILS = (FVA3, SHC320, THINNING)
+
+
+def case_of(oil: Oil, speed: float, points: int) -> Case:
+    """Case at a speed [m/s], on a mesh of so many nodes per half-width."""
+    keys = {"motion.entrainment_speed": speed, "mesh.points_per_half_width": points}
+    of_oil = {"fluid.oil": oil.name, "fluid.temperature": 273.15 + oil.temperature}
+    return load(CASE, of_oil | keys | oil.changes)
+
+
+def film(oil: Oil, speed: float, points: int) -> float:
+    """Computed film in the middle [nm]."""
+    simulation = Simulation(case_of(oil, speed, points))
+    (state,) = simulation
+    return 1e9 * float(state.film_thickness[np.argmin(simulation.scales.grid.distance)])
+
+
+def hamrock_dowson(oil: Oil) -> np.ndarray:
+    """Central films of Hamrock and Dowson at the measured speeds [nm]."""
+    case = case_of(oil, 1.0, MESHES[0])
+    scales, fluid = Scales.of(case), case.fluid
+    W = case.contact.load / (scales.E * scales.R**2)
+    U = fluid.viscosity * np.array(oil.speeds) / (scales.E * scales.R)
+    G = fluid.pressure_viscosity * scales.E
+    return 1e9 * scales.R * np.array([hamrock_dowson_films(u, G, W, 1.0)[0] for u in U])
+
+
+def index_under_pressure(oil: Oil) -> float:
+    r"""Refractive index at p0, :math:`(n^2-1)/(n^2+2)` proportional to the density (Lorentz and Lorenz)."""
+    case = case_of(oil, 1.0, MESHES[0])
+    refraction = (INDEX**2 - 1.0) / (INDEX**2 + 2.0) * density(Scales.of(case).p0, case.fluid)[0]
+    return float(np.sqrt((1.0 + 2.0 * refraction) / (1.0 - refraction)))
+
+
+def draw(computed: dict[str, np.ndarray]) -> Figure:
+    """Films over the speed; `computed` by the title of the oil [nm]."""
+    figure, panels = style.new_figure(1, len(OILS), (9.0, 4.2), sharey=True)
+    for panel, oil in zip(panels, OILS, strict=True):
+        panel.plot(oil.speeds, computed[oil.title], color=style.SINGLE, lw=1.4, label="computed")
+        published = dict(color=style.SECOND, lw=1.0, ls="--", label="Hamrock, Dowson")
+        panel.plot(oil.speeds, hamrock_dowson(oil), **published)
+        panel.plot(oil.speeds, oil.films, "o", ms=4, color=style.DARK, label="measured")
+        panel.set(xscale="log", yscale="log", xlabel="mean speed [m/s]")
+        panel.set_title(f"{oil.title}, {oil.temperature:g} °C", fontsize="medium")
+        panel.xaxis.set_major_formatter("{x:g}")
+        panel.yaxis.set_major_formatter("{x:g}")
+        panel.grid(lw=0.3, which="both")
+        panel.legend(**style.SMALL)
+    panels[0].set_ylabel("central film [nm]")
+    style.set_title(figure, "Steel ball of 19 mm on glass, 20 N, rolling")
+    return figure
+
+
+def table(oil: Oil) -> np.ndarray:
+    """Print the films of an oil; returns those on the fine mesh [nm]."""
+    computed, published = np.empty((len(oil.speeds), len(MESHES))), hamrock_dowson(oil)
+    for k, (speed, measured) in enumerate(zip(oil.speeds, oil.films, strict=True)):
+        computed[k] = [film(oil, speed, points) for points in MESHES]
+        figures = ", ".join(f"{value:.1f}" for value in (measured, *computed[k], published[k]))
+        print(f"{oil.title}, {speed:g}: {figures}; ratio {measured / computed[k, -1]:.3f}", flush=True)
+    inside = (np.array(oil.speeds) > RANGE[0]) & (np.array(oil.speeds) < RANGE[1])
+    mean, index = float((oil.films / computed[:, -1])[inside].mean()), index_under_pressure(oil)
+    print(f"mean ratio of {inside.sum()} films from {RANGE[0]:g} to {RANGE[1]:g} m/s: {mean:.3f}; ", end="")
+    print(f"with the refractive index {index:.3f} at p0: {mean * INDEX / index:.3f}")
+    return computed[:, -1]
+
+
+def main(words: list[str] | None = None) -> None:
+    """Print the tables and write the picture."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("-o", "--output", default="optical_films.png", help="picture [optical_films.png]")
+    chosen = parser.parse_args(words)
+    meshes = ", ".join(f"on a/{points}" for points in MESHES)
+    print(f"oil, speed [m/s]: film measured, {meshes}, Hamrock and Dowson [nm]")
+    style.save(draw({oil.title: table(oil) for oil in OILS}), chosen.output)
+    print(chosen.output)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""Heat in points and strips: a strip is the line; Blok's temperature of fast points; long ellipses."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.flash_temperature import STEEL, blok_flash_temperature
+from ehlpetsc.run.simulation import Simulation
+
+BULK, FRICTION = 363.0, 0.1
+TIGHT = {"snes_atol": 1e-13}
+TEMPERATURES = ("film_temperature", "temperature_1", "temperature_2")
+OIL = {
+    "viscosity": 0.04,
+    "law": "roelands",
+    "pressure_viscosity": 18e-9,
+    "density": "dowson-higginson",
+    "eyring_stress": 6e6,
+}
+
+
+def tables(radius, contact_load, speed, mesh, **more):
+    """Tables of a case with heat at slide/roll 0.4."""
+    return {
+        "title": "heat",
+        "contact": {
+            "radius": radius,
+            "load": contact_load,
+            "material": "100Cr6",
+            "boundary_friction": FRICTION,
+        },
+        "motion": {"entrainment_speed": speed, "slide_roll_ratio": 0.4},
+        "mesh": {"inlet": -1.5, "outlet": 1.5, "points_per_half_width": 20} | mesh,
+        "heat": {"bulk_temperature": BULK},
+    } | more
+
+
+def solved(case, **options):
+    simulation = Simulation(load(case), options=options)
+    return simulation, list(simulation)
+
+
+def row(simulation, state, name):
+    """Middle row of a field."""
+    rows = simulation.scales.grid.rows(state.fields[name])
+    return rows[len(rows) // 2]
+
+
+def test_a_strip_is_the_line_with_its_heat():
+    mesh, more = {"points_per_half_width": 16}, {"fluid": OIL, "time": {"travel": 0.2}}
+    _, line = solved(tables(0.0125, 1e5, 3.0, mesh, **more), **TIGHT)
+    simulation, strip = solved(tables(0.0125, 1e5, 3.0, mesh | {"width": 0.3}, **more), **TIGHT)
+    assert len(line) == len(strip) > 5
+    for one, other in zip(line, strip, strict=True):
+        for name in (*TEMPERATURES, "heat_flux_1", "film_thickness", "shear_stress_1"):
+            rows, alone = simulation.scales.grid.rows(other.fields[name]), one.fields[name]
+            np.testing.assert_allclose(rows - alone, 0.0, atol=1e-9 * np.ptp(alone))
+        for name in ("heat", "friction", "film_temperature_max", "film_temperature_mean"):
+            assert other.scalars[name] == pytest.approx(one.scalars[name], rel=1e-10)
+        assert other.heat_error < 1e-9
+
+
+@pytest.mark.parametrize("radii", [[0.0125, 0.0125], [0.005, 0.02]], ids=["circle", "ellipse"])
+def test_a_fast_dry_point_has_bloks_temperature_in_its_middle_row(radii):
+    """Conduction into the depth alone: the middle row is Blok's band under the flux there; heat in W."""
+    simulation, [state] = solved(tables(radii, 20.0, 100.0, {"width": 2.6}))
+    s = simulation.scales
+    flash = blok_flash_temperature(
+        FRICTION, 0.5 * np.pi * s.p0 * s.a, s.u1 - s.u2, s.u1, s.u2, s.a, (STEEL.effusivity,) * 2
+    )
+    assert row(simulation, state, "temperature_1").max() - BULK == pytest.approx(flash, rel=0.005)
+    assert state.temperature_1_max == row(simulation, state, "temperature_1").max()
+    assert state.heat == pytest.approx(FRICTION * 20.0 * (s.u1 - s.u2), rel=1e-6)
+    assert state.heat_error < 1e-9
+
+
+def test_a_long_ellipse_is_a_line_in_its_middle_row():
+    mesh = {"inlet": -2.5, "points_per_half_width": [20, 8], "width": 3.0}
+    simulation, [state] = solved(tables([0.0125, 0.375], 600.0, 3.0, mesh, fluid=OIL))
+    s = simulation.scales
+    equal = (
+        0.25 * s.E * s.a / s.p0,
+        0.5 * np.pi * s.p0 * s.a,
+    )  # radius and load per length of the same a and p0
+    _, [line] = solved(tables(*equal, 3.0, {"inlet": -2.5}, fluid=OIL))
+    for name in TEMPERATURES:
+        found, alone = row(simulation, state, name), line.fields[name]
+        assert found.max() - BULK == pytest.approx(alone.max() - BULK, rel=0.025)
+        np.testing.assert_allclose(found, alone, atol=0.05 * np.ptp(alone))
