@@ -17,8 +17,7 @@ import h5py
 from ehlpetsc.base import environment
 from ehlpetsc.base.errors import CaseError, ExitStatus
 from ehlpetsc.results import reader
-from ehlpetsc.results.reader import open_result
-from ehlpetsc.results.section import Section
+from ehlpetsc.results.reader import Section, open_result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,7 +70,7 @@ class Result(reader.Result):
 
 
 class DrawnSection(Section, Result):
-    """Section of a result, see :class:`ehlpetsc.results.section.Section`."""
+    """Section of a result, see :class:`ehlpetsc.results.reader.Section`."""
 
 
 def read_result(path: str | PathLike) -> Result:

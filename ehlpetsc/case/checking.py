@@ -53,7 +53,8 @@ def in_si(data: Tables) -> list[Fault]:
             try:
                 holder[name] = converted(holder[name], in_contact(key, data).unit, key.is_difference)
             except UnitFault as fault:
-                why = KINDS[is_point(data)] if key.point_unit else ""
+                is_other = key.point_unit and str(fault).endswith(f"one of {in_contact(key, data).unit}")
+                why = KINDS[is_point(data)] if is_other else ""
                 faults.append(Fault(place, f"{place} = {fault}{why}"))
     return faults
 

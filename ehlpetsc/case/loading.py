@@ -155,6 +155,8 @@ def _checked(
 
 def _contact_faults(case: Case) -> list[Fault]:
     """Faults of effects that do not serve the kind of contact."""
+    if not (case.contact and case.mesh):  # their own faults are reported
+        return []
     faults = []
     for kind in EFFECTS:
         if kind.is_in(case) and case.kind not in kind.contacts:

@@ -46,9 +46,9 @@ class AcceptedState:
     ----------
     scalars
         Scalars of the step, as in ``steps/`` of a result file [SI units].
-    fields : shape (nx,)
+    fields : shape (nx,), of a plane (ny nx,), x fastest
         Fields of the step [SI units].
-    in_contact : shape (nx,)
+    in_contact : shape as of the fields
     solution
         Unknowns, and the history for the next step.
     """

@@ -98,7 +98,7 @@ class Topography:
 
     @property
     def statistics(self) -> dict[str, float]:
-        """Sa and Sq [m], Ssk, see :class:`.ArealParameters`."""
+        """Sa and Sq [m], Ssk, see :class:`ehlpetsc.surfaces.areal_parameters.ArealParameters`."""
         z, sq = self._once - self._once.mean(), self.sq
         skewness = float(((z / sq) ** 3).mean()) if sq > 0 else 0.0
         return {"sa": float(np.abs(z).mean()), "sq": sq, "ssk": skewness}

@@ -53,8 +53,8 @@ KEYS = {
         replaced_by=CONDITIONS,
     ),
     "load": Required(
-        "load per length, `w`, the integral of `p`, `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`; of a point "
-        "contact its load [N]",
+        "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`; "
+        "of a point contact its load [N]",
         *("N/m", 1e-3, 1e10),
         point_unit="N",
         replaced_by=CONDITIONS,

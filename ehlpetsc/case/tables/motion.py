@@ -152,7 +152,7 @@ MESH_KEYS = {
     "inlet": Required("first node", "half-widths", -100, lt=-1),
     "outlet": Required("last node", "half-widths", gt=1, le=100),
     "points_per_half_width": Required(
-        "nodes `a/dx`, at most 200000; two: along, and across per half-width b of a point, a of a strip",
+        "nodes `a/dx`, at most 200000 nodes; two: along, across per half-width b of a point, a of a strip",
         *("", 4, 100_000),
         kind=int,
         many="axes",

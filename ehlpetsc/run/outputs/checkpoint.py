@@ -53,8 +53,8 @@ def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: 
     """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
     case, scales, state = simulation.case, simulation.scales, simulation.solution
     smooth_q, smooth_w = simulation.stepper.baseline
-    values = {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
-    values |= {"contact_count": contact_count}
+    values: dict[str, Any] = {"contact_count": contact_count}
+    values |= {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
     values |= {"smooth_q": smooth_q, "smooth_w": smooth_w, "pass_number": simulation.pass_number}
     values |= {"case": case.text, "contact_law": case.contact.law}
     values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
