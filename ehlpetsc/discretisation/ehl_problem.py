@@ -21,7 +21,6 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
-from ehlpetsc.discretisation.deflection import PressureSums
 from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
@@ -75,6 +74,13 @@ class Share(NamedTuple):
     last: int
     window: slice | np.ndarray
     owned: slice
+
+    @property
+    def window_size(self) -> int:
+        """Number of nodes of the window."""
+        if isinstance(self.window, slice):
+            return self.window.stop - self.window.start
+        return len(self.window)
 
     @property
     def local(self) -> slice:
@@ -158,7 +164,7 @@ class EHLProblem:
         self,
         unknowns: Unknowns,
         inputs: StepInputs,
-        sums: PressureSums | None = None,
+        sums: Any = None,
     ) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.
 

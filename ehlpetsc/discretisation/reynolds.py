@@ -111,8 +111,8 @@ class Reynolds:
         residual /= self.film_scale
         derivatives *= 1.0 / self.film_scale
         if self.has_inlet:
-            rows = inlet(q[:1], h[:1], inputs.inlet_film)
-            residual[:1], derivatives[:1, own], derivatives[:1, own + 1] = rows
+            inlet_row = inlet(q[:1], h[:1], inputs.inlet_film)
+            residual[:1], derivatives[:1, own], derivatives[:1, own + 1] = inlet_row
         return residual, derivatives
 
 

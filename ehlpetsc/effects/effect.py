@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ehlpetsc.physics import Operation
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
     from ehlpetsc.surfaces.body_field import MeshOnBodies
     from ehlpetsc.surfaces.roughness import Roughness, SurfacePositions
 
@@ -45,7 +46,7 @@ class Scene:
         return cls(case, scales, operation, SurfacePositions((offset_1, offset_2 + shift)))
 
     @cached_property
-    def roughness(self) -> Roughness | None:
+    def roughness(self) -> Roughness | ArealRoughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
         from ehlpetsc.surfaces.contact_roughness import roughness_of
 
@@ -66,7 +67,7 @@ class Scene:
         return MeshOnBodies(self.scales, self.positions.offsets(speeds))
 
 
-def combined_rq(case: Case, roughness: Roughness | None) -> float:
+def combined_rq(case: Case, roughness: Roughness | ArealRoughness | None) -> float:
     """Root mean square height of both profiles and the layer of asperities [m]; 0: smooth."""
     return math.hypot(roughness.rq if roughness else 0.0, case.contact.asperity_height or 0.0)
 

@@ -70,7 +70,7 @@ def line_system(
         close to their bound count as on it.
     """
     cuts, ranks = first_nodes(scales.grid.n, comm.size), comm.tompi4py()
-    share = cuts[comm.rank : comm.rank + 2]
-    problem = line_problem(case, scales, film_scale, *share, bound_tolerance)
+    first, last = cuts[comm.rank : comm.rank + 2]
+    problem = line_problem(case, scales, film_scale, first, last, bound_tolerance)
     exchange = LineExchange(problem, cuts, ranks)
     return TwoFields(problem, exchange, LineMatrices(problem, exchange, ranks, case.mesh.near_field), comm)

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SLOTS = 10  # constants that compiled loops get of any law
 STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
-Numbers = float | np.ndarray
+Numbers: TypeAlias = float | np.ndarray
 Derivatives = tuple[Any, ...]
 FluidValues = SimpleNamespace  # of [fluid], checked or to be completed
 

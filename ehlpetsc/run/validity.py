@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -178,10 +178,11 @@ def _tilt_warnings(case: Case, profiles: Roughness | ArealRoughness) -> Iterator
         profile, spec = profiles.side(side), case.surface.side(side)
         if not profile or not profile.given.measured or spec.level:
             continue
-        z = np.atleast_2d(profile.given.z)
+        given: Any = profile.given  # of a map with Y
+        z = np.atleast_2d(given.z)
         axes = [(profile.X, z.mean(axis=0))]
         if len(z) > 1:
-            axes.append((profile.given.Y, z.mean(axis=1)))
+            axes.append((given.Y, z.mean(axis=1)))
         slopes = [np.polyfit(X - X.mean(), heights, 1)[0] for X, heights in axes]
         variance = sum(slope**2 * X.var() for slope, (X, _) in zip(slopes, axes, strict=True))
         fraction = variance / z.var() if z.any() else 0.0
@@ -197,7 +198,7 @@ def _tilt_warnings(case: Case, profiles: Roughness | ArealRoughness) -> Iterator
 def limits(
     case: Case,
     scales: Scales,
-    rough: Roughness | None,
+    rough: Roughness | ArealRoughness | None,
     totals: dict[str, float],
     boundary_friction: float | None = None,
 ) -> list[str]:

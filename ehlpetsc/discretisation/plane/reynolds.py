@@ -12,6 +12,8 @@ periodic across.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ehlpetsc.base.declarations import Values
@@ -42,7 +44,7 @@ class Reynolds:
     def __init__(
         self,
         scales: Scales,
-        spacings: tuple[float, float],
+        spacings: Sequence[float],
         film_scale: float,
         shape: tuple[int, int],
         share: Share,

@@ -105,7 +105,7 @@ class PlaneExchange:
     def window(self, local: np.ndarray) -> np.ndarray:
         """Values of the window, (window, ...), from those of the local nodes."""
         p = self.problem
-        window = np.empty((len(p.window), *local.shape[1:]))
+        window = np.empty((p.share.window_size, *local.shape[1:]))
         window[p.owned] = local
         before, behind = window[: p.owned.start], window[p.owned.stop :]
         row = self.n_x

@@ -150,7 +150,7 @@ class Elimination:
     def prepare(self, operator: PlaneJacobian) -> None:
         """Assemble and factor anew where the kept matrices no longer serve."""
         owned = self.problem.owned
-        inactive = np.zeros(len(self.problem.window), dtype=bool)
+        inactive = np.zeros(self.problem.share.window_size, dtype=bool)
         inactive[owned.start + operator.inactive_nodes] = True
         self.reduction = reduction_of(operator.state, inactive)
         slow = self._any(self.applications > MAX_KEPT)
@@ -177,8 +177,8 @@ class Elimination:
         if coarse is None:
             mask = whole[0] == PRESSURE
             mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
-            rows = (self._gathered(by) for by in (sparse.by_pressure, sparse.by_separation))
-            coarse = CoarseCorrection(self.coarse_space, *rows, mask)
+            flow, transport = self._gathered(sparse.by_pressure), self._gathered(sparse.by_separation)
+            coarse = CoarseCorrection(self.coarse_space, flow, transport, mask)
         self.factors = Factors(sparse, coarse)
         self.factors = Factors(sparse, coarse, self._pressures(-sparse.border))
 
@@ -189,7 +189,7 @@ class Elimination:
         with events.BACK_SOLVE:
             reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
             pressure, separation = coarse(self._gathered(reynolds))
-            local, nothing = slice(p.first, p.last), np.zeros(len(p.window))
+            local, nothing = slice(p.first, p.last), np.zeros(p.share.window_size)
             pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
             for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
                 reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
@@ -208,7 +208,7 @@ class Elimination:
         b_g, b_load = full[0:local:2] / scale, full[-1] if operator.size > local else 0.0
         if self.ranks.size > 1:
             b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
-        nothing = np.zeros(len(p.window))
+        nothing = np.zeros(p.share.window_size)
         by_g = p.reynolds.product(sparse.by_separation, exchange.window(b_g), nothing, p.owned.start)
         b = np.zeros(sparse.block * p.local)
         b[sparse.reynolds_rows[sparse.has_reynolds]] = (full[1:local:2] - by_g)[sparse.has_reynolds]

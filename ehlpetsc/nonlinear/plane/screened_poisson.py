@@ -14,6 +14,8 @@ a cavity the unknown of the Reynolds equation.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
@@ -24,7 +26,7 @@ LONGEST = 1.0  # smallest s_j, in 1/a
 MAX_ROW = 6 * (TERMS + 2)  # entries of a Reynolds row
 
 
-def fitted_terms(stiffness: float, spacings: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+def fitted_terms(stiffness: float, spacings: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients c_j and squares of s_j for C of the deflection, shape (TERMS,) each.
 
     Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, of the
