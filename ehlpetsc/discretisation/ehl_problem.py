@@ -21,7 +21,6 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
-from ehlpetsc.discretisation.oil import IsothermalOil
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
@@ -118,6 +117,8 @@ class EHLProblem:
         self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:
+            from ehlpetsc.discretisation.oil import IsothermalOil
+
             self.oil = IsothermalOil(self.fluid, scales)
             if self.fluid.inlet_film is not None:
                 self.inlet_film = self.fluid.inlet_film / scales.h

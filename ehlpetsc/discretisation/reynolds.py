@@ -17,18 +17,20 @@ complementary to the gap; in mixed contact, whose solids have a pressure of thei
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehlpetsc.discretisation.finite_volumes import M, balance
-from ehlpetsc.discretisation.oil import Oil
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.rheology import NEWTON, flow_law, stress_pressure
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import flow_table
+
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.oil import Oil
 
 
 class Reynolds:

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import extrapolated
-from ehlpetsc.discretisation.oil import Oil
 from ehlpetsc.physics.operation import Conditions
+
+if TYPE_CHECKING:
+    from ehlpetsc.discretisation.oil import Oil
 
 Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
 

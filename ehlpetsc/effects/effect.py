@@ -48,7 +48,9 @@ class Scene:
     @cached_property
     def roughness(self) -> Roughness | ArealRoughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
-        from ehlpetsc.surfaces.contact_roughness import roughness_of
+        if not (self.case.surface.body_1 or self.case.surface.body_2):
+            return None
+        from ehlpetsc.surfaces import roughness_of
 
         return roughness_of(self.case, self.scales, self.positions)
 

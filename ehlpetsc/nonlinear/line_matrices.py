@@ -25,6 +25,7 @@ class LineMatrices:
     `near_field`: nodes of deflection on either side in the assembled matrix.
     """
 
+    keeps_factors = False  # a band is factored in less time than it takes to keep it
     linear_atol = 1e-2
 
     def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
@@ -47,7 +48,7 @@ class LineMatrices:
         """See :class:`.two_fields.Matrices`; the options name the preconditioner."""
 
     def keep(self, jacobian: JacobianOperator) -> None:
-        """See :class:`.two_fields.Matrices`; a band is factored in less time than it takes to keep it."""
+        """See :class:`.two_fields.Matrices`."""
 
     def begin_solve(self) -> None:
         """See :class:`.two_fields.Matrices`."""

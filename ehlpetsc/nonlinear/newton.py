@@ -148,6 +148,8 @@ class NewtonSolver:
 
     def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
         """Linearise at a state whose factors every later solve begins with, where its matrices keep any."""
+        if not self.system.matrices.keeps_factors:
+            return
         self.system.set_initial_guess(state, inputs)
         with np.errstate(over="ignore", invalid="ignore"):
             self.system.linearise(self.system.x)

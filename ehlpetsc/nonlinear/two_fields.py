@@ -33,9 +33,11 @@ FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the 
 class Matrices(Protocol):
     """Jacobian and preconditioner of a kind of contact.
 
+    `keeps_factors`: whether :meth:`keep` is of use.
     `linear_atol`: absolute tolerance of the linear residual over that of Newton's method.
     """
 
+    keeps_factors: bool
     linear_atol: float
 
     def jacobian(self, ksp: PETSc.KSP) -> Any:

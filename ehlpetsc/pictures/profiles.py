@@ -19,7 +19,7 @@ from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
-from ehlpetsc.surfaces.contact_roughness import roughness_of
+from ehlpetsc.surfaces import roughness_of
 from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times
 

@@ -27,7 +27,7 @@ from ehlpetsc.run.forecast import (
     work_time,
 )
 from ehlpetsc.run.validity import domain_faults, load_unit, warnings
-from ehlpetsc.surfaces.contact_roughness import roughness_of
+from ehlpetsc.surfaces import roughness_of
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case

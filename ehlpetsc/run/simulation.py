@@ -24,7 +24,6 @@ from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.failed_start import coarser, cures, guess_of
 from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.run.validity import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
@@ -254,6 +253,8 @@ class Simulation:
                 state = self._started(watch)
             except NotConverged as error:
                 if isinstance(error.__cause__, NoSteadyStart):
+                    from ehlpetsc.run.failed_start import cures
+
                     advice = cures(self.case, self.operation.at(0.0))
                     raise NotConverged(f"{error}{advice}") from error.__cause__
                 raise
@@ -271,6 +272,8 @@ class Simulation:
             points = self.case.mesh.points_per_half_width // 2
             if not isinstance(failure.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
                 raise
+            from ehlpetsc.run.failed_start import coarser, guess_of
+
             try:
                 coarse = Simulation(coarser(self.case, points), self.comm, self._options)
                 coarse.advance(watch=watch)

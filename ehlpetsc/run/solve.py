@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TextIO
 
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
-from ehlpetsc.run.outputs.busy_cores import BusyCores
 from ehlpetsc.run.outputs.progress import Progress, summary_line
 from ehlpetsc.run.outputs.recorder import Recorder
 
@@ -90,8 +89,15 @@ class Run:
             printed: list[Output] = (
                 [] if not self.root else [self, self._progress or Progress(self.simulation, self.out)]
             )
-            busy = BusyCores(self.simulation.comm, self._print)
-            return solve(self.simulation, [self.recorder, busy, *printed], self.stop)
+            return solve(self.simulation, [self.recorder, *self._busy_cores(), *printed], self.stop)
+
+    def _busy_cores(self) -> list[Output]:
+        """Output that notices busy cores, of several ranks."""
+        if self.simulation.comm.size == 1:
+            return []
+        from ehlpetsc.run.outputs.busy_cores import BusyCores
+
+        return [BusyCores(self.simulation.comm, self._print)]
 
     def write(self, state: AcceptedState) -> None:
         """Print the unused options after the first step, when PETSc has read those of the solver."""

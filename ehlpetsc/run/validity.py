@@ -22,7 +22,6 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.flash_temperature import expected_friction
 from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
-from ehlpetsc.surfaces.contact_roughness import roughness_of
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -105,6 +104,8 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
 
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
+    from ehlpetsc.surfaces import roughness_of
+
     profiles = roughness_of(case, scales)
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case.fluid), *domain_warnings(case, scales)]
     if profiles:

@@ -218,7 +218,7 @@ class TimeStepping:
 
     def _prepare(self, dt: float) -> None:
         """Prepare the solver, once, for time steps of `dt` [s] from the smooth contact."""
-        if self._is_prepared or self.problem.fluid is None:
+        if self._is_prepared or self.baseline is None or self.problem.fluid is None:
             return
         self._is_prepared = True
         q, w = self.baseline

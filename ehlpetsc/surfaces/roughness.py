@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.surfaces.moving_surface import Passage
-from ehlpetsc.surfaces.profile import Profile
-
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.moving_surface import Passage
+    from ehlpetsc.surfaces.profile import Profile
 
 RAMP_LENGTH = 0.1  # half-widths at the beginning of a profile over which its heights increase from zero
 
@@ -72,7 +71,10 @@ class Roughness:
         specs, positions = [case.surface.side(side) for side in ("1", "2")], positions or SurfacePositions()
         if not any(specs):
             return None
-        from ehlpetsc.surfaces.samples import samples  # reading of files, which smooth surfaces do not need
+        from ehlpetsc.surfaces.profile import (
+            Profile,  # with the reading of files not needed by smooth surfaces
+        )
+        from ehlpetsc.surfaces.samples import samples
 
         sides = []
         speeds = directed_speeds(case, scales)
@@ -104,6 +106,8 @@ class Roughness:
 
 def passage(case: Case, scales: Scales, speed: float, side: int, positions: SurfacePositions) -> Passage:
     """Passage of surface `side`, 0 or 1, through the domain; `speed`: see :func:`directed_speeds`."""
+    from ehlpetsc.surfaces.moving_surface import Passage
+
     inlet, outlet = scales.x[0] * scales.a, scales.x[-1] * scales.a
     swept_length, table, reach = 0.0, case.conditions, None
     if table is not None and table.varies:

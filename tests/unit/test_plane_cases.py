@@ -15,7 +15,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.run.forecast import file_size, work_time
 from ehlpetsc.run.validity import limits, warnings
-from ehlpetsc.surfaces.contact_roughness import roughness_of
+from ehlpetsc.surfaces import roughness_of
 
 POINT, STRIP = (tomllib.loads(template(kind)) for kind in ("point", "strip"))
 

@@ -74,7 +74,7 @@ def test_temperatures_equal_a_quadrature_of_stored_fluxes(heated, surface):
     found = PostResult(heated.with_suffix(".post.h5"))
     known = found.temperatures[surface]
     with Loads(heated) as loads:
-        flux, speed = loads.rows(f"heat_flux_{surface}", 0, loads.time.size), loads.speeds[surface]
+        flux, speed = loads.frames(f"heat_flux_{surface}", 0, loads.time.size), loads.speeds[surface]
         late = found.s < loads.x[0] - BEFORE * loads.a
         hottest = np.argsort(np.where(late & found.complete[surface], known.flash, 0.0))[-1]
         for j in (hottest, np.flatnonzero(late & found.complete[surface])[0]):

@@ -84,7 +84,8 @@ def test_rubbing_solids_heat_the_walls():
 def test_next_to_no_heat_does_not_divide_its_imbalance():
     """At a start from rest the heat is that of rounding."""
     zero, inlet = np.zeros(5), np.full(5, 363.0)
-    steps = SimpleNamespace(scales=SimpleNamespace(dx=1e-6), inlet=363.0)
+    scales = SimpleNamespace(dx=1e-6, u_max=0.0, h=0.0, grid=SimpleNamespace(cell_size=1e-6))
+    steps = SimpleNamespace(scales=scales, rows=1, capacity=0.0, inlet=363.0)
     flux = np.full(5, 1e-6)
     film = Film(zero, zero, zero, inlet, *[zero] * 3, np.full(6, 1e4), zero)
     state = np.array([inlet, zero, inlet])

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 class PlaneMatrices:
     """Matrix-free Jacobian; the preconditioner around that of the user's options."""
 
+    keeps_factors = True
     linear_atol = 0.1  # an iteration costs a convolution
 
     def __init__(self, problem: EHLProblem, exchange: PlaneExchange, ranks: MPI.Comm):

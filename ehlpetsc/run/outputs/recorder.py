@@ -19,7 +19,6 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
-from ehlpetsc.results.xdmf import write_xdmf
 from ehlpetsc.run.outputs.checkpoint import load, save
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.validity import limits
@@ -173,6 +172,8 @@ class Recorder:
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures, friction)
         self._writer.close(status.words, self.limits)
         if simulation.case.output.xdmf and self.output:
+            from ehlpetsc.results.xdmf import write_xdmf
+
             write_xdmf(self.output)
 
     def _save(self) -> None:
