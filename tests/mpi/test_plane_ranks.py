@@ -1,0 +1,54 @@
+"""Points and strips do not depend on the number of ranks, which own rows along x: all ranks against one."""
+
+from pathlib import Path
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from mpi4py import MPI
+from support.points import point
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.run.simulation import Simulation
+
+CASE = Path(__file__).parents[2] / "cases" / "mixed.toml"
+STRIP = {
+    "mesh.inlet": -1.3,
+    "mesh.outlet": 1.3,
+    "mesh.points_per_half_width": 24,
+    "mesh.width": 0.6,
+    "time.travel": 0.7,
+    "time.courant": 1.0,
+    "fluid.viscosity": 0.003,
+    "contact.yield_pressure": None,
+}
+LAYER = {"contact.boundary_film": None, "contact.asperity_height": 30e-9}
+TIGHT = {"snes_atol": "1e-10"}
+CASES = {
+    "point": (lambda: load(point(50.0, 5.0, 10)), 1),
+    "direct point": (
+        lambda: load(point(50.0, 5.0, 10, {"contact.boundary_film": None, "contact.model": "direct"})),
+        1,
+    ),
+    "strip": (lambda: load(CASE, STRIP), 12),
+    "strip with a layer": (lambda: load(CASE, STRIP | LAYER), 12),
+}
+
+
+def pressures(comm, name):
+    """Pressures over p0 and iterations of all steps."""
+    case, steps = CASES[name]
+    simulation = Simulation(case(), comm, TIGHT)
+    states = [simulation.advance() for _ in range(steps)]
+    return np.array([s.pressure for s in states]) / simulation.scales.p0, sum(s.newton for s in states)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_contact_in_the_plane_is_independent_of_the_number_of_ranks(name):
+    found, newton = pressures(MPI.COMM_WORLD, name)
+    expected, alone = pressures(MPI.COMM_SELF, name)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9)
+    assert newton == pytest.approx(alone, rel=0.1)
