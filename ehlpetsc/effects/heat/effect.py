@@ -126,11 +126,6 @@ class Heat(Effect[HeatRecord]):
 
         return HeatStep(self.scene)
 
-    @cached_property
-    def _contact(self) -> np.ndarray:
-        """Mask of the nodes in the Hertz contact."""
-        return self.scene.scales.grid.inside(1.0)
-
     def start(self, before: HeatRecord | None = None) -> HeatRecord:
         """Bodies at bulk temperature, also after a pass before, and oil at that of the inlet."""
         n, steps = self.scene.scales.grid.n, self._steps
@@ -192,7 +187,8 @@ class Heat(Effect[HeatRecord]):
         """Temperatures and heat fluxes; their maximum and mean values."""
         values = record.solved, record.wall_1, record.wall_2, record.flux_1, record.flux_2
         fields = dict(zip(self.fields, values, strict=True))
-        scalars = {"heat": record.heat, "heat_error": record.error}
+        scalars, scales = {"heat": record.heat, "heat_error": record.error}, self.scene.scales
+        contact = scales.grid.inside(scales.size(step.conditions))  # of the instant
         for name in ("film_temperature", "temperature_1", "temperature_2"):
-            scalars |= {f"{name}_max": fields[name].max(), f"{name}_mean": fields[name][self._contact].mean()}
+            scalars |= {f"{name}_max": fields[name].max(), f"{name}_mean": fields[name][contact].mean()}
         return fields, scalars
