@@ -43,6 +43,7 @@ SHORT = {
     "fig7": (*QUICK, MESHES, "output.every=10"),
     "fzg": ("mesh.points_per_half_width=25", "time.travel=1.0"),
     "fzg_relief": ("mesh.points_per_half_width=25", "time.travel=1.0"),
+    "fzg_strip": ("mesh.points_per_half_width=16", "time.travel=0.5"),
     "fzg_stages": ("mesh.points_per_half_width=25", "time.travel=1.0", "series.values=[70.0, 265.1]"),
     "life": ("time.travel=0.6",),
     "mixed": QUICK,
