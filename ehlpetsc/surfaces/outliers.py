@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-MIN_REPEATS, MIN_DISTINCT = 3, 20  # of a no-data value; of other heights, fewer are made by hand
+MIN_REPEATS, MIN_DISTINCT = 3, 20  # of a no-data value; of other heights: fewer are a synthetic profile
 MAX_SHARE = 0.5  # of a no-data value
 NO_DATA_JUMP = 8.0  # of a no-data value to its neighbours, over the median step of the others
 SPIKE_WIDTH = 5  # maximum, in points
