@@ -13,7 +13,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.gaps import filled
-from ehlpetsc.surfaces.outliers import no_data_value
+from ehlpetsc.surfaces.outliers import SPIKE_WIDTH, map_spikes, no_data_value
 from ehlpetsc.surfaces.profile_files import MAX_ABSCISSA, TEXT, UNITS
 from ehlpetsc.surfaces.text_columns import text_columns, units_in
 
@@ -29,6 +29,7 @@ class MapLayout(NamedTuple):
         default as the first.
     `decimal`, `header_lines`: see :class:`.profile_files.Layout`.
     `fill_gaps`: width of the widest patch of missing heights that is filled [m].
+    `bridge_spikes`: whether spikes are taken for missing heights, and filled.
     """
 
     unit: str | None = None
@@ -37,6 +38,7 @@ class MapLayout(NamedTuple):
     decimal: str | None = None
     header_lines: int | None = None
     fill_gaps: float | None = None
+    bridge_spikes: bool = False
 
 
 class Map(NamedTuple):
@@ -117,7 +119,8 @@ def _text(
 
 def _instrument_file(path: Path, layout: MapLayout) -> Map:
     """Map in a file that includes its units and spacings."""
-    stated = [key for key in MapLayout._fields if key != "fill_gaps" and getattr(layout, key) is not None]
+    file_keys = MapLayout._fields[: MapLayout._fields.index("fill_gaps")]
+    stated = [key for key in file_keys if getattr(layout, key) is not None]
     if stated:
         raise ProfileError(f"{stated[0]}: {path.suffix!r} includes it; leave it out")
     package, read = READERS.get(path.suffix.lower(), ("surfalize", _by_surfalize))
@@ -187,8 +190,13 @@ def checked(found: Map, layout: MapLayout) -> Map:
             f"row {row + 1}, column {column + 1} is not a height below {MAX_ABSCISSA:g} m; allowed: finite "
             "heights, nan where they are missing"
         )
+    widest = layout.fill_gaps or 0.0
+    if layout.bridge_spikes and (is_spike := map_spikes(z)).any():
+        z[is_spike] = np.nan
+        widest = max(widest, (SPIKE_WIDTH + 1) * max(dx, dy))
+        notes += (f"spikes: {np.count_nonzero(is_spike)} points in all, bridged",)
     if np.isnan(z).any():
-        z, note = filled(z, dx, dy, layout.fill_gaps, no_data)
+        z, note = filled(z, dx, dy, widest, no_data)
         notes += (note,)
     return Map(z, dx, dy, notes)
 

@@ -99,8 +99,8 @@ KEYS = {
     "columns": Key("of x and z, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2),
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
-    "fill_gaps": Key("longest gap of missing heights that the spline bridges", "m", 0, 1),
-    "bridge_spikes": Key("have the spline bridge spikes of at most five points", kind=bool, default=False),
+    "fill_gaps": Key("longest gap of missing heights that is filled", "m", 0, 1),
+    "bridge_spikes": Key("take spikes of at most five points for missing heights", kind=bool, default=False),
     "z": Key(
         "heights in unit, here instead of in a file; of a map: its rows",
         "",
