@@ -91,7 +91,7 @@ def film(oil: Oil, speed: float, points: int) -> float:
     """Computed film in the middle [nm]."""
     simulation = Simulation(case_of(oil, speed, points))
     (state,) = simulation
-    return 1e9 * float(state.film_thickness[np.argmin(simulation.scales.grid.distance)])
+    return 1e9 * float(state.film_thickness.flat[np.argmin(simulation.scales.grid.distance)])
 
 
 def hamrock_dowson(oil: Oil) -> np.ndarray:

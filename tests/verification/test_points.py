@@ -75,7 +75,7 @@ def smooth(M, L, points, changes=None):
     """Steady state of a smooth contact, its film by Moes and its pressure over p0, shape (ny, nx)."""
     simulation = Simulation(load(point(M, L, points, changes)))
     state, shape = simulation.advance(), simulation.scales.grid.shape
-    film = moes_film(simulation.scales, state.film_thickness).reshape(shape)
+    film = moes_film(simulation.scales, state.film_thickness)
     return simulation, state, film, state.solution.p.reshape(shape)
 
 
