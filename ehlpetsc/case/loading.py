@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import os
-import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -101,7 +100,7 @@ def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Cas
     For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
-    data, result = tomllib.loads(case.text), []
+    data, result = copy.deepcopy(case._tables), []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
     for settings in settings_of(data["series"]):

@@ -9,7 +9,7 @@ import pytest
 import ehlpetsc
 from ehlpetsc.base.errors import CaseError, UsageError
 from ehlpetsc.case.keys import keys, template
-from ehlpetsc.case.loading import load
+from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
@@ -149,3 +149,15 @@ def test_forecast_grows_with_the_nodes_and_the_precision():
 def test_keys_state_the_unit_of_a_point():
     assert "of a point contact its load [N]" in keys("contact.load")
     assert "RESULT.xdmf" in keys("output")
+
+
+def test_heights_of_a_map_are_stored_as_their_digest():
+    z = 1e-7 * np.random.default_rng(1).standard_normal((60, 80))
+    maps = [{"z": heights, "spacing": 5e-6, "short_cutoff": 3e-5} for heights in (z, z, 2 * z)]
+    one, same, other = (load(copy.deepcopy(POINT), {"surface.1": table}) for table in maps)
+    assert one.text == same.text != other.text and len(one.text) < 2000
+    assert stored_case(one.text).surface.body_1.short_cutoff == 3e-5
+    varied = {"series": {"key": "contact.load", "values": [10.0, 20.0]}}
+    assert [
+        len(member.surface.body_1.z) for _, member in members(load(POINT | varied, {"surface.1": maps[0]}))
+    ] == [60, 60]
