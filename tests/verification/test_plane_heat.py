@@ -86,3 +86,14 @@ def test_a_long_ellipse_is_a_line_in_its_middle_row():
         found, alone = row(state, name), line.fields[name]
         assert found.max() - BULK == pytest.approx(alone.max() - BULK, rel=0.025)
         np.testing.assert_allclose(found, alone, atol=0.05 * np.ptp(alone))
+
+
+def test_heat_of_the_pressure_flow_is_the_work_of_entrainment():
+    r"""Of an incompressible oil in pure rolling, :math:`\int M|\nabla p|^2=\int uh\,\partial_xp`."""
+    case = tables([0.0125, 0.0125], 20.0, 3.0, {"inlet": -3.0, "width": 5.0}, fluid=OIL)
+    case["fluid"] = OIL | {"density": "incompressible", "eyring_stress": None}
+    case["motion"] = {"entrainment_speed": 3.0, "slide_roll_ratio": 0.0}
+    simulation, [state] = solved(case)
+    s = simulation.scales
+    work = s.u * (state.film_thickness * np.gradient(state.pressure, s.a * s.grid.dx, axis=1)).sum()
+    assert simulation.solution.records["heat"].source.sum() == pytest.approx(work, rel=0.05)
