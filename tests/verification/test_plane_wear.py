@@ -74,9 +74,13 @@ POINT = RIDGE | {
 }
 
 
-def test_volumes_of_a_point_are_integrals_over_its_area():
+@pytest.mark.parametrize(
+    "layer", [{"asperity_height": 20e-9}, {"boundary_film": 20e-9}], ids=["layer", "rigid"]
+)
+def test_volumes_of_a_point_are_integrals_over_its_area(layer):
     """Worn volume k times pressure times sliding; plastic deformation the sum of its steps."""
-    simulation, states = solved(POINT)
+    contact = {key: value for key, value in POINT["contact"].items() if key != "asperity_height"}
+    simulation, states = solved(POINT | {"contact": contact | layer})
     s, records = simulation.scales, simulation.solution.records
     cell = s.grid.spacings[0] * s.grid.spacings[1]
     work = sum((state.contact_pressure * (s.u1 - s.u2) * state.dt).sum() * cell for state in states[1:])
