@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
-# by unit: factor, what it measures, and its unit in micrometres
-MICROMETRES = {"m": (1e6, "length", "µm"), "m^2": (1e12, "area", "µm²"), "m^3": (1e18, "volume", "µm³")}
+MEASURES = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 
@@ -156,7 +155,7 @@ def draw_pressure(axes: Axes, results: list[Result]) -> None:
 
 def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the area or volume set plastically by the end of each pass, and Ra or Sa of both surfaces."""
-    factor, word, unit = MICROMETRES[result.unit("steps/set_volume")]
+    factor, word, unit = MEASURES[1 + (result.case.kind == "point")]
     values = factor * np.array([row["set_volume"] for row in rows])
     axes.plot(*_over_passes(axes, values), ".-", color=LAST, label=f"plastic {word}")
     axes.set(ylabel=f"plastic {word} of both surfaces [{unit}]", ylim=(0.0, 1.1 * values.max() or 1.0))
@@ -173,7 +172,7 @@ def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> No
 
 def draw_contact(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the means of the load fraction of the solids and of the contact length or area."""
-    factor, word, unit = MICROMETRES["m^2" if result.case.kind == "point" else "m"]
+    factor, word, unit = MEASURES[result.case.kind == "point"]
     share, length = (
         np.array([row.get(name) for row in rows], float) for name in ("contact_share", "contact_length")
     )
