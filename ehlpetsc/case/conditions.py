@@ -32,7 +32,7 @@ Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[float]]:
     """Columns of a text file in SI units, by key of a table; raises `ProfileError`."""
-    from ehlpetsc.surfaces.text_columns import text_columns
+    from ehlpetsc.surfaces.text_files import text_columns
 
     try:
         columns, header = text_columns(path)

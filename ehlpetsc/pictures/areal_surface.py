@@ -7,8 +7,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehlpetsc.pictures import style
-from ehlpetsc.surfaces.areal_parameters import CORRELATION_THRESHOLD, ArealParameters, autocorrelation
-from ehlpetsc.surfaces.profile_parameters import CoreParameters, core_parameters
+from ehlpetsc.surfaces.parameters import (
+    CORRELATION_THRESHOLD,
+    ArealParameters,
+    CoreParameters,
+    autocorrelation,
+    core_parameters,
+)
 from ehlpetsc.surfaces.topography import Topography
 
 SIZE = (10.0, 4.2)  # inches

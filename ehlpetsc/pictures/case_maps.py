@@ -15,7 +15,7 @@ from ehlpetsc.surfaces.profile_checks import entry_times
 
 if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.areal_roughness import MovingTopography
+    from ehlpetsc.surfaces.roughness import MovingTopography
 
 WIDTH, MAP_WIDTH, MARGIN = 7.0, 5.3, 1.1  # inches: of the figure, of a map, above and below a map
 MAX_LENGTH = 4.0  # shown length of a surface over the width of the mesh

@@ -25,7 +25,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import areal_surface, style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
-from ehlpetsc.surfaces.profile_parameters import (
+from ehlpetsc.surfaces.parameters import (
     MIN_POINTS,
     CoreParameters,
     ProfileParameters,
