@@ -117,7 +117,7 @@ class EHLProblem:
         self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:
-            from ehlpetsc.discretisation.oil import IsothermalOil
+            from ehlpetsc.discretisation.step_inputs import IsothermalOil
 
             self.oil = IsothermalOil(self.fluid, scales)
             if self.fluid.inlet_film is not None:

@@ -30,7 +30,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import flow_table
 
 if TYPE_CHECKING:
-    from ehlpetsc.discretisation.oil import Oil
+    from ehlpetsc.discretisation.step_inputs import Oil
 
 
 class Reynolds:

@@ -13,8 +13,8 @@ from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
-from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField

@@ -14,9 +14,8 @@ import numpy as np
 
 from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.tables import Case
+from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.effects.plastic_deformation import PlasticRecord
-from ehlpetsc.effects.wear import WearRecord
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.one_pass import OfBody

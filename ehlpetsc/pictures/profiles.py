@@ -60,7 +60,7 @@ def _draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> 
 
 
 def _draw_maps(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
-    from ehlpetsc.pictures.case_maps import draw_maps
+    from ehlpetsc.pictures.areal_surface import draw_maps
 
     parts = [passing(surface, case, scales) for surface in surfaces.values()]
     return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status, put
-from ehlpetsc.base.progress_line import duration
+from ehlpetsc.base.command_line import CommandParser, duration, exit_status, put
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of

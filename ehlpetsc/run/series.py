@@ -16,8 +16,8 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ehlpetsc.base.command_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
-from ehlpetsc.base.progress_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -26,8 +26,8 @@ from ehlpetsc.results.index import Index
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.forecast import steps
-from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
+from ehlpetsc.run.recorder import summary_line
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 from ehlpetsc.run.validity import warnings

@@ -1,4 +1,12 @@
-"""Numbers in text files: columns of measuring instruments, and the formats of metrology institutes."""
+"""Numbers in text files: columns of measuring instruments, and the formats of metrology institutes.
+
+Separator and decimal sign are detected; ambiguous files are refused with the key that resolves the ambiguity.
+The header of the formats of institutes holds spacing, unit and scale:
+
+* SMD and PRF (ISO 5436-2): axes ``CX`` and ``CZ``, optional entries, heights, each ended by ETX or ``EOR``.
+* ASCII SDF (ISO 25178-71, and BCR-1.0 before it): ``NAME = value``, heights in m over `Zscale`, each ended by
+  ``*``.
+"""
 
 from __future__ import annotations
 

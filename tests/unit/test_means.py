@@ -8,8 +8,8 @@ import pytest
 from support.made_results import A, make_result
 
 import ehlpetsc
-from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.analysis.summary import run_scalars
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.friction_curves import time_statistics
