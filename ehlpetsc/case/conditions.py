@@ -15,8 +15,9 @@ import numpy as np
 
 from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import FAULTY, Tables, check, is_number
+from ehlpetsc.case.checking import FAULTY, check, is_number
 from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS

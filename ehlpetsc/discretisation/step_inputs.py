@@ -6,7 +6,7 @@ from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -16,6 +16,9 @@ from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIE
 from ehlpetsc.physics.laws import density_law, ln_viscosity, viscosity_law
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
 
 
 class Oil(Protocol):
@@ -27,7 +30,7 @@ class Oil(Protocol):
     """
 
     @property
-    def fluid(self) -> Any: ...
+    def fluid(self) -> Fluid: ...
     @property
     def scales(self) -> Scales: ...
     @property
@@ -50,7 +53,7 @@ class Oil(Protocol):
 class IsothermalOil:
     """Oil whose viscosity and density are laws of the pressure; interface of :class:`Oil`."""
 
-    fluid: Any
+    fluid: Fluid
     scales: Scales
     rows = PROPERTIES
 
@@ -155,9 +158,9 @@ class StepInputs:
     boundary_friction: float | np.ndarray = 0.0
 
     @property
-    def fluid(self) -> Any:
+    def fluid(self) -> Fluid:
         """Table `[fluid]` of the case; None: dry."""
-        return self.oil and self.oil.fluid
+        return self.oil.fluid if self.oil else None
 
     def begin(self) -> StepInputs:
         """Inputs of one solve, see :meth:`.step_inputs.Oil.begin`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -106,7 +106,7 @@ def run_pass(
     return Pass(bodies, figures, records.get("plastic_deformation"), yielded)
 
 
-def _depths(before: dict[str, Any], after: dict, name: str) -> list[tuple[BodyField, BodyField]]:
+def _depths(before: dict[str, np.ndarray], after: dict, name: str) -> list[tuple[BodyField, BodyField]]:
     """Depths of both bodies before and after; zero where there is no record."""
     none = NO_DEPTH, NO_DEPTH
     old, new = (records[name].depth if name in records else none for records in (before, after))

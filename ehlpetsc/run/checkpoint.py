@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
 
 if TYPE_CHECKING:
+    from typing import Any
+
     from ehlpetsc.case.loading import Case
     from ehlpetsc.discretisation.ehl_problem import EHLProblem
     from ehlpetsc.physics.operation import Conditions

@@ -35,6 +35,7 @@ from ehlpetsc.run.validity import warnings
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from ehlpetsc.case.combinations import Settings
     from ehlpetsc.case.tables import Case
     from ehlpetsc.run.simulation import AcceptedState
     from ehlpetsc.run.stop import StopRequest
@@ -44,7 +45,7 @@ WAITING = "waiting"  # state of a member that is not computed yet
 VARIED = ("key", "keys")  # of [series], in the index
 
 
-def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
+def named(settings: list[Settings]) -> list[str]:
     """Names of the members of a series, as ``viscosity=0.002``, from the values in which members differ.
 
     Members have numbers if these names are too long or not unique, or if values are lists or tables.
@@ -74,7 +75,7 @@ def members_of(case: Case, output: Path) -> list[Member]:
 class Member:
     """Member of a series: its name, as ``viscosity=0.002``, value, case and result file."""
 
-    def __init__(self, name: str, value: Any, case: Case, output: Path) -> None:
+    def __init__(self, name: str, value: object, case: Case, output: Path) -> None:
         self.value, self.case, self.name = value, case, name
         suffix = re.sub(r"[^A-Za-z0-9.+-]", "_", name)
         self.output = output.with_name(f"{output.stem}_{suffix}.h5")

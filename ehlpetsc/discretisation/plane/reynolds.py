@@ -32,6 +32,7 @@ from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Fluid
 
 
 AMBIENT = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
@@ -146,7 +147,7 @@ class NoOil:
         self._derivatives = np.zeros((shape[0] * shape[1], n_dofs(STENCIL)))
         self._derivatives[:, OWN] = 1.0
 
-    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> None:
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Fluid) -> None:
         """Return None: there is no oil."""
 
     def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ those of the viscosity. Transport along the film: :mod:`.transport`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,9 @@ from ehlpetsc.effects.heat.record import in_rows
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
 
 TINY = 1e-6  # y whose sinh(y)/y is 1
 
@@ -65,7 +68,7 @@ class FilmHeat(NamedTuple):
         return THINNED_PROPERTIES
 
     @property
-    def fluid(self) -> Any:
+    def fluid(self) -> Fluid:
         """Table `[fluid]` of the case."""
         return self.isothermal.fluid
 

@@ -9,7 +9,7 @@ left; the coefficients of other ranks' groups are stored as those of a group bef
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.preconditioner.node_pairs import BandEntries, same_deflection
+
+if TYPE_CHECKING:
+    from typing import Any
 
 GROUP = 4  # nodes; wider bands cost more than they save iterations, narrower ones need more exponentials
 TERMS = 3  # exponentials; a fourth would save iterations of GMRES, and cost more in the band
@@ -97,7 +100,7 @@ class BandedJacobian:
         self.under_pressure = self._dense_rows()
         self.entries: BandEntries = None
 
-    def _group(self, node: Any) -> Any:
+    def _group(self, node: np.ndarray | int) -> Any:
         return (node - self.problem.first) // GROUP
 
     def _in_group(self, node: np.ndarray) -> np.ndarray:
@@ -113,7 +116,7 @@ class BandedJacobian:
         """Numbers of the sums of groups, one row each."""
         return self._dof(np.asarray(group)[:, None], FIRST_SUM + np.arange(TERMS))
 
-    def _pressure(self, node: Any) -> Any:
+    def _pressure(self, node: np.ndarray | int) -> Any:
         """Number of q of a node."""
         return self._dof(self._group(node), FIRST_PRESSURE + self._in_group(node))
 
