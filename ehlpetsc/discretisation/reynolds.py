@@ -17,7 +17,7 @@ complementary to the gap; in mixed contact, whose solids have a pressure of thei
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,7 +30,8 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import flow_table
 
 if TYPE_CHECKING:
-    from ehlpetsc.discretisation.oil import Oil
+    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.discretisation.step_inputs import Oil
 
 
 class Reynolds:
@@ -69,7 +70,7 @@ class Reynolds:
         columns[(node < 0) | (node >= n) | ((rows[:, None] == 0) & (node != 0))] = -1
         return columns.reshape(len(rows), n_dofs(self.stencil)).astype(np.int32)
 
-    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Fluid) -> np.ndarray:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes."""
         rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
         return rho * (1.0 + np.minimum(q, 0.0)) * h
@@ -162,7 +163,7 @@ class NoOil:
         self._derivatives = np.zeros(shape)
         self._derivatives[:, self.own] = 1.0
 
-    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Any) -> np.ndarray:
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Fluid) -> np.ndarray:
         """Return None: there is no oil."""
         return None
 

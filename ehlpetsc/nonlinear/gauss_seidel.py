@@ -30,7 +30,7 @@ distributed: every rank computes all nodes.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -43,6 +43,9 @@ from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
 
 # half-widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
 STEP_SWEEPS_LENGTH, STEADY_SWEEPS_LENGTH = 0.6, 4.0
@@ -63,7 +66,7 @@ class GaussSeidelSolver:
     `sweeps`: number of sweeps of all solves so far.
     """
 
-    def __init__(self, case: Any, scales: Scales, film_scale: float, tolerance: float):
+    def __init__(self, case: Case, scales: Scales, film_scale: float, tolerance: float):
         self.problem = line_problem(case, scales, film_scale, 0, scales.grid.n)
         self.bound, self.deflection = self.problem.model.lower_bound, self.problem.deflection
         self.tolerance = tolerance

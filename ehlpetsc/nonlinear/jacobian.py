@@ -57,7 +57,7 @@ class Jacobian:
     `inactive_nodes`: local nodes whose second unknown is not in the system.
     """
 
-    def __init__(self, problem: EHLProblem, exchange: Any, ranks: MPI.Comm):
+    def __init__(self, problem: EHLProblem, exchange: object, ranks: MPI.Comm):
         self.problem, self.exchange, self.ranks = problem, exchange, ranks
         self.active: slice | np.ndarray = slice(None)
         self.inactive_nodes = np.arange(0)
@@ -110,7 +110,7 @@ class JacobianOperator(Jacobian):
     `factors`: factors of the default preconditioner, kept between solves.
     """
 
-    def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: Any):
+    def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: object):
         super().__init__(problem, halo, ranks)
         self.halo, self.factors = halo, factors
         self._work = np.empty(problem.local), np.empty((3, len(halo.buffers[2])))

@@ -88,7 +88,7 @@ class RunOptions:
         self.deferred_views: list[str] = []
         self.unused = set(self.given)
 
-    def value(self, name: str, default: Any = None) -> Any:
+    def value(self, name: str, default: object = None) -> Any:
         """Value of an option, which counts as used."""
         if name in self.given:
             PETSc.Options().hasName(name)
@@ -231,7 +231,7 @@ def check_options(options: dict) -> None:
             raise UsageError(f"-{name} {value}: allowed: a number")
 
 
-def _number(text: Any) -> float | None:
+def _number(text: str | float | None) -> float | None:
     try:
         return float(text)
     except (TypeError, ValueError):  # no value, or no number

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.case.tables.contact import Contact, Fluid
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
     from ehlpetsc.surfaces.roughness import Roughness
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
@@ -104,9 +103,9 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
 
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
-    from ehlpetsc.surfaces import roughness_of
+    from ehlpetsc.surfaces.roughness import Roughness
 
-    profiles = roughness_of(case, scales)
+    profiles = Roughness.of(case, scales)
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case.fluid), *domain_warnings(case, scales)]
     if profiles:
         from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
@@ -173,7 +172,7 @@ def _oil_warnings(fluid: Fluid | None) -> Iterator[str]:
         yield f'{", ".join(unused)}: not used by law = "{fluid.law}", density = "{fluid.density}"'
 
 
-def _tilt_warnings(case: Case, profiles: Roughness | ArealRoughness) -> Iterator[str]:
+def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
     """Profiles and maps whose heights are mostly a straight line or plane, a tilt of the measurement."""
     for side in ("1", "2"):
         profile, spec = profiles.side(side), case.surface.side(side)
@@ -199,7 +198,7 @@ def _tilt_warnings(case: Case, profiles: Roughness | ArealRoughness) -> Iterator
 def limits(
     case: Case,
     scales: Scales,
-    rough: Roughness | ArealRoughness | None,
+    rough: Roughness | None,
     totals: dict[str, float],
     boundary_friction: float | None = None,
 ) -> list[str]:

@@ -14,9 +14,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION
-from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import GROUP, BandedJacobian, exponentials
 from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
 from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales

@@ -11,7 +11,7 @@ from ehlpetsc.discretisation.curvature_product import Blocks, pack, unpack
 from ehlpetsc.discretisation.deflection import Deflection, PressureSums, curvature_kernel
 from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials, grouped_kernel
+from ehlpetsc.nonlinear.preconditioner.banded_jacobian import GROUP, exponentials, grouped_kernel
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 

@@ -6,9 +6,9 @@ from scipy.integrate import dblquad
 from support.convergence import observed_order
 
 from ehlpetsc.discretisation.deflection import deflection_kernel
-from ehlpetsc.discretisation.plane.deflection import Deflection
-from ehlpetsc.discretisation.plane.kernel import (
+from ehlpetsc.discretisation.plane.deflection import (
     NEAR,
+    Deflection,
     cell_potential,
     differences_of_primitive,
     free_kernel,

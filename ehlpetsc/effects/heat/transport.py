@@ -28,7 +28,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import FilmLaw
-from ehlpetsc.effects.heat.rows import in_rows, joined
+from ehlpetsc.effects.heat.record import in_rows, joined
 
 SWEEPS = 50
 PRESSURE, THICKNESS, LEFT, OLD, STORED, CHANGE, EXTRAPOLATED = range(7)  # rows: fields of a Film

@@ -1,7 +1,7 @@
 r"""Block tridiagonal matrix of a contact with the far deflection, by M more unknowns in every group of nodes.
 
 A group of `GROUP` nodes has the unknowns (h_2, h_1, Q_1 .. Q_M, q_1 .. q_4, h_3, h_4): sums of
-:mod:`.exponential_kernel` and the pairs of its nodes, in an order in which those that the group behind or
+:func:`exponentials` and the pairs of its nodes, in an order in which those that the group behind or
 before couples to are contiguous (:mod:`.block_lu`). Three dense rows, the whole deflection at both end nodes
 and the load, are stored separately. A rank has the groups of its nodes, the last one of several from right to
 left; the coefficients of other ranks' groups are stored as those of a group before or behind.
@@ -9,7 +9,7 @@ left; the coefficients of other ranks' groups are stored as those of a group bef
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,8 +18,49 @@ from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS, exponentials
 from ehlpetsc.nonlinear.preconditioner.node_pairs import BandEntries, same_deflection
+
+if TYPE_CHECKING:
+    from typing import Any
+
+GROUP = 4  # nodes; wider bands cost more than they save iterations, narrower ones need more exponentials
+TERMS = 3  # exponentials; a fourth would save iterations of GMRES, and cost more in the band
+REACH = 0.1  # half-widths within which the relative error counts; beyond it counts less
+SLOWEST, FASTEST = 0.4, 1.4  # rates: over the reach, and over a group
+
+
+def grouped_kernel(kernel: np.ndarray) -> np.ndarray:
+    """Mean of a kernel (n,) over the nodes of two groups, at distances 0, 1, ... groups."""
+    apart = np.arange(1 - GROUP, GROUP)
+    weights = (GROUP - np.abs(apart)) / GROUP**2
+    distance = np.arange(len(kernel) // GROUP - 1)
+    return kernel[np.abs(GROUP * distance[:, None] + apart)] @ weights
+
+
+def exponentials(kernel: np.ndarray, nodes_per_half_width: float) -> tuple[np.ndarray, np.ndarray]:
+    r"""Rates and weights of the exponentials for a kernel, fitted from a distance of two groups on.
+
+    The kernel of the differential deflection falls as :math:`1/k^2` over the whole mesh. Cut off, it leaves
+    the long waves of pressure to the Krylov method; as :math:`\sum_mw_me^{-\lambda_md}` of the distance d it
+    is the solution of M three-point recurrences,
+
+    .. math:: -Q_{d-1}+2\cosh\lambda\,Q_d-Q_{d+1}=2\sinh\lambda\;p_d,
+
+    M unknowns more with neighbours only. Distances are between groups of `GROUP` nodes: near by, where that
+    would be too coarse, the kernel is taken as it is.
+
+    `kernel`: :func:`ehlpetsc.discretisation.deflection.curvature_kernel`, shape (n,).
+
+    The kernel at a distance of d groups is about ``weights @ exp(-rates * d)``, both of shape (TERMS,).
+    """
+    far = grouped_kernel(kernel)[2:]
+    reach = max(REACH * nodes_per_half_width / GROUP, 1.0)
+    rates = np.geomspace(SLOWEST / reach, FASTEST, TERMS)
+    distance = 2.0 + np.arange(len(far))
+    weight = 1.0 / (far * (1.0 + distance / reach))
+    terms = np.exp(-np.outer(distance, rates))
+    return rates, np.linalg.lstsq(terms * weight[:, None], far * weight, rcond=None)[0]
+
 
 FILMS = np.array([1, 0, SIZE - 2, SIZE - 1])  # places in a group of its nodes' films
 FIRST_SUM = 2
@@ -59,7 +100,7 @@ class BandedJacobian:
         self.under_pressure = self._dense_rows()
         self.entries: BandEntries = None
 
-    def _group(self, node: Any) -> Any:
+    def _group(self, node: np.ndarray | int) -> Any:
         return (node - self.problem.first) // GROUP
 
     def _in_group(self, node: np.ndarray) -> np.ndarray:
@@ -75,7 +116,7 @@ class BandedJacobian:
         """Numbers of the sums of groups, one row each."""
         return self._dof(np.asarray(group)[:, None], FIRST_SUM + np.arange(TERMS))
 
-    def _pressure(self, node: Any) -> Any:
+    def _pressure(self, node: np.ndarray | int) -> Any:
         """Number of q of a node."""
         return self._dof(self._group(node), FIRST_PRESSURE + self._in_group(node))
 
