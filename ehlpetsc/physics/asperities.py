@@ -123,10 +123,10 @@ def flow_factor(h: float, height: float) -> tuple[float, float]:
 
     .. math:: \phi=1-e^{-0.9g},\qquad g=\tfrac12\Big[y+\sqrt{y^2+4w^2}\Big],\qquad y=h/\sigma-0.3.
 
-    No oil passes below 0.3 :math:`\sigma`, where contact closes the channels; w leaves a film of zero a factor
-    of 1e-4. Within 0.035 of the flow computed through isotropic elastic roughness, Hurst exponent 0.8: .852, .794,
-    .661, .441, .019 and 0 at 2.39, 1.96, 1.42, .88, .337 and .118 :math:`\sigma`. The factor of the shear flow is
-    zero for surfaces of equal roughness, and left out.
+    No oil passes below 0.3 :math:`\sigma`, where contact closes the channels; w leaves 1e-4 at film zero.
+    Within 0.035 of the flow computed through isotropic elastic roughness, Hurst exponent 0.8: .852, .794,
+    .661, .441, .019 and 0 at 2.39, 1.96, 1.42, .88, .337 and .118 :math:`\sigma`. The shear flow has
+    none, its factor being zero for surfaces of equal roughness.
     """
     above = h / height - PERCOLATION
     root = math.sqrt(above * above + CHANNELS)
