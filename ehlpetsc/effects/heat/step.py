@@ -9,8 +9,13 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
-from ehlpetsc.discretisation.reynolds import flow_table_of, shear_constants
-from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs, mirrored
+from ehlpetsc.discretisation.step_inputs import (
+    IsothermalOil,
+    StepInputs,
+    flow_table_of,
+    mirrored,
+    shear_constants,
+)
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, faces_in_rows, last_profile
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
