@@ -4,10 +4,10 @@ r"""Discrete Reynolds equation with mass-conserving cavitation in the plane.
    uh(1-\theta)- M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial
    p}{\partial y}\Big]=0
 
-Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.line.reynolds`; the sum of F over the nodes
-is the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the outlet
-and, in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A strip
-is periodic across.
+Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.line.reynolds`; the sum of F over the
+nodes is the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the
+outlet and, in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A
+strip is periodic across.
 """
 
 from __future__ import annotations
