@@ -320,7 +320,7 @@ def carried(profile, nodes, way=1.0, moving=False):
     kept = 0.5 * stored * change
     for _ in range(steps):
         film = np.array((zero, 1e-6 * full, full, t, stored, change, kept))
-        a, b = explicit_transport(stored, flow, t, INLET)
+        a, b = explicit_transport(1, stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
         of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
         _, _, new = state = np.array((b / a, zero, b / a))
