@@ -3,9 +3,9 @@ r"""The discrete contact problem: one interleaved system for q, w and the approa
 Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same order,
 because SNESVI pairs row with unknown:
 
-* row of q: deflection, :mod:`ehlpetsc.discretisation.deflection`;
-* row of w: Reynolds equation, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact
-  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.reynolds.NoOil`;
+* row of q: deflection, :mod:`ehlpetsc.discretisation.line.deflection`;
+* row of w: Reynolds equation, :class:`ehlpetsc.discretisation.line.reynolds.Reynolds`, in direct contact
+  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.line.reynolds.NoOil`;
 * last row: load, :math:`\sum p\,\Delta x=\pi/2`.
 
 The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from

@@ -15,11 +15,11 @@ from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
+    from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
 
 
 def _line() -> Callable[..., TwoFields]:
-    from ehlpetsc.nonlinear.line_matrices import line_system
+    from ehlpetsc.nonlinear.line.system import line_system
 
     return line_system
 
@@ -31,7 +31,7 @@ def _plane() -> Callable[..., TwoFields]:
 
 
 def _line_sweeps() -> type[GaussSeidelSolver]:
-    from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
+    from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
 
     return GaussSeidelSolver
 

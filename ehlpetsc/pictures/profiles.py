@@ -39,8 +39,7 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    draw: Callable[..., Figure] = _draw_profiles if case.kind == "line" else _draw_maps
-    figure = draw({side: rough.side(side) for side in sides}, case, scales)
+    figure = DRAWN[case.kind]({side: rough.side(side) for side in sides}, case, scales)
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.conditions is not None:
         texts.append("of the widest contact; conditions over time")
@@ -64,6 +63,9 @@ def _draw_maps(surfaces: dict[str, MovingTopography], case: Case, scales: Scales
 
     parts = [passing(surface, case, scales) for surface in surfaces.values()]
     return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)
+
+
+DRAWN: dict[str, Callable[..., Figure]] = {"line": _draw_profiles, "strip": _draw_maps, "point": _draw_maps}
 
 
 def passing(profile: RoughSurface, case: Case, scales: Scales) -> tuple[float, float]:

@@ -213,7 +213,7 @@ class Recorder:
             scalars=of_case(STEP_SCALARS, case),
             precision=case.output.precision,
             surfaces=self._surfaces,
-            y=None if case.kind == "line" else scales.grid.axes[0] * scales.a,
+            y=scales.grid.axes[0] * scales.a if len(scales.grid.axes) > 1 else None,
             kind=case.kind,
         )
         self._writer = ResultWriter(self.output, layout, attributes, resume_step=step, contact_count=count)

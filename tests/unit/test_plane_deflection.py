@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import dblquad
 from support.convergence import observed_order
 
-from ehlpetsc.discretisation.deflection import deflection_kernel
+from ehlpetsc.discretisation.line.deflection import deflection_kernel
 from ehlpetsc.discretisation.plane.deflection import (
     NEAR,
     Deflection,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line_problem import line_problem
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.state import TimeLevel, advected, predict

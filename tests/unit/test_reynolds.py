@@ -9,7 +9,7 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.discretisation.finite_volumes import flux_through
-from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
+from ehlpetsc.discretisation.line.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
 from ehlpetsc.physics.scales import Scales
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales

@@ -23,7 +23,8 @@ the second difference in x (over :math:`\Delta x`) and the first difference in y
    \qquad\partial_x^2\partial_yG=\frac1r .
 
 Its sum over y is the kernel of a line contact, :math:`-2\Delta x\,g_k` with the hat functions of
-:mod:`ehlpetsc.discretisation.deflection`: pressures that do not depend on y deflect as in the line contact.
+:mod:`ehlpetsc.discretisation.line.deflection`: pressures that do not depend on y deflect as in the line
+contact.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
 
-from ehlpetsc.discretisation.deflection import deflection_kernel
+from ehlpetsc.discretisation.line.deflection import deflection_kernel
 
 NEAR = 60  # larger spacings: up to here the differences of G, beyond it the expansion in moments of the cell
 IMAGES = 12  # periods on either side that are summed one by one

@@ -4,10 +4,10 @@ r"""Discrete Reynolds equation with mass-conserving cavitation in the plane.
    uh(1-\theta)- M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial
    p}{\partial y}\Big]=0
 
-Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.reynolds`; the sum of F over the nodes is
-the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the outlet and,
-in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A strip is
-periodic across.
+Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.line.reynolds`; the sum of F over the
+nodes is the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the
+outlet and, in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A
+strip is periodic across.
 """
 
 from __future__ import annotations
@@ -23,8 +23,7 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
 from ehlpetsc.discretisation.finite_volumes import DP, FLUIDITY, LN_ETA_P, RHO, RHO_P, P
 from ehlpetsc.discretisation.plane.deflection import Deflection, Transposition
 from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
-from ehlpetsc.discretisation.reynolds import flow_table_of, inlet, shear_constants
-from ehlpetsc.discretisation.step_inputs import Oil, StepInputs
+from ehlpetsc.discretisation.step_inputs import Oil, StepInputs, flow_table_of, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.rheology import flow_law

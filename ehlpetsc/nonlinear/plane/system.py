@@ -53,7 +53,7 @@ class PlaneMatrices:
 def plane_system(
     case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, bound_tolerance: float = ZERO_TOLERANCE
 ) -> TwoFields:
-    """System of a point contact or a strip; arguments as of :func:`..line_matrices.line_system`."""
+    """System of a point contact or a strip; arguments as of :func:`.line.system.line_system`."""
     grid, ranks = scales.grid, comm.tompi4py()
     cuts = first_rows(grid.shape[0], ranks.size)
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)

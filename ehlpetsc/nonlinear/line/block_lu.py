@@ -14,6 +14,8 @@ constants: indices that may be negative, and short loops of unknown length, take
 its code until this file changes and does not notice changes of imported constants, so they are defined here.
 """
 
+from __future__ import annotations
+
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned

@@ -22,12 +22,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.discretisation.finite_volumes import M, balance
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.step_inputs import StepInputs, flow_table_of, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 from ehlpetsc.physics.laws import density
-from ehlpetsc.physics.rheology import NEWTON, flow_law, stress_pressure
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.tabulated_flow import flow_table
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables.contact import Fluid
@@ -117,35 +115,6 @@ class Reynolds:
             inlet_row = inlet(q[:1], h[:1], inputs.inlet_film)
             residual[:1], derivatives[:1, own], derivatives[:1, own + 1] = inlet_row
         return residual, derivatives
-
-
-def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, float, float]:
-    """Constants of :func:`.finite_volumes.flux_through` from its third on: of shear law and speeds."""
-    flow, now = flow_law(inputs.fluid), inputs.conditions
-    stress = np.inf if flow.kind == NEWTON else flow.stress
-    rise = scales.p0 * stress_pressure(inputs.fluid)
-    return stress, stress * rise if rise else 0.0, abs(now.sliding), now.entrainment / scales.u
-
-
-def flow_table_of(inputs: StepInputs) -> np.ndarray:
-    """Table of the pressure flow, empty where the shear law has a closed form."""
-    kind, _, *constants = flow_law(inputs.fluid)
-    return flow_table(kind, *constants)
-
-
-def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndarray, ...]:
-    """Rows of inlet nodes and their derivatives by q and h.
-
-    Ambient pressure where flooded, the given oil film where starved.
-    """
-    if oil_film is None:
-        return q, np.ones_like(q), np.zeros_like(h)
-    starved = oil_film < h
-    return (
-        np.where(starved, q + 1.0 - oil_film / h, q),
-        np.ones_like(q),
-        np.where(starved, oil_film / h**2, 0.0),
-    )
 
 
 class NoOil:

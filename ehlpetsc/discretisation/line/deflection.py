@@ -21,6 +21,8 @@ A rank stores a window of the mesh, its own nodes and `HALO` nodes on either sid
 mesh enter as sums (`PressureSums`).
 """
 
+from __future__ import annotations
+
 from functools import cached_property
 from typing import NamedTuple
 
@@ -28,7 +30,7 @@ import numpy as np
 from numpy.fft import irfft, rfft
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.curvature_product import Blocks, product
+from ehlpetsc.discretisation.line.curvature_product import Blocks, product
 
 SECOND_DIFFERENCE = (1.0, -2.0, 1.0)
 HALO = 8  # nodes on either side of a rank's own: the widest stencil of the preconditioner

@@ -11,8 +11,8 @@ takes two; it is taken again where the norm cancels. Vectors are those of the wh
 active set leaves out are zero. Tolerances, convergence test and monitors are PETSc's. There is no restart: at
 most `MAX_IT`. All iterations of a solve are one compiled call.
 
-Use: ``-ksp_type python -ksp_python_type ehlpetsc.nonlinear.gmres.FlexibleGMRES`` (the default), on matrices
-and with the preconditioner of this program.
+Use: ``-ksp_type python -ksp_python_type ehlpetsc.nonlinear.line.gmres.FlexibleGMRES`` (the default), on
+matrices and with the preconditioner of this program.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.base.compiled import ZERO, compiled
-from ehlpetsc.nonlinear.jacobian import jacobian_product
-from ehlpetsc.nonlinear.preconditioner.distributed_lu import solve
+from ehlpetsc.nonlinear.line.distributed_lu import solve
+from ehlpetsc.nonlinear.line.jacobian import jacobian_product
 from ehlpetsc.nonlinear.ranks import exchange
 
 MAX_IT = 100  # of a solve

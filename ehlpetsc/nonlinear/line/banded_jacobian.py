@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.deflection import SECOND_DIFFERENCE
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.nonlinear.jacobian import pivot_regularisation
-from ehlpetsc.nonlinear.preconditioner.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
-from ehlpetsc.nonlinear.preconditioner.node_pairs import BandEntries, same_deflection
+from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE
+from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
+from ehlpetsc.nonlinear.line.jacobian import pivot_regularisation
+from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
 
 if TYPE_CHECKING:
     from typing import Any
+
 
 GROUP = 4  # nodes; wider bands cost more than they save iterations, narrower ones need more exponentials
 TERMS = 3  # exponentials; a fourth would save iterations of GMRES, and cost more in the band
@@ -49,7 +50,7 @@ def exponentials(kernel: np.ndarray, nodes_per_half_width: float) -> tuple[np.nd
     M unknowns more with neighbours only. Distances are between groups of `GROUP` nodes: near by, where that
     would be too coarse, the kernel is taken as it is.
 
-    `kernel`: :func:`ehlpetsc.discretisation.deflection.curvature_kernel`, shape (n,).
+    `kernel`: :func:`ehlpetsc.discretisation.line.deflection.curvature_kernel`, shape (n,).
 
     The kernel at a distance of d groups is about ``weights @ exp(-rates * d)``, both of shape (TERMS,).
     """

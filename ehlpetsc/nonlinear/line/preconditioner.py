@@ -1,6 +1,6 @@
 """The near-exact inverse of a contact's matrix as a PETSc preconditioner, on any number of ranks.
 
-Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.preconditioner.FarFieldBand`` (the default).
+Use: ``-pc_type python -pc_python_type ehlpetsc.nonlinear.line.preconditioner.FarFieldBand`` (the default).
 
 The band of :mod:`.banded_jacobian` includes the far deflection; :mod:`.distributed_lu` splits it by ranks.
 The error left to GMRES is that of three exponentials, the same on any number of ranks.
@@ -14,10 +14,10 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.jacobian import JacobianOperator
-from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
-from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
-from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.line.distributed_lu import DistributedLU, solve
+from ehlpetsc.nonlinear.line.jacobian import JacobianOperator
+from ehlpetsc.nonlinear.line.node_pairs import NodePairs
 
 
 class Factors:

@@ -20,8 +20,8 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.base.compiled import ZERO, compiled, unsigned
-from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
-from ehlpetsc.nonlinear.preconditioner.block_lu import (
+from ehlpetsc.nonlinear.line.banded_jacobian import BandedJacobian
+from ehlpetsc.nonlinear.line.block_lu import (
     AT_LEFT,
     AT_RIGHT,
     CUT,
@@ -34,8 +34,8 @@ from ehlpetsc.nonlinear.preconditioner.block_lu import (
     backward_transposed,
     forward,
 )
-from ehlpetsc.nonlinear.preconditioner.node_pairs import BandEntries, same_deflection
-from ehlpetsc.nonlinear.preconditioner.reduced_system import BORDER, ReducedSystem
+from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
+from ehlpetsc.nonlinear.line.reduced_system import BORDER, ReducedSystem
 from ehlpetsc.nonlinear.ranks import all_ranks, collective, exchange
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration

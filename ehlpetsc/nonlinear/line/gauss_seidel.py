@@ -37,15 +37,16 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
-from ehlpetsc.discretisation.deflection import SymmetricToeplitz
-from ehlpetsc.discretisation.line_problem import line_problem
+from ehlpetsc.discretisation.line.deflection import SymmetricToeplitz
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
+
 
 # half-widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
 STEP_SWEEPS_LENGTH, STEADY_SWEEPS_LENGTH = 0.6, 4.0

@@ -4,6 +4,8 @@ In the order of the cuts it is banded; its cost grows as the number of ranks. Ev
 the rows of the inverse for the unknowns w that it takes, and for sums over the solution.
 """
 
+from __future__ import annotations
+
 import numpy as np
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 
