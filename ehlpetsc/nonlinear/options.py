@@ -28,8 +28,11 @@ DEFAULTS = {
 # six digits; mixed contact conserves the oil to 1e-6, which needs 1e-7.
 # A compliant layer makes the load nonlinear in the film: 1e-8 balances it to 1e-10.
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
-PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
-KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
+PRECONDITIONER = {
+    "pc_type": "python",
+    "pc_python_type": "ehlpetsc.nonlinear.line.preconditioner.FarFieldBand",
+}
+KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.line.gmres.FlexibleGMRES"}
 # of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its
 # pressures
 PLANE = {
@@ -88,7 +91,7 @@ class RunOptions:
         self.deferred_views: list[str] = []
         self.unused = set(self.given)
 
-    def value(self, name: str, default: Any = None) -> Any:
+    def value(self, name: str, default: object = None) -> Any:
         """Value of an option, which counts as used."""
         if name in self.given:
             PETSc.Options().hasName(name)
@@ -231,7 +234,7 @@ def check_options(options: dict) -> None:
             raise UsageError(f"-{name} {value}: allowed: a number")
 
 
-def _number(text: Any) -> float | None:
+def _number(text: str | float | None) -> float | None:
     try:
         return float(text)
     except (TypeError, ValueError):  # no value, or no number

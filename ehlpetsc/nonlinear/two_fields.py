@@ -10,7 +10,7 @@ it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of 
 from __future__ import annotations
 
 import weakref
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from petsc4py import PETSc
@@ -23,6 +23,9 @@ from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.jacobian import python_matrix
 from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_max, global_sum
+
+if TYPE_CHECKING:
+    from ehlpetsc.nonlinear.jacobian import Jacobian
 
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
@@ -40,7 +43,7 @@ class Matrices(Protocol):
     keeps_factors: bool
     linear_atol: float
 
-    def jacobian(self, ksp: PETSc.KSP) -> Any:
+    def jacobian(self, ksp: PETSc.KSP) -> Jacobian:
         """Matrix-free Jacobian, context of a Python matrix, for a Krylov solver with its options."""
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> Any:

@@ -19,12 +19,11 @@ from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
-from ehlpetsc.surfaces import roughness_of
-from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times
+from ehlpetsc.surfaces.roughness import Profile, Roughness
 
 if TYPE_CHECKING:
-    from ehlpetsc.surfaces.areal_roughness import MovingTopography
+    from ehlpetsc.surfaces.roughness import MovingTopography, RoughSurface
 
 CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
@@ -37,12 +36,11 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     """Profiles or maps of a case file; overrides as in `ehlpetsc.load`."""
     case = load(path, overrides)
     scales = Scales.of(case)
-    rough = roughness_of(case, scales)
+    rough = Roughness.of(case, scales)
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    draw: Callable[..., Figure] = _draw_profiles if case.kind == "line" else _draw_maps
-    figure = draw({side: rough.side(side) for side in sides}, case, scales)
+    figure = DRAWN[case.kind]({side: rough.side(side) for side in sides}, case, scales)
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.conditions is not None:
         texts.append("of the widest contact; conditions over time")
@@ -62,13 +60,16 @@ def _draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> 
 
 
 def _draw_maps(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
-    from ehlpetsc.pictures.case_maps import draw_maps
+    from ehlpetsc.pictures.areal_surface import draw_maps
 
     parts = [passing(surface, case, scales) for surface in surfaces.values()]
     return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)
 
 
-def passing(profile: Profile | MovingTopography, case: Case, scales: Scales) -> tuple[float, float]:
+DRAWN: dict[str, Callable[..., Figure]] = {"line": _draw_profiles, "strip": _draw_maps, "point": _draw_maps}
+
+
+def passing(profile: RoughSurface, case: Case, scales: Scales) -> tuple[float, float]:
     """Ends [m] of the part of a profile that passes the whole contact; equal if there is none."""
     first, last = float(profile.X[0]), float(profile.X[-1])
     arrives = entry_times(profile, scales)

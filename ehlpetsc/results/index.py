@@ -138,7 +138,7 @@ def _settings(results: list[Result], varied: str | None = None) -> list[str]:
     ]
 
 
-def _setting(case: Case, key: str, label: str, value: Any) -> str:
+def _setting(case: Case, key: str, label: str, value: object) -> str:
     if value is None:  # left out: its default
         value = case
         for name in key.split("."):

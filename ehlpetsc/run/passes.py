@@ -14,7 +14,7 @@ from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
-from ehlpetsc.run.outputs.checkpoint import pass_of
+from ehlpetsc.run.checkpoint import pass_of
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run

@@ -255,7 +255,7 @@ class Simulation:
                 state = self._started(watch)
             except NotConverged as error:
                 if isinstance(error.__cause__, NoSteadyStart):
-                    from ehlpetsc.run.failed_start import cures
+                    from ehlpetsc.run.checkpoint import cures
 
                     advice = cures(self.case, self.operation.at(0.0))
                     raise NotConverged(f"{error}{advice}") from error.__cause__
@@ -274,7 +274,7 @@ class Simulation:
             points = self.case.mesh.points_per_half_width // 2
             if not isinstance(failure.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
                 raise
-            from ehlpetsc.run.failed_start import coarser, guess_of
+            from ehlpetsc.run.checkpoint import coarser, guess_of
 
             try:
                 coarse = Simulation(coarser(self.case, points), self.comm, self._options)

@@ -1,6 +1,7 @@
 """Areal maps as files: read, filled, levelled, filtered, turned, or refused with the key that settles it."""
 
 import sys
+from dataclasses import replace
 from types import ModuleType, SimpleNamespace
 
 import numpy as np
@@ -9,15 +10,15 @@ import pytest
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.surfaces.areal_files import MapLayout, read_map
+from ehlpetsc.surfaces.areal_files import gap_width, read_map
 from ehlpetsc.surfaces.areal_samples import areal_samples, inscribed, turned
 from ehlpetsc.surfaces.filters import mean_surface, without_form
-from ehlpetsc.surfaces.gaps import gap_width
+from ehlpetsc.surfaces.profile_files import Layout
 
 DX, DY = 2e-6, 3e-6
 X, Y = DX * np.arange(60), DY * np.arange(40)
 Z = 1e-7 * np.cos(X / 9e-6) * np.sin(Y / 2e-5)[:, np.newaxis]
-SPACED = MapLayout(spacing=DX, spacing_across=DY)
+SPACED = Layout(spacing=DX, spacing_across=DY)
 
 
 def as_text(z, separator="\t"):
@@ -41,7 +42,7 @@ def write_sdf(path, z):
 
 
 FORMATS = {".npy": (write_npy, SPACED), ".txt": (write_text, SPACED)}
-FORMATS |= {".x3p": (write_x3p, MapLayout()), ".sdf": (write_sdf, MapLayout())}
+FORMATS |= {".x3p": (write_x3p, Layout()), ".sdf": (write_sdf, Layout())}
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
@@ -59,7 +60,7 @@ def test_missing_heights_are_filled_up_to_the_width_stated(tmp_path, suffix):
     holed = Z.copy()
     holed[10:13, 20:24] = holed[30, 5] = holed[-2:] = np.nan
     write(path, holed)
-    z, *_, notes = read_map(path, layout._replace(fill_gaps=8.1e-6))
+    z, *_, notes = read_map(path, replace(layout, fill_gaps=8.1e-6))
     assert z.shape == (38, 60)  # the last two rows are missing altogether
     np.testing.assert_allclose(z, Z[:-2], rtol=0, atol=0.03e-7)
     assert notes == ("133 missing heights filled or, at the edges, cut off; widest gap 8 um",)
@@ -123,7 +124,7 @@ def test_units_named_in_a_header_are_asked_for(tmp_path):
     (tmp_path / "map.txt").write_text("height [um]\n" + as_text(1e6 * Z))
     with pytest.raises(ProfileError, match="^its header names um; write unit "):
         read_map(tmp_path / "map.txt", SPACED)
-    np.testing.assert_allclose(read_map(tmp_path / "map.txt", SPACED._replace(unit="um")).z, Z, atol=1e-15)
+    np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)
 
 
 def test_infinite_heights_are_refused_with_their_place(tmp_path):
@@ -151,7 +152,7 @@ def test_a_map_mostly_missing_is_refused(tmp_path):
     z = np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
     np.save(tmp_path / "map.npy", z)
     with pytest.raises(ProfileError, match="missing; allowed: no more than half "):
-        read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=1.0))
+        read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=1.0))
 
 
 def test_the_width_of_a_gap_is_that_of_its_widest_circle():
@@ -164,11 +165,9 @@ def test_a_value_far_from_all_others_is_no_height(tmp_path):
     z = Z + 1e-9 * np.random.default_rng(2).standard_normal(Z.shape)
     z[10:13, 20:24] = z[30, 5] = 9.999e-3
     np.save(tmp_path / "map.npy", z)
-    with pytest.raises(
-        ProfileError, match=r"^13 heights missing, 13 of them the value 0\.009999 m far from "
-    ):
+    with pytest.raises(ProfileError, match=r"^13 heights missing, 13 of them the value 0\.009999 far from "):
         read_map(tmp_path / "map.npy", SPACED)
-    found = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=9e-6))
+    found = read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=9e-6))
     np.testing.assert_allclose(found.z, Z, rtol=0, atol=0.05e-7)
 
 
@@ -202,7 +201,7 @@ def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):
     holed = plane.copy()
     holed[10:20, 20:40] = np.nan
     np.save(tmp_path / "map.npy", holed)
-    z = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=1e-3)).z
+    z = read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=1e-3)).z
     np.testing.assert_allclose(z, plane, rtol=0, atol=1e-16)
 
 

@@ -17,7 +17,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.run.forecast import file_size, work_time
 from ehlpetsc.run.validity import limits, warnings
-from ehlpetsc.surfaces import roughness_of
+from ehlpetsc.surfaces.roughness import Roughness
 
 POINT, STRIP = (tomllib.loads(template(kind)) for kind in ("point", "strip"))
 
@@ -153,7 +153,7 @@ def test_limits_of_a_point():
     case = load(copy.deepcopy(POINT), {"motion.slide_roll_ratio": 1.0})
     scales = Scales.of(case)
     totals = {"p_max": 6e9, "h_min": 1e-8, "oil_pressure": 1e9, "mass_error": 0.2, "nodes_below_1nm": 3}
-    lines = limits(case, scales, roughness_of(case, scales), totals | {"friction_coefficient": 0.05})
+    lines = limits(case, scales, Roughness.of(case, scales), totals | {"friction_coefficient": 0.05})
     found = [line.partition(":")[0] for line in lines]
     assert found == ["pressure", "heat", "oil balance", "film"]
 

@@ -11,7 +11,7 @@ import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
 from ehlpetsc.case.keys import template
-from ehlpetsc.run.outputs.recorder import Recorder
+from ehlpetsc.run.recorder import Recorder
 
 BALL = {
     "title": "ball",

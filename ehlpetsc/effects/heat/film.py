@@ -7,7 +7,7 @@ those of the viscosity. Transport along the film: :mod:`.transport`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -26,23 +26,26 @@ from ehlpetsc.discretisation.finite_volumes import (
     fill_mass,
     fluidities,
 )
-from ehlpetsc.discretisation.oil import IsothermalOil, last_before
 from ehlpetsc.discretisation.plane.finite_volumes import flux_across
+from ehlpetsc.discretisation.step_inputs import IsothermalOil, last_before
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
-from ehlpetsc.effects.heat.rows import in_rows
+from ehlpetsc.effects.heat.record import in_rows
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
 from ehlpetsc.physics.rheology import FlowLaw
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
+
 TINY = 1e-6  # y whose sinh(y)/y is 1
 
 
 class FilmHeat(NamedTuple):
-    """Oil whose viscosity depends on the film's temperature; interface of :class:`.oil.Oil`.
+    """Oil whose viscosity depends on the film's temperature; interface of :class:`.step_inputs.Oil`.
 
     `isothermal`: oil without heat; None: dry.
     `law`: constants of the oil.
@@ -68,7 +71,7 @@ class FilmHeat(NamedTuple):
         return THINNED_PROPERTIES
 
     @property
-    def fluid(self) -> Any:
+    def fluid(self) -> Fluid:
         """Table `[fluid]` of the case."""
         return self.isothermal.fluid
 
@@ -82,7 +85,7 @@ class FilmHeat(NamedTuple):
         return SolvedFilm(*self._replace(guess=self.guess.copy()))
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`.oil.Oil.fill`, from `guess`."""
+        """As :meth:`.step_inputs.Oil.fill`, from `guess`."""
         self.begin().fill(q, h, nodes, at)
 
     def with_rows(self, rows: Iterable[int], values: Iterable[np.ndarray]) -> FilmHeat:
@@ -97,7 +100,7 @@ class SolvedFilm(FilmHeat):
     """Oil of one solve: its `guess` becomes the state of the film at the nodes last filled in."""
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`.oil.Oil.fill`; changes `guess`."""
+        """As :meth:`.step_inputs.Oil.fill`; changes `guess`."""
         state, of_nodes = (np.ascontiguousarray(rows[:, nodes]) for rows in (self.guess, self.of_nodes))
         oil = self.isothermal
         heated_nodal(q, h, oil.density, oil.units, tuple(self.law), of_nodes, state, at)
@@ -117,9 +120,9 @@ def heated_nodal(
 ) -> None:
     """Fill in the properties of nodes for their faces, viscosity at the film's temperature with derivatives.
 
-    q, h, density, units and `at` as of :func:`.oil.nodal`; a node beyond the outlet has the temperature of
-    the last one. `state` of the film to start from becomes that of the nodes. `law` is a tuple: numba looks
-    up the type of a named one anew in some calls.
+    q, h, density, units and `at` as of :func:`.step_inputs.nodal`; a node beyond the outlet has the
+    temperature of the last one. `state` of the film to start from becomes that of the nodes. `law` is a
+    tuple: numba looks up the type of a named one anew in some calls.
     """
     nodes, law, (p0, film, unit) = len(q), FilmLaw(*law), units
     zero = law.viscosity[2]
@@ -248,7 +251,7 @@ def faces_in_rows(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Results of :func:`faces` of each row of nodes, flat: Couette flow, heat, spread, gradient.
 
-    `at`: nodes of all rows, then the nodes beyond their outlets, as of :meth:`.oil.Oil.fill`.
+    `at`: nodes of all rows, then the nodes beyond their outlets, as of :meth:`.step_inputs.Oil.fill`.
     """
     n = len(oil)
     nodes, beyond = in_rows(at[:, :n], rows), in_rows(at[:, n:], rows)

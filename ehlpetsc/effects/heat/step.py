@@ -9,16 +9,20 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
-from ehlpetsc.discretisation.oil import IsothermalOil
-from ehlpetsc.discretisation.reynolds import flow_table_of, shear_constants
-from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
+from ehlpetsc.discretisation.step_inputs import (
+    IsothermalOil,
+    StepInputs,
+    flow_table_of,
+    mirrored,
+    shear_constants,
+)
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows, last_profile
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
-from ehlpetsc.effects.heat.transport import Film, explicit_in_rows, heat_taken_in_rows, transport_in_rows
+from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken_in_rows, transport_in_rows
 from ehlpetsc.physics.flash_temperature import Solid
 from ehlpetsc.physics.rheology import flow_law
 
@@ -88,7 +92,7 @@ class HeatStep:
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-        balance = explicit_in_rows(self.rows, stored, record.flow, record.film, self.inlet)
+        balance = explicit_transport(self.rows, stored, record.flow, record.film, self.inlet)
         rows = *balance, record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
@@ -256,10 +260,7 @@ class HeatStep:
         a^2/R at the maximum speed.
         """
         total = (temperatures.shear + source + film.rubbing).sum()
-        of_film = film.old, film.stored, film.extrapolated, film.couette
-        taken = heat_taken_in_rows(
-            self.rows, *of_film, self.inlet, temperatures.film, temperatures.extrapolated
-        )
+        taken = heat_taken_in_rows(self.rows, film, self.inlet, temperatures.film, temperatures.extrapolated)
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
         s = self.scales
         flow = np.abs(film.couette.reshape(self.rows, -1)).max(axis=1)
