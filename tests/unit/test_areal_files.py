@@ -191,7 +191,7 @@ def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
     spoilt[70:73, 20:23] += 3e-6
     spoilt[100, 140] -= 3e-6
     np.save(tmp_path / "map.npy", spoilt)
-    found = read_map(tmp_path / "map.npy", SPACED._replace(bridge_spikes=True))
+    found = read_map(tmp_path / "map.npy", replace(SPACED, bridge_spikes=True))
     assert found.notes[0] == "spikes: 10 points in all, bridged"
     np.testing.assert_allclose(found.z, z, rtol=0, atol=2e-7)
 
