@@ -19,6 +19,7 @@ from ehlpetsc.physics.film_formulas import (
     film_left_by_inlet,
     inlet_opening,
     points_for_opening,
+    rolling_left_by_inlet,
 )
 from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
 
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.roughness import Roughness
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
+MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
+MIN_ROLLING_FRICTION = 0.9  # over that of a flooded contact
 PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
 MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
@@ -110,7 +113,7 @@ def warnings(case: Case, scales: Scales) -> list[str]:
         profiles = Roughness.of(case, scales)
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
         notes += mesh_warnings(profiles, scales)
-    return notes + heat_warnings(case, scales)
+    return notes + _rolling_warnings(case, scales) + heat_warnings(case, scales)
 
 
 def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
@@ -158,6 +161,16 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
         sliding = scales.u1 - scales.u2
         friction = expected_friction(case.fluid, scales.load_per_length, scales.a, sliding, film)
     return list(isothermal(case, scales, friction))
+
+
+def _rolling_warnings(case: Case, scales: Scales) -> list[str]:
+    """Rolling friction that the oil before the mesh would add, where no sliding hides it."""
+    if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
+        return []
+    left = rolling_left_by_inlet(expected_film(case, scales), -case.mesh.inlet)
+    missing = f"up to {100.0 * (1.0 - left):.0f} % of the rolling friction"
+    note = f"mesh.inlet = {case.mesh.inlet:g}: {missing} arise before it and are not computed"
+    return [note] if left < MIN_ROLLING_FRICTION else []
 
 
 def _oil_warnings(fluid: Fluid | None) -> Iterator[str]:

@@ -35,7 +35,7 @@ def fitted_terms(stiffness: float, spacings: Sequence[float]) -> tuple[np.ndarra
     from scipy.optimize import nnls
 
     dy, dx = spacings
-    s_2 = np.geomspace(LONGEST, np.pi / max(dx, dy), TERMS) ** 2
+    s_2 = np.geomspace(LONGEST, np.pi / min(dx, dy), TERMS) ** 2
     k_2 = np.geomspace(LONGEST**2, 4.0 / dx**2 + 4.0 / dy**2, 200)  # the largest of the five-point stencil
     matrix = np.sqrt(k_2)[:, None] / (k_2[:, None] + s_2) / (2.0 * np.pi * stiffness)
     return nnls(matrix, np.ones(len(k_2)))[0], s_2
