@@ -21,7 +21,6 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
-from ehlpetsc.run.checkpoint import load, save
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.validity import limits
 from ehlpetsc.stepping.time_stepping import on_level
@@ -145,6 +144,8 @@ class Recorder:
 
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
+        from ehlpetsc.run.checkpoint import load
+
         stored, notes = load(path, self.simulation.case, self.simulation.scales)
         state = stored.state
         self.simulation.resume(state, stored.baseline)
@@ -243,6 +244,8 @@ class Recorder:
             write_xdmf(self.output)
 
     def _save(self) -> None:
+        from ehlpetsc.run.checkpoint import save
+
         self._writer.flush()
         save(self.restart, self.simulation, self._writer.contact_count, self.totals.values)
 

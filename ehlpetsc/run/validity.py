@@ -21,7 +21,6 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
     rolling_left_by_inlet,
 )
-from ehlpetsc.physics.flash_temperature import expected_friction
 from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
 
 if TYPE_CHECKING:
@@ -106,13 +105,12 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
 
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
-    from ehlpetsc.surfaces.roughness import Roughness
-
-    profiles = Roughness.of(case, scales)
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case.fluid), *domain_warnings(case, scales)]
-    if profiles:
+    if case.surface.body_1 or case.surface.body_2:
         from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
+        from ehlpetsc.surfaces.roughness import Roughness
 
+        profiles = Roughness.of(case, scales)
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
         notes += mesh_warnings(profiles, scales)
     return notes + _rolling_warnings(case, scales) + heat_warnings(case, scales)
@@ -157,6 +155,8 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
     """Warning of an isothermal case with a high estimated flash temperature."""
     friction = case.contact.boundary_friction if case.motion else None
     if case.motion and case.fluid:
+        from ehlpetsc.physics.flash_temperature import expected_friction
+
         film = expected_film(case, scales) * scales.h
         sliding = scales.u1 - scales.u2
         friction = expected_friction(case.fluid, scales.load_per_length, scales.a, sliding, film)

@@ -6,13 +6,15 @@ from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+from support import CASES
 
-from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.surfaces.areal_files import gap_width, read_map
 from ehlpetsc.surfaces.areal_samples import areal_samples, inscribed, turned
-from ehlpetsc.surfaces.filters import mean_surface, without_form
+from ehlpetsc.surfaces.filters import levelled, mean_surface, without_form
 from ehlpetsc.surfaces.profile_files import Layout
 
 DX, DY = 2e-6, 3e-6
@@ -108,12 +110,6 @@ def test_a_profile_in_the_format_of_maps_is_refused(tmp_path):
         read_map(tmp_path / "p.x3p")
 
 
-def test_a_matrix_needs_its_spacing(tmp_path):
-    np.save(tmp_path / "map.npy", Z)
-    with pytest.raises(ProfileError, match="^a matrix of heights needs spacing = "):
-        read_map(tmp_path / "map.npy")
-
-
 def test_a_spacing_beside_that_of_the_file_is_refused(tmp_path):
     (tmp_path / "map.x3p").touch()
     with pytest.raises(ProfileError, match=r"^spacing: '\.x3p' includes it; leave it out$"):
@@ -127,32 +123,29 @@ def test_units_named_in_a_header_are_asked_for(tmp_path):
     np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)
 
 
-def test_infinite_heights_are_refused_with_their_place(tmp_path):
-    z = Z.copy()
-    z[4, 6] = np.inf
+INFINITE, MOSTLY_MISSING = Z.copy(), np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
+INFINITE[4, 6] = np.inf
+SMALL = "^[0-9 x]* heights; allowed: a matrix of 4 x 4 or more$"
+REFUSED = {
+    "without spacing": (Z, Layout(), "^a matrix of heights needs spacing = "),
+    "infinite": (INFINITE, SPACED, "^row 5, column 7 is not a height below "),
+    "three rows": (Z[:3], SPACED, SMALL),
+    "one dimension": (Z[0], SPACED, SMALL),
+    "three dimensions": (Z[np.newaxis], SPACED, SMALL),
+    "words": (np.full((5, 5), "a"), SPACED, "^numbers of type <U1; allowed: "),
+    "mostly missing": (
+        MOSTLY_MISSING,
+        replace(SPACED, fill_gaps=1.0),
+        "missing; allowed: no more than half ",
+    ),
+}
+
+
+@pytest.mark.parametrize(("z", "layout", "message"), REFUSED.values(), ids=REFUSED)
+def test_a_faulty_matrix_is_refused(tmp_path, z, layout, message):
     np.save(tmp_path / "map.npy", z)
-    with pytest.raises(ProfileError, match="^row 5, column 7 is not a height below "):
-        read_map(tmp_path / "map.npy", SPACED)
-
-
-@pytest.mark.parametrize("z", [Z[:3], Z[0], Z[np.newaxis]])
-def test_a_map_of_few_rows_or_more_than_two_dimensions_is_refused(tmp_path, z):
-    np.save(tmp_path / "map.npy", z)
-    with pytest.raises(ProfileError, match="^[0-9 x]* heights; allowed: a matrix of 4 x 4 or more$"):
-        read_map(tmp_path / "map.npy", SPACED)
-
-
-def test_a_matrix_of_words_is_refused(tmp_path):
-    np.save(tmp_path / "map.npy", np.full((5, 5), "a"))
-    with pytest.raises(ProfileError, match="^numbers of type <U1; allowed: "):
-        read_map(tmp_path / "map.npy", SPACED)
-
-
-def test_a_map_mostly_missing_is_refused(tmp_path):
-    z = np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
-    np.save(tmp_path / "map.npy", z)
-    with pytest.raises(ProfileError, match="missing; allowed: no more than half "):
-        read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=1.0))
+    with pytest.raises(ProfileError, match=message):
+        read_map(tmp_path / "map.npy", layout)
 
 
 def test_the_width_of_a_gap_is_that_of_its_widest_circle():
@@ -217,8 +210,6 @@ def test_form_of_its_degree_is_subtracted_exactly(degree):
 
 
 def test_a_line_is_the_form_of_degree_one_of_a_profile():
-    from ehlpetsc.surfaces.filters import levelled
-
     z = Z[7] + 3e-3 * X
     np.testing.assert_allclose(without_form([X], z, 1), levelled(X, z), atol=1e-19)
 
@@ -348,10 +339,5 @@ REFUSED_MATRICES = {
 
 @pytest.mark.parametrize(("keys", "message"), REFUSED_MATRICES.values(), ids=REFUSED_MATRICES)
 def test_a_faulty_matrix_in_the_case_is_refused(keys, message):
-    from support import CASES
-
-    from ehlpetsc.base.errors import CaseError
-    from ehlpetsc.case.loading import load
-
     with pytest.raises(CaseError, match=message):
         load(CASES / "table1_smooth.toml", {"surface.2": {"spacing": 1e-6} | keys})

@@ -6,7 +6,7 @@ right end (twisted factorisation, :mod:`.block_lu`): what is left at the cut cou
 .. math:: x_i=y_i-W_ix_{i+1}.
 
 Ranks between have two cuts; they solve for the columns :math:`G=A^{-1}C` of what their outer groups take of
-others (Polizzi & Sameh 2006: SPIKE), :math:`x=y-Gw`. The unknowns w at the cuts obey :mod:`.reduced_system`.
+others (Polizzi & Sameh 2006: SPIKE), :math:`x=y-Gw`. The unknowns w at the cuts obey :mod:`.block_lu`.
 
 Three dense rows d border the band: the whole deflection of both end nodes, and the load. They enter by two
 columns :math:`z=A^{-1}e`, e the rows of the end nodes, and a system of three unknowns: what the band lacks of
@@ -24,18 +24,19 @@ from ehlpetsc.nonlinear.line.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.line.block_lu import (
     AT_LEFT,
     AT_RIGHT,
+    BORDER,
     CUT,
     FAST,
     LEFT,
     LINE,
     SIZE,
     BlockLU,
+    ReducedSystem,
     backward,
     backward_transposed,
     forward,
 )
 from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
-from ehlpetsc.nonlinear.line.reduced_system import BORDER, ReducedSystem
 from ehlpetsc.nonlinear.ranks import all_ranks, collective, exchange
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
@@ -53,7 +54,7 @@ class DistributedLU:
         * factors of a `BlockLU`;
         * cuts: numbers of the unknowns at the cuts that other ranks take; dense rows (BORDER, size); columns
           G, or of an outer rank W, shape (unknowns taken of others, width), under the last `width` unknowns;
-          :meth:`.reduced_system.ReducedSystem.rows_of_inverse`;
+          :meth:`.block_lu.ReducedSystem.rows_of_inverse`;
         * border: numbers of the unknowns of the local nodes; columns z, shape (2, size); inverse of the
           system of three unknowns, (BORDER, BORDER);
         * room: shape (size,); messages (ranks, CUT + BORDER); `units`.

@@ -35,7 +35,7 @@ class Factors:
         self.fresh = False
 
     def factor(self, operator: JacobianOperator) -> None:
-        """Factor for the state of a :mod:`ehlpetsc.nonlinear.jacobian`."""
+        """Factor for the state of a :mod:`ehlpetsc.nonlinear.two_fields`."""
         pairs = NodePairs(operator.state, operator.model.compliance)
         entries = pairs.entries(operator.reynolds_derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
