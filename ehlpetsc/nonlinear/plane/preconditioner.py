@@ -30,7 +30,7 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
-from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitted_terms
 from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
@@ -76,20 +76,18 @@ class SparseForm:
         grid = problem.grid
         self.kind = kind = whole[0][problem.first : problem.last]
         self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
-        rows, entries = block * problem.local, problem.local * (7 * TERMS + MAX_ROW + 3)
-        csr = np.zeros(rows + 1, dtype=np.int32), np.empty(entries, dtype=np.int32), np.empty(entries)
-        by_pressure, by_separation = np.zeros((problem.local, 6)), np.zeros((problem.local, 6))
-        self.border = np.zeros(rows)
-        mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic, block
+        local, most = problem.local, STENCIL * problem.local
+        csr = np.zeros(local + 1, dtype=np.int32), np.empty(most, dtype=np.int32), np.zeros((most, block, block))
+        by_pressure, by_separation = np.zeros((local, STENCIL)), np.zeros((local, STENCIL))
+        border = np.zeros((local, block))
+        mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic
         scales = problem.deflection.row_scale, *grid.steps
-        count = fill(
-            tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, self.border
-        )
+        count = fill(tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, border)
+        self.border = border.ravel()
         self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
         self.by_pressure[:, ::2], self.by_separation[:, ::2] = by_pressure, by_separation
-        self._entries = csr[0], csr[1][:count].copy(), csr[2][:count].copy()  # PETSc does not copy them
-        sizes = rows, block * problem.n
-        self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=comm)
+        sizes, entries = (block * local, block * problem.n), (csr[0], csr[1][:count], csr[2][:count])
+        self.matrix = PETSc.Mat().createBAIJ((sizes, sizes), block, csr=entries, comm=comm)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         self.pc.setOptionsPrefix(PREFIX)
