@@ -111,10 +111,10 @@ class SparseForm:
 
 
 class Factors(NamedTuple):
-    """Sparse form and coarse correction of one state, and the solution for a unit of h00."""
+    """Sparse form and coarse correction of one state (without oil none), and the solution for a unit of h00."""
 
     sparse: SparseForm
-    coarse: CoarseCorrection
+    coarse: CoarseCorrection | None
     of_h00: tuple[np.ndarray, np.ndarray, float] | None = None
 
 
@@ -172,7 +172,7 @@ class Elimination:
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
         sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
-        if coarse is None:
+        if coarse is None and p.fluid is not None:
             mask = whole[0] == PRESSURE
             mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
             flow, transport = self._gathered(sparse.by_pressure), self._gathered(sparse.by_separation)
@@ -183,20 +183,25 @@ class Elimination:
     def _pressures(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """Pressures and Reynolds unknowns of the local nodes, and the load."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        rows = sparse.reynolds_rows
         with events.BACK_SOLVE:
-            reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
-            pressure, separation = coarse(self._gathered(reynolds))
-            local, nothing = slice(p.first, p.last), np.zeros(p.share.window_size)
-            pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
-            for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
-                reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
-            left = b.copy()
-            left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
-            finer, r = sparse.solve(left)
-        pressure = pressure[local] + finer
+            coarsely, left = self._coarsely(b) if coarse else (0.0, b)
+            pressure, r = sparse.solve(left)
+        pressure = pressure + coarsely
         load = p.deflection.cell * pressure.sum()
         return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
+
+    def _coarsely(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Local pressures of the coarse correction, and the right-hand side that they leave."""
+        p, (sparse, coarse, _) = self.problem, self.factors
+        rows, nothing = sparse.reynolds_rows, np.zeros(p.share.window_size)
+        reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
+        pressure, separation = coarse(self._gathered(reynolds))
+        pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
+        for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
+            reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
+        left = b.copy()
+        left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
+        return pressure[p.share.local], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
