@@ -77,11 +77,7 @@ class SparseForm:
         self.kind = kind = whole[0][problem.first : problem.last]
         self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
         local, most = problem.local, STENCIL * problem.local
-        csr = (
-            np.zeros(local + 1, dtype=np.int32),
-            np.empty(most, dtype=np.int32),
-            np.zeros((most, block, block)),
-        )
+        csr = np.zeros(local + 1, dtype=np.int32), np.empty(most, dtype=np.int32), np.zeros((most, block, block))
         by_pressure, by_separation = np.zeros((local, STENCIL)), np.zeros((local, STENCIL))
         border = np.zeros((local, block))
         mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic
