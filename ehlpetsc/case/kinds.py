@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.case.checking import Fault, Tables, is_point
 from ehlpetsc.case.messages import show
-from ehlpetsc.case.tables.motion import MAX_NODES
 from ehlpetsc.case.tables.surface import areal_keys
 from ehlpetsc.physics.geometry import GEOMETRIES
 from ehlpetsc.physics.scales import reduced_modulus
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
 LINE = "line"  # the kind of contact whose surfaces are profiles
+MAX_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 
 
 def point_of_gears(data: Tables) -> list[Fault]:

@@ -189,9 +189,7 @@ def point_film(scales: Scales) -> float:
 
 GEOMETRIES = {
     "line": Geometry(line, line_half_width, one_row, line_grid, line_groups, line_films, line_film),
-    "strip": Geometry(
-        line, line_half_width, strip_rows, strip_grid, line_groups, line_films, line_film
-    ),
+    "strip": Geometry(line, line_half_width, strip_rows, strip_grid, line_groups, line_films, line_film),
     "point": Geometry(
         ellipse, point_half_width, point_rows, point_grid, point_groups, point_films, point_film
     ),

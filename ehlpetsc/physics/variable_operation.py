@@ -258,7 +258,11 @@ class VariableOperation:
             rates = [
                 fine.speed / cell,  # steps per second: the faster surface moves by the Courant number a step
                 # and so do the edges of the Hertz contact
-                0.5 * self.growth * half_width * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius) / cell,
+                0.5
+                * self.growth
+                * half_width
+                * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius)
+                / cell,
             ]
             rates += [np.abs(v) / (MAX_SPEED_CHANGE * self.courant * fine.speed.max()) for v in slopes[2:]]
         rate = np.maximum.reduce(rates)

@@ -43,8 +43,8 @@ CASES = {
         lambda: load(point(50.0, 5.0, 10, {"contact.boundary_film": None, "contact.model": "direct"})),
         1,
     ),
-    "rough point": (lambda: load(point(50.0, 5.0, 10), MIXED), 3),
-    "rough point, reversed": (lambda: load(point(50.0, 5.0, 10), MIXED | REVERSED), 3),
+    "rough point": (lambda: load(point(50.0, 5.0, 8), MIXED), 1),
+    "rough point, reversed": (lambda: load(point(50.0, 5.0, 8), MIXED | REVERSED), 1),
     "strip": (lambda: load(CASE, STRIP), 12),
     "strip with a layer": (lambda: load(CASE, STRIP | LAYER), 12),
 }

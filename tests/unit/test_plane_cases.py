@@ -56,7 +56,7 @@ def test_wrong_unit_of_the_load_is_one_sentence_in_a_line_contact(tmp_path):
         ({"operation": {"time": [0, 1], "load": ["2 N", "3 N/m"]}}, "allowed: one of N in a point contact"),
         ({"operation": {"time": [0, 1], "load": [2, -3]}}, "row 2: load = -3 N: allowed: above 0"),
         ({"life": {"passes": 10}}, "[life]: of line contacts, not of a point; leave it out"),
-        ({"mesh__width": 900}, "mesh: 97 x 21601 nodes; allowed: 200000 in all; a smaller mesh.width"),
+        ({"mesh__width": 900}, "mesh: 97 x 21601 nodes; allowed: 1000000 in all; a smaller mesh.width"),
         ({"mesh__points_per_half_width": [24, 3]}, "mesh.points_per_half_width = [24, 3]: allowed:"),
     ],
 )

@@ -78,16 +78,13 @@ class SparseForm:
         self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
         rows, entries = block * problem.local, problem.local * (7 * TERMS + MAX_ROW + 3)
         csr = np.zeros(rows + 1, dtype=np.int32), np.empty(entries, dtype=np.int32), np.empty(entries)
-        by_pressure, by_separation = np.zeros((problem.local, 6)), np.zeros((problem.local, 6))
+        self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
+        every_second = self.by_pressure[:, ::2], self.by_separation[:, ::2]
         self.border = np.zeros(rows)
         mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic, block
         scales = problem.deflection.row_scale, *grid.steps
-        count = fill(
-            tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, self.border
-        )
-        self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
-        self.by_pressure[:, ::2], self.by_separation[:, ::2] = by_pressure, by_separation
-        self._entries = csr[0], csr[1][:count].copy(), csr[2][:count].copy()  # PETSc does not copy them
+        count = fill(tuple(whole), derivatives, terms, scales, mesh, csr, *every_second, self.border)
+        self._entries = csr[0], csr[1][:count], csr[2][:count]  # PETSc does not copy them
         sizes = rows, block * problem.n
         self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=comm)
         self.pc = PETSc.PC().create(comm)
