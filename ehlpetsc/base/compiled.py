@@ -112,7 +112,7 @@ def announce_compilation(show: Callable[[str], None]) -> None:
     class Announcement(event.Listener):
         depth, spent, begun, is_shown = 0, 0.0, 0.0, False
 
-        def on_start(self, event: Any) -> None:
+        def on_start(self, event: object) -> None:
             now = clock.monotonic()
             self.begun = now if self.depth == 0 else self.begun
             self.depth += 1
@@ -120,7 +120,7 @@ def announce_compilation(show: Callable[[str], None]) -> None:
                 self.is_shown = True
                 show(COMPILING)
 
-        def on_end(self, event: Any) -> None:
+        def on_end(self, event: object) -> None:
             self.depth -= 1
             if self.depth == 0:
                 self.spent += clock.monotonic() - self.begun
@@ -128,7 +128,7 @@ def announce_compilation(show: Callable[[str], None]) -> None:
     event.register("numba:compile", Announcement())
 
 
-def compiled(function: Callable | None = None, **options: Any) -> Any:
+def compiled(function: Callable | None = None, **options: object) -> Any:
     """Compile `function` at its first call, once for all runs if the code can be cached.
 
     Division by zero is infinity as in numpy; with ``error_model="python"`` it is an error as in Python.
@@ -145,7 +145,7 @@ def compiled(function: Callable | None = None, **options: Any) -> Any:
         return numba.njit(**(options | {"cache": False}))(function)
 
 
-def inlined(function: Callable, **options: Any) -> Any:
+def inlined(function: Callable, **options: object) -> Any:
     """Compile a small function of a law into its callers.
 
     A call from compiled code hands over the law's constants one by one, which takes as long as the law.

@@ -16,8 +16,9 @@ import numpy as np
 
 from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import FAULTY, Tables, check, in_contact, is_number, is_point
+from ehlpetsc.case.checking import FAULTY, check, in_contact, is_number, is_point
 from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
@@ -33,7 +34,7 @@ Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 def read_table(path: Path, units: Mapping[str, str], names: Columns) -> dict[str, list[float]]:
     """Columns of a text file in SI units, `units` by key; raises `ProfileError`."""
-    from ehlpetsc.surfaces.text_columns import text_columns
+    from ehlpetsc.surfaces.text_files import text_columns
 
     try:
         columns, header = text_columns(path)
@@ -201,7 +202,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
     contact, motion, time = (tables.get(name, {}) for name in named)
     load, radius, u, xi = table.reference()
     kind = "point" if is_point(tables) else "line"
-    radii = _radii(contact["radius"], radius) if kind == "point" else radius
+    radii: Any = _radii(contact["radius"], radius) if kind == "point" else radius
     contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
     if any((speed != constants.get(key)).any() for key, speed in speeds.items()):

@@ -12,7 +12,8 @@ import numpy as np
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
-from ehlpetsc.case.checking import FAULTY, Fault, Tables, check, values_of
+from ehlpetsc.base.toml_file import Tables
+from ehlpetsc.case.checking import FAULTY, Fault, check, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.law import STANDARD_TEMPERATURE

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
+from ehlpetsc.base.command_line import ProgressLine, duration
 from ehlpetsc.base.errors import CaseError, NotConverged
-from ehlpetsc.base.progress_line import ProgressLine, duration
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.effects.effect import flat, unflat
-from ehlpetsc.effects.plastic_deformation import PlasticRecord
 from ehlpetsc.life.band import band, lines_of, passes_to_failure
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new

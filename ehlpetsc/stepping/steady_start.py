@@ -172,7 +172,7 @@ def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
         change = {"exponent_factor": fraction}
         stress = list(SHEAR_LAWS[shear_law(fluid)].keys)[:1]
         change |= {key: getattr(fluid, key) / fraction**4 for key in stress}
-        from ehlpetsc.discretisation.oil import IsothermalOil
+        from ehlpetsc.discretisation.step_inputs import IsothermalOil
 
         oil = IsothermalOil(fluid.copy(update=change), oil.scales)
     return replace(inputs, oil=oil, phi=roughness * inputs.phi)

@@ -1,6 +1,6 @@
 """Time stepping of a run: steady solution, time steps, retries.
 
-The initial guess of a step is that of :mod:`.predictor`. A step that does not converge is halved and counted;
+The initial guess of a step is that of :mod:`.state`. A step that does not converge is halved and counted;
 :func:`next_step` returns to the nominal step.
 """
 
@@ -18,8 +18,7 @@ from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.nonlinear import events
 from ehlpetsc.physics.operation import LEVEL_TOLERANCE
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
-from ehlpetsc.stepping.predictor import predict
-from ehlpetsc.stepping.state import State, TimeLevel
+from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 
 RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up

@@ -90,7 +90,7 @@ def test_second_order_in_time():
     states = [at_three_quarters(harmonic(4.0), steps)[0] for steps in (32, 64, 128)]
     inside = S.grid.inside(0.8)
     for field in ("film_thickness", "pressure"):
-        values = [getattr(state, field)[inside] for state in states]
+        values = [getattr(state, field).ravel()[inside] for state in states]
         differences = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(values, values[1:], strict=False)]
         assert observed_order(differences) > 1.8
 
@@ -108,7 +108,7 @@ def test_reversed_motion_turns_the_contact_about_its_axis():
     assert np.abs(there[-1].solution.p - there[-1].solution.p.reshape(shape)[::-1].ravel()).max() > 0.1
     for one, other in zip(there, back, strict=True):
         np.testing.assert_allclose(other.solution.p[::-1], one.solution.p, rtol=0, atol=1e-9)
-        np.testing.assert_allclose(other.film_thickness[::-1], one.film_thickness, rtol=1e-8)
+        np.testing.assert_allclose(np.flip(other.film_thickness), one.film_thickness, rtol=1e-8)
 
 
 @pytest.mark.slow
@@ -130,7 +130,7 @@ def test_half_strokes_of_oscillating_entrainment_mirror_each_other():
     assert not any(state.retries for state in states) and steps % 2 == 0
     assert min(state.film_central for state in states) < 0.7 * states[0].film_central
     for there, back in zip(states[-steps : -steps // 2], states[-steps // 2 :], strict=True):
-        np.testing.assert_allclose(back.film_thickness[::-1], there.film_thickness, rtol=1e-3)
+        np.testing.assert_allclose(np.flip(back.film_thickness), there.film_thickness, rtol=1e-3)
         np.testing.assert_allclose(back.solution.p[::-1], there.solution.p, rtol=0, atol=1e-3)
     assert max(state.mass_error for state in states) < 1e-5
 

@@ -9,7 +9,7 @@ from support.points import R, lowest, moes_film, point
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.finite_volumes import flux_through
 from ehlpetsc.discretisation.plane.finite_volumes import flux_across
-from ehlpetsc.discretisation.reynolds import flow_table_of, shear_constants
+from ehlpetsc.discretisation.step_inputs import flow_table_of, shear_constants
 from ehlpetsc.physics.hertz import hertz_ellipse
 from ehlpetsc.physics.rheology import flow_law
 from ehlpetsc.run.simulation import Simulation
@@ -31,7 +31,7 @@ def radius_ratio(ellipticity):
     return ratio if ellipticity > 1.0 else 1.0 / ratio
 
 
-def dry(changes, ellipticity, points):
+def dry(changes, ellipticity, points, load_error=1e-10):
     """Errors of the pressure in p0, within 0.9 of the ellipse and mean; relative error of the approach."""
     tables = point(50.0, 5.0, points, changes)
     tables = {key: tables[key] for key in ("title", "contact")}
@@ -44,7 +44,7 @@ def dry(changes, ellipticity, points):
     wrong = np.abs(state.solution.p - exact)
     hertz = hertz_ellipse(s.load, R, R * radius_ratio(ellipticity), s.E)
     approach = -state.solution.h00 * s.h / hertz.approach - 1.0
-    assert state.load_error < 1e-10
+    assert state.load_error < load_error
     return wrong[s.grid.distance < 0.9].max(), wrong.mean(), abs(approach)
 
 
@@ -54,6 +54,14 @@ def test_dry_circle_with_its_order(contact):
     assert inside[-1] < 2e-4 and approach[-1] < 1e-4
     assert observed_order(inside) > 1.9
     assert observed_order(mean) > 1.4  # infinite slope at the edge
+
+
+@pytest.mark.parametrize("ellipticity", (8.0, 0.125))
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_dry_ellipses_on_cells_of_their_shape(contact, ellipticity):
+    """Both half-widths have the same number of nodes; the load is balanced to the tolerance."""
+    inside, _, approach = dry(CONTACTS[contact], ellipticity, [32, 32], 1e-7)
+    assert inside < 1e-3 and approach < 1e-3
 
 
 def test_dry_layer_tends_to_hertz():
@@ -79,8 +87,20 @@ def smooth(M, L, points, changes=None):
     """Steady state of a smooth contact, its film by Moes and its pressure over p0, shape (ny, nx)."""
     simulation = Simulation(load(point(M, L, points, changes)))
     state, shape = simulation.advance(), simulation.scales.grid.shape
-    film = moes_film(simulation.scales, state.film_thickness).reshape(shape)
+    film = moes_film(simulation.scales, state.film_thickness)
     return simulation, state, film, state.solution.p.reshape(shape)
+
+
+@pytest.mark.parametrize("ellipticity, M", ((8.0, 1000.0), (0.125, 5.0)))
+def test_lubricated_ellipses_on_cells_of_their_shape(ellipticity, M):
+    """Films change little with the mesh, and the preconditioner serves cells of any shape."""
+    films = []
+    for points in (16, 24):
+        radii = {"contact.radius": [R, R * radius_ratio(ellipticity)]}
+        _, state, *_ = smooth(M, 10.0, [points, points], radii)
+        assert state.gmres < 10 * state.newton
+        films.append(state.film_central)
+    assert films[0] == pytest.approx(films[1], rel=0.05)
 
 
 @pytest.mark.parametrize("M, L, central, minimum, pressure, approach", FILMS)
@@ -107,7 +127,7 @@ def test_near_inlet_starves_thick_films():
     for points in (8, 16):
         simulation = Simulation(load(point(20.0, 10.0, points, wide, width=6.0)))
         film = moes_film(simulation.scales, simulation.advance().film_thickness)
-        films.append(film[simulation.scales.grid.distance < 1e-9].item())
+        films.append(film.ravel()[simulation.scales.grid.distance < 1e-9].item())
     assert films[1] + (films[1] - films[0]) / 3.0 == pytest.approx(4.165, rel=3e-3)
 
 
@@ -173,7 +193,7 @@ def test_amplitude_of_a_small_wave():
     tables |= {"surface": {"1": {"synthetic": wave}}, "time": {"travel": 4.0, "courant": 1.0}}
     simulation = Simulation(load(tables))
     middle = smooth.scales.grid.distance < 1e-9
-    found = [(state.film_thickness - film)[middle].item() for state in simulation][-points:]
+    found = [(state.film_thickness - film).ravel()[middle].item() for state in simulation][-points:]
     left = 2.0 * np.abs(np.mean(found * np.exp(2j * np.pi * np.arange(points) / points))) / depth
     n = 20.0**0.5
     assert left == pytest.approx(1.0 / (1.0 + 0.15 * n + 0.015 * n * n), abs=0.04)

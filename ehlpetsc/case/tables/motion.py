@@ -30,8 +30,9 @@ MOTION_KEYS = {
 MOTION = KeyTable("motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS)
 
 
-def _column(text: str, unit: str, **more: str) -> Key:
-    return Key(f"{text}, here instead of in a file", unit, -1e15, 1e15, many="list", min_items=2, **more)
+def _column(text: str, unit: str, point_unit: str = "") -> Key:
+    text = f"{text}, here instead of in a file"
+    return Key(text, unit, -1e15, 1e15, many="list", min_items=2, point_unit=point_unit)
 
 
 def _file_or_columns(operation: Values) -> dict[str, Any]:
@@ -49,7 +50,7 @@ OPERATION_KEYS = {
     ),
     "repeat": Key("times that the table is run through", "", 1, 100_000, kind=int, default=1),
     "time": _column("increasing", "s"),
-    "load": _column("above 0", "N/m", point_unit="N"),
+    "load": _column("above 0", "N/m", "N"),
     "radius": _column("above 0", "m"),
     "speed_1": _column("of surface 1, signed", "m/s"),
     "speed_2": _column("of surface 2, signed", "m/s"),
