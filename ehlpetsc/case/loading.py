@@ -120,7 +120,8 @@ def _override(data: Tables, overrides: Overrides) -> list[Fault]:
         try:
             put(data, *parsed(override))
         except ValueError:
-            text = shortened(" ".join(str(override).split()))  # a fault is one line
+            one_line = " ".join(override.split()) if isinstance(override, str) else show(override)
+            text = shortened(one_line)
             faults.append(Fault("", f"{text}: allowed: table.key=value, as in fluid.viscosity=0.003"))
     return faults
 

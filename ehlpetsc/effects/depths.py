@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, Self, TypeVar
 import numpy as np
 
 from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
+from ehlpetsc.base.quantities import AtEnd, Count
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
@@ -86,12 +87,10 @@ def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -
 
 def _volume(name: str, text: str) -> StepScalar:
     """Volume of both depths in the record of an effect."""
-    return StepScalar(
+    return AtEnd(
         "m^3",
         f"{text} since the first pass",
         integrated=True,
-        over_run="last",
-        summary=".4g",
         compared=True,
         of=lambda o: o.scene.mesh_on_bodies.volume(o.state.records[name].depth),
     )
@@ -115,11 +114,8 @@ class PlasticDeformation(BodyDepth[PlasticRecord]):
     name = "plastic_deformation"
     record = PlasticRecord
     scalars = {
-        "yielding": StepScalar(
-            "1",
+        "yielding": Count(
             "nodes that yield",
-            dtype="i4",
-            over_run="sum",
             summary="d",
             compared=True,
             of=lambda o: np.count_nonzero(o.state.records["plastic_deformation"].added),

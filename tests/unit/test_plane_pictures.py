@@ -237,7 +237,7 @@ def test_lines_load_no_module_of_planes(tmp_path):
     words = [sys.executable, "-c", code, str(tmp_path / "line.h5")]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
     assert "ehlpetsc.pictures.frames" in loaded
-    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes|case_maps)", name)]
+    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes|areal_surface)", name)]
 
 
 def test_text_of_a_narrow_picture_fits(point, tmp_path):
