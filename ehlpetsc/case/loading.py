@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import os
-import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -101,7 +100,7 @@ def members(case: Case | str | PathLike | Tables) -> list[tuple[Any, Case]]:
     For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
-    data, result = tomllib.loads(case.text), []
+    data, result = copy.deepcopy(case._tables), []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
     for settings in settings_of(data["series"]):
@@ -121,7 +120,8 @@ def _override(data: Tables, overrides: Overrides) -> list[Fault]:
         try:
             put(data, *parsed(override))
         except ValueError:
-            text = shortened(" ".join(str(override).split()))  # a fault is one line
+            one_line = " ".join(override.split()) if isinstance(override, str) else show(override)
+            text = shortened(one_line)
             faults.append(Fault("", f"{text}: allowed: table.key=value, as in fluid.viscosity=0.003"))
     return faults
 

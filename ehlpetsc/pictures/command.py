@@ -2,7 +2,7 @@
 OUTPUT.series.json, OUTPUT.passes.json; or the profiles of a CASE.toml as they will be used.
 
 Pressure and film of one frame, of a point contact or strip as maps with sections through the middle, by
-default that with the maximum load on the solids from when both profiles fill the contact or, without load on
+default that with the maximum load on the solids from when both surfaces fill the contact or, without load on
 solids, the maximum pressure; several results at the same travel in one picture, points and strips by their
 sections along y = 0. The file name after -o determines the format (png, svg, pdf, eps ...).
 Input files are never overwritten.

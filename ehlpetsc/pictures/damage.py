@@ -50,8 +50,9 @@ def map_picture(
     if surface in result.profiles:
         s, heights = result.profiles[surface]
         axes = shown.pop(0)
-        axes.set_title("height [µm]", fontsize="small", loc="left")
-        figure.colorbar(axes.pcolormesh(place(s), y, 1e6 * heights, cmap="gray", rasterized=True), ax=axes)
+        low, high = 1e6 * heights.min(), 1e6 * heights.max()
+        axes.set_title(f"height, {low:.2g} to {high:.2g} µm", fontsize="small", loc="left")
+        axes.pcolormesh(place(s), y, 1e6 * heights, cmap="gray", rasterized=True)
     values = result.damage[surface][..., passed]
     top = int(np.ceil(np.log10(values.max()))) if values.max() > 0.0 else 0
     for axes, z, layer in zip(shown, result.z, values, strict=True):
@@ -59,7 +60,7 @@ def map_picture(
         powers = np.log10(np.maximum(layer, 10.0 ** (top - DECADES - 1.0)))
         limits = {"vmin": top - DECADES, "vmax": top, "cmap": "inferno_r", "rasterized": True}
         colours = axes.pcolormesh(x, y, powers, **limits)
-    figure.colorbar(colours, ax=shown, label=r"$\log_{10}$ D of one pass")
+    figure.colorbar(colours, ax=panels, label=r"$\log_{10}$ D of one pass")
     panels[0, 0].set_xlim(x.min(), x.max())
     figure.supxlabel(f"along surface {surface} [mm]", fontsize="medium")
     figure.supylabel("y [mm]", fontsize="medium")

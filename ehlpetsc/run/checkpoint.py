@@ -15,6 +15,7 @@ from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
+from ehlpetsc.stepping.steady_start import RIGID_FILM
 
 if TYPE_CHECKING:
     from typing import Any
@@ -148,8 +149,13 @@ def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:
     return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.h00)
 
 
-def cures(case: Case, conditions: Conditions) -> str:
-    """Advice for a case without a steady start under its first conditions."""
+def cures(case: Case, conditions: Conditions, film: float) -> str:
+    """Advice for a case without a steady start under its first conditions; expected film in a^2/R."""
+    if film > RIGID_FILM:
+        return (
+            f". The film, {film:.0f} a^2/R, is far thicker than solids deform, and the pressure wider than "
+            "the domain. Try a higher load or a lower speed"
+        )
     found = ["a finer mesh"]
     if case.fluid and case.heat and case.fluid.limiting_shear is None and conditions.sliding:
         found.append("fluid.limiting_shear, as sliding heats an oil without one beyond measure")

@@ -13,7 +13,7 @@ import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.command_line import SECONDS_IN_PLACE, duration, in_notebook, on_terminal
+from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
@@ -43,9 +43,12 @@ class Progress:
         self._samples: list[tuple[float, float]] = []  # wall clock, time of the run, since the first step
         self._shown: float | None = None
         self._pending: dict[str, float] | None = None
+        self._ramp = ProgressLine("roughness put under the film", 1.0, self._stream)
+        simulation.stepper.ramp_shown = self._ramp.reach
 
     def write(self, state: AcceptedState) -> None:
         """Show a step, but not the steady start, if it is the first or enough time has passed."""
+        self._ramp.clear()
         if not self._begun:
             self._begun = True
             return
@@ -56,6 +59,7 @@ class Progress:
 
     def close(self, status: ExitStatus) -> None:
         """Show the last step if it has not been shown."""
+        self._ramp.clear()
         if self._pending:
             self._show(clock.monotonic())
         if self._in_place and self._shown is not None:

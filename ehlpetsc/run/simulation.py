@@ -45,7 +45,7 @@ class AcceptedState:
     ----------
     scalars
         Scalars of the step, as in ``steps/`` of a result file [SI units].
-    fields : shape (nx,), of a plane (ny nx,), x fastest
+    fields : shape (nx,), of a plane (ny, nx)
         Fields of the step [SI units].
     in_contact : shape as of the fields
     solution
@@ -226,7 +226,9 @@ class Simulation:
         problem, effects = self.stepper.problem, self.stepper.effects
         scalars, fields, in_contact = diagnostics(self.scene, problem, effects, state, started)
         scalars |= {"step": state.step, "time": state.time, "gmres": self._linear_iterations - gmres}
-        self.state = AcceptedState(scalars, fields, in_contact, state)
+        shape = self.scales.grid.shape
+        fields = {name: values.reshape(shape) for name, values in fields.items()}
+        self.state = AcceptedState(scalars, fields, in_contact.reshape(shape), state)
         return self.state
 
     @property
@@ -255,7 +257,7 @@ class Simulation:
                 if isinstance(error.__cause__, NoSteadyStart):
                     from ehlpetsc.run.checkpoint import cures
 
-                    advice = cures(self.case, self.operation.at(0.0))
+                    advice = cures(self.case, self.operation.at(0.0), self._film)
                     raise NotConverged(f"{error}{advice}") from error.__cause__
                 raise
         if isinstance(self.stepper.solver, NewtonSolver):

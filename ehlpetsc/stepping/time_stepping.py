@@ -55,6 +55,7 @@ class TimeStepping:
     computed by :meth:`start`.
 
     `ramp_time`: time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
+    `ramp_shown`: called with the share of it after each of its steps.
     """
 
     def __init__(
@@ -68,6 +69,7 @@ class TimeStepping:
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time, self._is_prepared = baseline, 0.0, False
+        self.ramp_shown: Callable[[float], object] | None = None
         time = scene.case.time
         self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
@@ -154,6 +156,8 @@ class TimeStepping:
         while state.time < -LEVEL_TOLERANCE * dt:
             state = self.advance(state, watch=watch)
             newton += state.newton
+            if self.ramp_shown:
+                self.ramp_shown(1.0 + state.time / self.ramp_time)
         begun: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
 

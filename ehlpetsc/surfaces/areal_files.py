@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.outliers import without_no_data
+from ehlpetsc.surfaces.outliers import SPIKE_WIDTH, map_spikes, without_no_data
 from ehlpetsc.surfaces.profile_files import (
     KEYS_OF_TEXT,
     MAX_ABSCISSA,
@@ -141,8 +141,13 @@ def checked(found: Map, layout: Layout) -> Map:
             f"row {row + 1}, column {column + 1} is not a height below {MAX_ABSCISSA:g} m; allowed: finite "
             "heights, nan where they are missing"
         )
+    widest = layout.fill_gaps or 0.0
+    if layout.bridge_spikes and (is_spike := map_spikes(z)).any():
+        z[is_spike] = np.nan
+        widest = max(widest, (SPIKE_WIDTH + 1) * max(dx, dy))
+        notes += (f"spikes: {np.count_nonzero(is_spike)} points in all, bridged",)
     if np.isnan(z).any():
-        z, note = filled(z, dx, dy, layout.fill_gaps, no_data)
+        z, note = filled(z, dx, dy, widest, no_data)
         notes += (note,)
     return Map(z, dx, dy, notes)
 

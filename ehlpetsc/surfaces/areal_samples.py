@@ -42,8 +42,6 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
         return Topography(
             profile.X, np.zeros(1), profile.z[np.newaxis], along, measured=True, notes=profile.notes
         )
-    if spec.bridge_spikes:
-        raise ProfileError("bridge_spikes: of a profile, not of a map; leave it out")
     if spec.x is None:
         _refuse(spec, ("x_unit",), "of x, not of spacing, which is in m; leave it out")
     surface = _processed(_map(folder, spec), spec)

@@ -83,6 +83,11 @@ def spikes(z: np.ndarray) -> np.ndarray:
     return binary_propagation(deviation > threshold, mask=foot) & present
 
 
+def map_spikes(z: np.ndarray) -> np.ndarray:
+    """Whether each height of a map belongs to a spike of its row and of its column, see :func:`spikes`."""
+    return np.array([spikes(row) for row in z]) & np.array([spikes(column) for column in z.T]).T
+
+
 def held(z: np.ndarray) -> np.ndarray:
     """Whether each height belongs to `HELD_POINTS` equal ones in a row, where equal neighbours are rare.
 

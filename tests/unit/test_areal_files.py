@@ -170,10 +170,23 @@ def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
     np.testing.assert_array_equal(read_map(tmp_path / "map.npy", SPACED).z, tilted)
 
 
-def test_spikes_of_a_map_are_not_bridged(tmp_path):
-    np.save(tmp_path / "map.npy", Z)
-    with pytest.raises(ProfileError, match="^bridge_spikes: of a profile, not of a map; leave it out$"):
-        areal_samples(tmp_path, spec(tmp_path / "map.npy", spacing=DX, bridge_spikes=True), 1e-4, False)
+def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
+    z = mean_surface(
+        DX * np.arange(150),
+        DX * np.arange(120),
+        np.random.default_rng(2).standard_normal((120, 150)),
+        9 * DX,
+        "short_cutoff",
+    )
+    z = 1e-7 * (z / z.std() + 0.01 * np.random.default_rng(3).standard_normal(z.shape))
+    z[40] += 2e-6  # a scratch along a row
+    spoilt = z.copy()
+    spoilt[70:73, 20:23] += 3e-6
+    spoilt[100, 140] -= 3e-6
+    np.save(tmp_path / "map.npy", spoilt)
+    found = read_map(tmp_path / "map.npy", replace(SPACED, bridge_spikes=True))
+    assert found.notes[0] == "spikes: 10 points in all, bridged"
+    np.testing.assert_allclose(found.z, z, rtol=0, atol=2e-7)
 
 
 def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):

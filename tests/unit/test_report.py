@@ -30,7 +30,8 @@ def clock(monkeypatch):
 
 def started(begin, end, stream):
     """Progress of a run from a time to its end [s]."""
-    return report.Progress(SimpleNamespace(solution=SimpleNamespace(time=begin), end=end), stream)
+    solution, stepper = SimpleNamespace(time=begin), SimpleNamespace()
+    return report.Progress(SimpleNamespace(solution=solution, stepper=stepper, end=end), stream)
 
 
 def show(progress, step, time):

@@ -17,6 +17,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     LN_ETA_P,
     LN_THINNING_H,
     LN_THINNING_P,
+    RHO,
     THINNED_PROPERTIES,
     THINNING,
     H,
@@ -25,6 +26,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     fill_mass,
     fluidities,
 )
+from ehlpetsc.discretisation.plane.finite_volumes import flux_across
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, last_before
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
@@ -32,6 +34,7 @@ from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.effects.heat.record import in_rows
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
+from ehlpetsc.physics.rheology import FlowLaw
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 
@@ -257,3 +260,34 @@ def faces_in_rows(
         row_at = np.concatenate([nodes[k], beyond[k]], axis=1)
         faces(row_at, law, table, row_oil, max_flow, couette[k], *of_nodes[:, k])
     return couette.ravel(), *of_nodes.reshape(3, n)
+
+
+@compiled
+def cross_flow_heat(
+    at: np.ndarray,
+    shape: tuple[int, int],
+    is_periodic: bool,
+    laws: tuple[tuple, FlowLaw, np.ndarray],
+    oil: np.ndarray,
+    max_flow: tuple[float, float],
+) -> np.ndarray:
+    r"""Heat of the flow between rows, :math:`M_y(dp/dy)^2` [W/m^2], half of each face's to either node.
+
+    `at`, `oil`, `max_flow`: as of :func:`faces_in_rows`. `shape`: rows, nodes along x.
+    `is_periodic`: whether the last row is next to the first one.
+    `laws`: law, flow and table of :func:`.plane.finite_volumes.flux_across`.
+    """
+    (rows, n), (law, flow, table) = shape, laws
+    heat = np.zeros(rows * n)
+    for left in range((rows if is_periodic else rows - 1) * n):
+        right = (left + n) % (rows * n)
+        if not (oil[left] and oil[right]):
+            continue
+        mass = flux_across(at, left, right, table, law, flow)[0]
+        pressure_flow = 2.0 * abs(mass) / (at[RHO, left] + at[RHO, right])
+        film = 0.5 * (at[H, left] + at[H, right])
+        pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))
+        half = 0.5 * pressure_flow * law[0] * abs(at[P, right] - at[P, left])
+        heat[left] += half
+        heat[right] += half
+    return heat
