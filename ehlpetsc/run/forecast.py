@@ -9,7 +9,7 @@ from ehlpetsc import __version__
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.physics import film_formulas
-from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
+from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -96,7 +96,7 @@ def file_size(case: Case, s: Scales) -> float:
     """
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
-    frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.grid.n * value))
+    frames, rows = count // case.output.every + 1, frames_of_chunk(s.grid.shape, value)
     stored = set(case.output.fields) & set(of_case(FIELDS, case))
     fields = sum(FIELDS[name].dtype == "f8" for name in stored)
     scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
