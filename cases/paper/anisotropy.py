@@ -1,13 +1,14 @@
 """What the lay of roughness changes: strips with one spectrum along x, from ridges to a longitudinal lay.
 
-``./run_mpi.sh python cases/paper/anisotropy.py TABLE [options]`` prints a line for each lay and pressure or speed;
-TABLE is
+``./run_mpi.sh python cases/paper/anisotropy.py TABLE [options]`` prints a line for each lay and pressure or
+speed; TABLE is
 
 - ``film``: lubricated, 1 GPa, FVA 3 at 90 degrees C, slide/roll 0.25, waves below ``--border`` in the layer;
 - ``dry``: the same contact without oil, all waves below ``--border`` left out;
 - ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``.
 
-The lay is Peklenik's number, wavelengths along x over those across; 1/100 is a ridge, solved as a line contact.
+The lay is Peklenik's number, wavelengths along x over those across; 1/100 is a ridge, solved as a line contact,
+and 0 a line contact of smooth bodies with all roughness in the layer.
 """
 
 from __future__ import annotations
@@ -88,7 +89,7 @@ def dry(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
 
 
 def flat(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
-    """Real area over the nominal area, pressures; 512 by 512 nodes of a fifth of the shortest wave."""
+    """Real area over the nominal area, pressures; square mesh, spacing a fifth of the shortest wave."""
     import tamaas
 
     n, step = chosen.points, chosen.border / 5
@@ -106,23 +107,24 @@ def flat(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
 
 def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
     """Means over the time."""
-    case, sq = contact(chosen, lay, 1e9), sq_down_to(chosen.border)
+    case, sq = contact(chosen, lay, 1e9), sq_down_to(chosen.border) if lay else 0.0
     layer = float(np.sqrt(SQ**2 - sq**2))
-    stiffness = 2 * np.pi * layer / chosen.border
+    stiffness = 2 * np.pi * layer / (chosen.border if lay else ROLL_OFF)
     case["contact"] |= {"model": "mixed", "asperity_height": layer, "asperity_stiffness": stiffness}
     case["contact"]["boundary_friction"] = 0.1
     case["fluid"] = {"oil": "fva3", "temperature": 363.15}
     case["motion"] = {"entrainment_speed": speed, "slide_roll_ratio": 0.25}
-    seeds = {"1": 2 * chosen.seed, "2": 2 * chosen.seed + 1}
-    case["surface"] = {side: surface(chosen, lay, sq / 2**0.5, seed) for side, seed in seeds.items()}
-    case["time"] = {"travel": chosen.travel, "courant": chosen.courant, "start": "rough"}
+    if lay:
+        seeds = {"1": 2 * chosen.seed, "2": 2 * chosen.seed + 1}
+        case["surface"] = {side: surface(chosen, lay, sq / 2**0.5, seed) for side, seed in seeds.items()}
+        case["time"] = {"travel": chosen.travel, "courant": chosen.courant, "start": "rough"}
     case["output"] = {"every": 100000}
     result = solve(case, progress=False)
     weights = filled_weights(result)
     ratio, friction, share, length, thickness, highest = (mean(result, name, weights) for name in MEANS)
     return (
-        f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, length "
-        f"{length / HALF_WIDTH:.4f} a, film {1e9 * thickness:.0f} nm, highest pressure {highest / 1e9:.2f} GPa, "
+        f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, length {length / HALF_WIDTH:.4f} a, "
+        f"film {1e9 * thickness:.0f} nm, highest pressure {highest / 1e9:.2f} GPa, "
         f"{result.steps('newton').sum()} iterations in {len(weights) - 1} steps"
     )
 

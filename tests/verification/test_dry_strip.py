@@ -1,7 +1,7 @@
 """A rough dry strip beside boundary elements of the package tamaas, periodic in both directions.
 
-Found on a/32: areas within 0.7 % (a/64: 0.3 %), 99th percentiles of the pressure within 0.5 %, root mean square
-difference of the pressures 0.7 % of p0.
+Found on a/32: areas within 0.7 % (a/64: 0.3 %), 99th percentiles of the pressure within 0.5 %, root mean
+square difference of the pressures 0.7 % of p0.
 """
 
 import numpy as np
