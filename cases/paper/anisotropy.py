@@ -7,8 +7,8 @@ speed; TABLE is
 - ``dry``: the same contact without oil, all waves below ``--border`` left out;
 - ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``.
 
-The lay is Peklenik's number, wavelengths along x over those across. At 1/100 waves are ridges, solved as a line
-contact; 0 is a line contact of smooth bodies with all roughness in the layer.
+The lay is Peklenik's number, wavelengths along x over those across. At 1/100 waves are ridges, solved as a
+line contact; 0 is a line contact of smooth bodies with all roughness in the layer.
 """
 
 from __future__ import annotations
@@ -124,7 +124,8 @@ def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
     ratio, friction, share, length, thickness, highest = (mean(result, name, weights) for name in MEANS)
     return (
         f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, "
-        f"length {length / HALF_WIDTH:.4f} a, film {1e9 * thickness:.0f} nm, highest pressure {highest / 1e9:.2f} GPa, "
+        f"length {length / HALF_WIDTH:.4f} a, film {1e9 * thickness:.0f} nm, "
+        f"highest pressure {highest / 1e9:.2f} GPa, "
         f"{result.steps('newton').sum()} iterations in {len(weights) - 1} steps"
     )
 

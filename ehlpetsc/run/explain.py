@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.roughness import Roughness
 
 RIDGES = (
-    "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip (mesh.width), touch "
-    "on 0.8 of the dry area, in mixed lubrication under more load"
+    "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
+    "(mesh.width), touch on 0.8 of the dry area, in mixed lubrication under more load"
 )
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
