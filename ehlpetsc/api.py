@@ -134,10 +134,9 @@ def solve(
     1.00 p0 on 1001 nodes
     """
     need_solver()
-    from ehlpetsc.base.progress_line import in_notebook, on_terminal
+    from ehlpetsc.base.command_line import in_notebook, on_terminal
     from ehlpetsc.case.tables import extend
-    from ehlpetsc.run.outputs.progress import Progress
-    from ehlpetsc.run.outputs.recorder import Recorder
+    from ehlpetsc.run.recorder import Progress, Recorder
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import place_of_stop
     from ehlpetsc.run.solve import solve as write_states

@@ -60,12 +60,25 @@ def page():
         texts.append(f"{table.text[:1].upper()}{table.text[1:]}.\n\n" if place else "")
         texts.append("| key | meaning | value | default |\n|---|---|---|---|\n")
         for name, key in own_keys(table).items():
-            cells = [_typeset(key.text), *(_escaped(cell) for cell in (value_of(key), default_of(key)))]
+            cells = [_typeset(key.text), *(_escaped(cell) for cell in (_short(value_of(key)), _default(key)))]
             texts.append(f"| `{name}` | {' | '.join(cells)} |\n")
         equations = {name: key.equation for name, key in own_keys(table).items() if key.equation}
         texts += ["\n"] * bool(equations)
         texts += [f"- `{name}`: {_typeset(equation)}.\n" for name, equation in equations.items()]
     return "".join(texts)
+
+
+def _short(value):
+    """Allowed values in the words of a table: "0.1 to 2 [m]" for "a number >= 0.1 and <= 2 [m]"."""
+    value = re.sub(r"a (whole )?number or a list of two (whole )?numbers", r"one or two \1numbers", value)
+    value = value.replace("or a list of two of them", "or two")
+    value = re.sub(r">= (\S+) and <= ([^ ,;]+)", r"\1 to \2", value)
+    return re.sub(r"\b(?:a |a list of )?(whole )?numbers? (?=[\d<>-])|\b(?:one of|a list of) ", r"\1", value)
+
+
+def _default(key):
+    """Default of a key, "all" for a list of everything allowed."""
+    return "all" if key.default and key.default == list(key.choices or ()) else default_of(key)
 
 
 def _typeset(text):

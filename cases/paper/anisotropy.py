@@ -22,7 +22,7 @@ import numpy as np
 
 from ehlpetsc.api import solve
 from ehlpetsc.results.means import filled_weights, mean
-from ehlpetsc.surfaces.self_affine import Spectrum, heights
+from ehlpetsc.surfaces.synthetic import Spectrum, random_heights
 
 HALF_WIDTH, MODULUS = 150e-6, 227.4725e9  # m, E' of steel [Pa]
 SQ, HURST, ROLL_OFF, SHORTEST = 0.28e-6, 0.8, 80e-6, 2.5e-6  # of both surfaces together [m]
@@ -67,7 +67,7 @@ def surface(chosen: argparse.Namespace, lay: float, sq: float, seed: int) -> dic
     if lay > RIDGES:
         return {"synthetic": {"kind": "self-affine", "peklenik": lay, "seed": seed, **waves}}
     spacing = 0.25 * chosen.width * HALF_WIDTH, RIDGE_SPACING
-    z = heights((4, RIDGE_POINTS), spacing, Spectrum(*waves.values(), RIDGES), seed)[0]
+    z = random_heights((4, RIDGE_POINTS), spacing, Spectrum(*waves.values(), RIDGES), seed)[0]
     return {"x": RIDGE_SPACING * np.arange(RIDGE_POINTS), "z": z}
 
 
@@ -93,9 +93,9 @@ def flat(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
     import tamaas
 
     n, step = chosen.points, chosen.border / 5
-    rows, across = (n, step / lay) if lay > RIDGES else (4, n * step / 4)
+    rows, across = (n, step / lay) if lay > RIDGES else (4, HALF_WIDTH / 4)
     spectrum = Spectrum(sq_down_to(chosen.border), HURST, ROLL_OFF, chosen.border, lay)
-    z = heights((rows, n), (across, step), spectrum, chosen.seed)
+    z = random_heights((rows, n), (across, step), spectrum, chosen.seed)
     if lay <= RIDGES:
         z = np.repeat(z[:1], rows, axis=0)
     model = tamaas.Model(tamaas.model_type.basic_2d, [rows * across / step, n], [rows, n])

@@ -92,7 +92,7 @@ def line(dimple: Dimple, ratio: float, at: float, points: int) -> tuple[np.ndarr
     distance = 2.0 * dimple.width + 1e-6 * at - scales.a * scales.grid.x[0]  # travelled by the dimple
     time = {"travel": distance / scales.a * faster / (1.0 + 0.5 * ratio), "courant": faster}
     *_, last = Simulation(load(CASE, keys | {"surface.1.synthetic": synthetic, "time": time}))
-    films = scales.grid.rows(last.film_thickness)
+    films = last.film_thickness
     return scales.a * scales.grid.x, films[len(films) // 2]
 
 

@@ -1,13 +1,14 @@
 """Central films of a ball on glass beside optical measurements: table on two meshes and picture.
 
-``ehlpetsc python cases/paper/optical_films.py [-o PICTURE]`` computes the point contact of `CASE` at the
-measured speeds on a/16 and a/32, prints measured and computed films with their ratio, and draws them over the
+``ehlpetsc python cases/paper/optical_films.py [-o PICTURE]`` computes cases/optical.toml at the measured
+speeds on a/16 and a/32, prints measured and computed films with their ratio, and draws them over the
 speed.
 """
 
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -20,17 +21,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.run.simulation import Simulation
 
-CASE = {
-    "title": "Ball on a glass disc",
-    "contact": {
-        "radius": [9.525e-3, 9.525e-3],
-        "load": 20.0,
-        "youngs_modulus": [207e9, 75e9],
-        "poisson_ratio": [0.3, 0.22],
-    },
-    "motion": {"entrainment_speed": 1.0},
-    "mesh": {"inlet": -4.5, "outlet": 1.5, "width": 6.0},
-}
+CASE = Path(__file__).parents[1] / "optical.toml"
 INDEX = 1.48  # refractive index of the oils at ambient pressure, about
 MESHES = (16, 32)  # nodes per half-width
 RANGE = (0.06, 1.1)  # m/s, of the mean ratio: slower films scatter, faster ones jump by a fringe
@@ -100,7 +91,7 @@ def film(oil: Oil, speed: float, points: int) -> float:
     """Computed film in the middle [nm]."""
     simulation = Simulation(case_of(oil, speed, points))
     (state,) = simulation
-    return 1e9 * float(state.film_thickness[np.argmin(simulation.scales.grid.distance)])
+    return 1e9 * float(state.film_thickness.flat[np.argmin(simulation.scales.grid.distance)])
 
 
 def hamrock_dowson(oil: Oil) -> np.ndarray:

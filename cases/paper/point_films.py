@@ -49,7 +49,7 @@ def films(M: float, L: float, points: int) -> np.ndarray:
     simulation = Simulation(load(tables(M, L, points)))
     (state,) = simulation
     grid, unit = simulation.scales.grid, RADIUS * (L / (ALPHA * MODULUS)) ** 2
-    return np.array([state.film_thickness.ravel()[np.argmin(grid.distance)], state.h_min]) / unit
+    return np.array([state.film_thickness.flat[np.argmin(grid.distance)], state.h_min]) / unit
 
 
 def formulas(M: float, L: float) -> tuple[float, float, float]:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
-from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS
 from ehlpetsc.results.reader import Result, read_result

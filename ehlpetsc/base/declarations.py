@@ -107,7 +107,7 @@ Required = partial(Key, required=True)
 class Values(SimpleNamespace):
     """Checked values of a table as attributes (`lambda_` for the key `lambda`); a missing table is None."""
 
-    def __init__(self, values: Mapping[str, Any] | None = None) -> None:  # None: to be copied
+    def __init__(self, values: Mapping[str, object] | None = None) -> None:  # None: to be copied
         super().__init__(**(values or {}))
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -124,7 +124,7 @@ class Values(SimpleNamespace):
         public = {key: value for key, value in vars(self).items() if key[0] != "_"}
         return {key: value.as_dict() if isinstance(value, Values) else value for key, value in public.items()}
 
-    def copy(self, update: Mapping[str, Any]) -> Any:
+    def copy(self, update: Mapping[str, object]) -> Any:
         """The same table with other values of some keys."""
         return type(self)(self.__dict__ | dict(update))
 

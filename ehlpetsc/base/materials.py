@@ -28,7 +28,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
-from typing import Any
 
 PLASTIC_STRAIN = 0.002  # at which the cyclic yield stress is read
 FLOW_FACTOR = (2 + pi) / sqrt(3)  # 2.97
@@ -110,7 +109,7 @@ def named_steels(material: str | list[str] | tuple[str, str] | None) -> tuple[St
     return STEELS[first], STEELS[second]
 
 
-def fatigue_constants(steel: Steel, post: Mapping[str, Any]) -> dict[str, float]:
+def fatigue_constants(steel: Steel, post: Mapping[str, float]) -> dict[str, float]:
     """Fatigue constants of a steel by key, overridden by `[post]`; K' follows unless `[post]` has it."""
     constants = {key: getattr(steel, key) for key in FATIGUE_KEYS if key != "cyclic_strength"}
     constants |= {key: post[key] for key in FATIGUE_KEYS if post.get(key) is not None}

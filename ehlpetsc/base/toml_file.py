@@ -13,6 +13,9 @@ from ehlpetsc.base.errors import CaseError
 
 MAX_BYTES = 2**26  # of a case file
 
+Tables = dict[str, Any]
+"""Tables of a TOML file."""
+
 
 def read_text(path: str | os.PathLike) -> str:
     """Text of a case file; raises `CaseError`."""
@@ -29,7 +32,7 @@ def read_text(path: str | os.PathLike) -> str:
         raise CaseError([f"{path}: cannot be read: {reason}"]) from None
 
 
-def parse_toml(path: str | os.PathLike, text: str) -> dict[str, Any]:
+def parse_toml(path: str | os.PathLike, text: str) -> Tables:
     """Tables of a TOML text, whose name in messages is `path`; raises `CaseError`."""
     try:
         return tomllib.loads(text)
@@ -42,7 +45,7 @@ def is_plain(text: str) -> bool:
     return text.isprintable() or not re.search(r"[\x00-\x1f\x7f\ud800-\udfff]", text)
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:
     """Dicts, arrays and numpy numbers converted to types of TOML; without None."""
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items() if item is not None}
@@ -51,7 +54,7 @@ def plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
-def toml_text(tables: dict[str, Any]) -> str:
+def toml_text(tables: dict[str, object]) -> str:
     """TOML text of plain tables, with a heading for each table of the first level."""
     lines = [f"{_key(k)} = {_value(v)}" for k, v in tables.items() if not isinstance(v, dict)]
     for name, table in tables.items():
@@ -64,7 +67,7 @@ def _key(name: str) -> str:
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
     if isinstance(value, list) and set(map(type, value)) == {float} and all(map(math.isfinite, value)):

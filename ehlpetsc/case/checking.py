@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, TypeGuard
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.base.toml_file import is_plain
+from ehlpetsc.base.toml_file import Tables, is_plain
 from ehlpetsc.base.units import UnitFault, converted
 from ehlpetsc.case.messages import allowed, celsius, show, unknown
 from ehlpetsc.case.tables import CASE, key_of
@@ -23,7 +23,6 @@ KINDS = (
     " in a point contact, of two radii",
 )  # after the allowed unit of a key
 
-Tables = dict[str, Any]
 # exceptions of values that follow from unchecked tables: their faults are found by the check of the keys
 FAULTY = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
@@ -81,7 +80,7 @@ def _entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, A
             yield data, name, key, where + name
 
 
-def _series_entries(series: Any) -> Iterator[tuple[Any, Any, Key | None, str]]:
+def _series_entries(series: object) -> Iterator[tuple[Any, Any, Key | None, str]]:
     if not isinstance(series, dict) or not isinstance(values := series.get("values"), list):
         return
     if "key" in series:
@@ -143,7 +142,7 @@ def _missing(place: str, key: Key, data: Tables, root: Tables) -> list[Fault]:
 
 
 def _checked(
-    place: str, key: Key, value: Any, data: Tables, root: Tables, known: Collection[str]
+    place: str, key: Key, value: object, data: Tables, root: Tables, known: Collection[str]
 ) -> tuple[Any, list[Fault]]:
     """Value of a key and its faults."""
     inner = _table_of(key, value)
@@ -166,14 +165,15 @@ def _checked(
     return (None, [Fault(place, of_need)]) if unmet else (result, [])
 
 
-def _table_of(key: Key, value: Any) -> KeyTable | None:
+def _table_of(key: Key, value: object) -> KeyTable | None:
     """Table of the value of a key; of several that of its kind."""
     if key.variants and isinstance(value, dict):
-        return key.variants.get(str(value.get("kind")))
+        kind = value.get("kind")
+        return key.variants.get(kind) if isinstance(kind, str) else None
     return key.table
 
 
-def _value(key: Key, value: Any) -> Any:
+def _value(key: Key, value: object) -> Any:
     """Value with the type of the key."""
     if key.kind is dict:
         if key.table or key.variants or not isinstance(value, dict):
@@ -209,7 +209,7 @@ def _numbers(key: Key, values: list | tuple) -> list[float]:
     return [float(value) for value in values]
 
 
-def _item(key: Key, value: Any) -> Any:
+def _item(key: Key, value: object) -> Any:
     if key.kind is object:
         return value
     if key.kind in (int, float):

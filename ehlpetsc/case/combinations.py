@@ -7,7 +7,7 @@ import itertools
 import tomllib
 from typing import Any
 
-from ehlpetsc.base.toml_file import plain
+from ehlpetsc.base.toml_file import Tables, plain
 
 
 def parsed(override: object) -> tuple[list[str], Any]:
@@ -27,7 +27,7 @@ def parsed(override: object) -> tuple[list[str], Any]:
     return keys, table["value"] if list(table) == ["value"] else raw
 
 
-def put(tables: dict[str, Any], keys: list[str], value: Any) -> None:
+def put(tables: Tables, keys: list[str], value: object) -> None:
     """Set a key in nested tables, None removes it; ValueError: the parent of the key is not a table."""
     for key in keys[:-1]:
         tables = tables.setdefault(key, {})
@@ -42,12 +42,12 @@ def put(tables: dict[str, Any], keys: list[str], value: Any) -> None:
 Settings = list[tuple[list[str], Any]]
 
 
-def keys_of(series: dict[str, Any]) -> list[str]:
+def keys_of(series: Tables) -> list[str]:
     """Dotted keys that vary over a series, by its table `[series]`."""
     return [series["key"]] if "key" in series else list(series["keys"])
 
 
-def combinations(series: dict[str, Any]) -> list[tuple]:
+def combinations(series: Tables) -> list[tuple]:
     """Tuples of the values of the keys for each member: of one key, a grid of several, or in parallel."""
     if "key" in series:
         return [(value,) for value in series["values"]]
@@ -56,13 +56,13 @@ def combinations(series: dict[str, Any]) -> list[tuple]:
     return list(itertools.product(*series["values"]))
 
 
-def settings_of(series: dict[str, Any]) -> list[Settings]:
+def settings_of(series: Tables) -> list[Settings]:
     """Settings of each member: pairs of a split key and its value."""
     keys = [key.split(".") for key in keys_of(series)]
     return [list(zip(keys, values, strict=True)) for values in combinations(series)]
 
 
-def member_tables(data: dict[str, Any], settings: Settings) -> dict[str, Any]:
+def member_tables(data: Tables, settings: Settings) -> Tables:
     """Tables of one member: tables of the case without `[series]`; ValueError: no such key."""
     member = copy.deepcopy(data)
     del member["series"]

@@ -15,8 +15,9 @@ import numpy as np
 
 from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import FAULTY, Tables, check, is_number
+from ehlpetsc.case.checking import FAULTY, check, is_number
 from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
@@ -32,7 +33,7 @@ Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[float]]:
     """Columns of a text file in SI units, by key of a table; raises `ProfileError`."""
-    from ehlpetsc.surfaces.text_columns import text_columns
+    from ehlpetsc.surfaces.text_files import text_columns
 
     try:
         columns, header = text_columns(path)

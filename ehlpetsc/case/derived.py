@@ -12,7 +12,9 @@ import numpy as np
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
-from ehlpetsc.case.checking import FAULTY, Fault, Tables, check, values_of
+from ehlpetsc.base.toml_file import Tables
+from ehlpetsc.case.checking import FAULTY, Fault, check, values_of
+from ehlpetsc.case.combinations import keys_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.law import STANDARD_TEMPERATURE
@@ -122,7 +124,10 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
         return []
-    if "surface." in str(data.get("series")):
+    varied: list[object] = []
+    with contextlib.suppress(*FAULTY):
+        varied = [*keys_of(data["series"])]
+    if any(isinstance(name, str) and name.startswith("surface.") for name in varied):
         return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
     from ehlpetsc.surfaces.samples import samples
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status, put
+from ehlpetsc.base.command_line import CommandParser, exit_status, put
 from ehlpetsc.base.declarations import Key, KeyTable, plain
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.messages import nearest, value_text

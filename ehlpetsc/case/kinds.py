@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.case.checking import Fault, Tables, is_point
+from ehlpetsc.base.toml_file import Tables
+from ehlpetsc.case.checking import Fault, is_point
 from ehlpetsc.case.messages import show
 from ehlpetsc.case.tables.motion import MAX_NODES
 from ehlpetsc.case.tables.surface import areal_keys

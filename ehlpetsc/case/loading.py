@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import os
-import tomllib
 from collections.abc import Collection, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -12,8 +11,8 @@ from typing import Any, cast
 
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
-from ehlpetsc.base.toml_file import parse_toml, plain, read_text
-from ehlpetsc.case.checking import Fault, Tables, check, in_si, is_number
+from ehlpetsc.base.toml_file import Tables, parse_toml, plain, read_text
+from ehlpetsc.case.checking import Fault, check, in_si, is_number
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
@@ -30,12 +29,12 @@ from ehlpetsc.physics.scales import Scales
 DICT_NAME = "case"  # name of a case without a file in messages
 SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
 OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
-Overrides = dict[str, Any] | Iterable[str] | str | None
+Overrides = Tables | Iterable[str] | str | None
 __all__ = ["Case", "CaseError", "load", "members", "stored_case"]
 
 
 def load(
-    case: str | PathLike | dict[str, Any],
+    case: str | PathLike | Tables,
     overrides: Overrides = None,
     *,
     laws: Mapping[str, Law] | None = None,
@@ -95,13 +94,13 @@ def stored_case(text: str, overrides: Overrides = None) -> Case:
     return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
 
 
-def members(case: Case | str | PathLike | dict[str, Any]) -> list[tuple[Any, Case]]:
+def members(case: Case | str | PathLike | Tables) -> list[tuple[Any, Case]]:
     """Values and members of a series: the same case without `[series]`, with one value of each varied key.
 
     For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
-    data, result = tomllib.loads(case.text), []
+    data, result = copy.deepcopy(case._tables), []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
     for settings in settings_of(data["series"]):
@@ -121,7 +120,8 @@ def _override(data: Tables, overrides: Overrides) -> list[Fault]:
         try:
             put(data, *parsed(override))
         except ValueError:
-            text = shortened(" ".join(str(override).split()))  # a fault is one line
+            one_line = " ".join(override.split()) if isinstance(override, str) else show(override)
+            text = shortened(one_line)
             faults.append(Fault("", f"{text}: allowed: table.key=value, as in fluid.viscosity=0.003"))
     return faults
 

@@ -3,9 +3,9 @@ r"""The discrete contact problem: one interleaved system for q, w and the approa
 Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same order,
 because SNESVI pairs row with unknown:
 
-* row of q: deflection, :mod:`ehlpetsc.discretisation.deflection`;
-* row of w: Reynolds equation, :class:`ehlpetsc.discretisation.reynolds.Reynolds`, in direct contact
-  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.reynolds.NoOil`;
+* row of q: deflection, :mod:`ehlpetsc.discretisation.line.deflection`;
+* row of w: Reynolds equation, :class:`ehlpetsc.discretisation.line.reynolds.Reynolds`, in direct contact
+  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.line.reynolds.NoOil`;
 * last row: load, :math:`\sum p\,\Delta x=\pi/2`.
 
 The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from
@@ -15,7 +15,7 @@ the unknowns of its window, see :mod:`.deflection`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,10 @@ from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Fluid
 
 
 @dataclass(frozen=True)
@@ -99,7 +103,7 @@ class EHLProblem:
 
     def __init__(
         self,
-        case: Any,
+        case: Case,
         scales: Scales,
         share: Share,
         model: ContactModel,
@@ -117,7 +121,7 @@ class EHLProblem:
         self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:
-            from ehlpetsc.discretisation.oil import IsothermalOil
+            from ehlpetsc.discretisation.step_inputs import IsothermalOil
 
             self.oil = IsothermalOil(self.fluid, scales)
             if self.fluid.inlet_film is not None:
@@ -151,7 +155,7 @@ class EHLProblem:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
         return self._mass(self.model.state(q, w), self.fluid)
 
-    def _mass(self, nodes: NodeState, fluid: Any) -> np.ndarray | None:
+    def _mass(self, nodes: NodeState, fluid: Fluid) -> np.ndarray | None:
         return self.reynolds.mass_per_area(nodes.reynolds_unknown, nodes.film, fluid)
 
     def solution(self, unknowns: Unknowns, residual: np.ndarray, inputs: StepInputs) -> Solution:

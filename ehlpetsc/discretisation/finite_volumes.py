@@ -65,7 +65,7 @@ def extrapolated(m: np.ndarray, behind: np.ndarray, k: float) -> np.ndarray:
 def fill_mass(
     i: int, q: float, h: float, density: tuple, p0: float, film: float, unit: float, at: np.ndarray
 ) -> float:
-    """Fill in the properties of node i except its viscosity, as :func:`.oil.nodal`; return p [Pa]."""
+    """Fill in the properties of node i except its viscosity, as :func:`.step_inputs.nodal`; return p [Pa]."""
     p, oil_fraction, full = max(q, 0.0), 1.0 + min(q, 0.0), q > -AMBIENT_TOLERANCE
     rho, rho_p = relative_density(density, p0 * p)
     at[P, i], at[DP, i], at[H, i] = p, 1.0 if full else 0.0, film * h

@@ -1,20 +1,118 @@
-"""Data of a solve without its initial guess: previous masses of the film, gap, conditions."""
+"""Input of one solve: oil, history of the film, conditions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.finite_volumes import extrapolated
+from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, extrapolated, fill_mass
+from ehlpetsc.physics.laws import density_law, ln_viscosity, viscosity_law
 from ehlpetsc.physics.operation import Conditions
+from ehlpetsc.physics.rheology import NEWTON, flow_law, stress_pressure
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.tabulated_flow import flow_table
 
 if TYPE_CHECKING:
-    from ehlpetsc.discretisation.oil import Oil
+    from ehlpetsc.case.tables.contact import Fluid
+
+
+class Oil(Protocol):
+    """Interface of an oil.
+
+    `fluid`: table `[fluid]` of the case.
+    `scales`: of pressure, film and speed.
+    `rows`: number of nodal properties.
+    """
+
+    @property
+    def fluid(self) -> Fluid: ...
+    @property
+    def scales(self) -> Scales: ...
+    @property
+    def rows(self) -> int: ...
+
+    def begin(self) -> Oil:
+        """Oil of one solve, which may keep a state from one evaluation to start the next one from."""
+        ...
+
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
+        """Fill in the properties of `nodes` of the mesh at their q and h.
+
+        `at`: shape (rows, columns): one for each node, and one for each row of nodes along x that `nodes`
+            holds up to the outlet: a node beyond the outlet, with the film of the last one and no pressure.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class IsothermalOil:
+    """Oil whose viscosity and density are laws of the pressure; interface of :class:`Oil`."""
+
+    fluid: Fluid
+    scales: Scales
+    rows = PROPERTIES
+
+    @cached_property
+    def viscosity(self) -> tuple:
+        """Law of the viscosity, as compiled loops take it."""
+        return tuple(viscosity_law(self.fluid))
+
+    @cached_property
+    def density(self) -> tuple:
+        """Law of the density, as compiled loops take it."""
+        return tuple(density_law(self.fluid))
+
+    @cached_property
+    def units(self) -> tuple[float, float, float]:
+        """Scales of pressure p0 [Pa] and film [m]; 1/(u film) [s/m^2]."""
+        s = self.scales
+        return s.p0, s.h, 1.0 / (s.u * s.h)
+
+    def begin(self) -> IsothermalOil:
+        """The oil itself, which has no state."""
+        return self
+
+    def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
+        """As :meth:`Oil.fill`."""
+        nodal(q, h, self.viscosity, self.density, (*self.units, 1.0 / self.fluid.viscosity), at)
+
+
+@compiled
+def nodal(
+    q: np.ndarray, h: np.ndarray, viscosity: tuple, density: tuple, units: tuple, at: np.ndarray
+) -> None:
+    """Fill in the nodal properties, see :mod:`.finite_volumes`.
+
+    Parameters
+    ----------
+    q, h : shape (nodes,)
+    viscosity, density
+        :class:`ehlpetsc.physics.laws.OilLaw` of both, as tuples, which numba looks up faster.
+    units
+        Scales of pressure p0 [Pa] and film [m]; 1/(u film) [s/m^2]; 1/eta0 [1/(Pa s)].
+    at : shape (10, columns)
+        As of :meth:`Oil.fill`.
+    """
+    nodes, (p0, film, unit, fluidity) = len(q), units
+    for i in range(at.shape[1]):
+        here, gap = (q[i], h[i]) if i < nodes else (0.0, h[last_before(i, nodes, at)])
+        p = fill_mass(i, here, gap, density, p0, film, unit, at)
+        ln_eta, ln_eta_p, _ = ln_viscosity(viscosity, p, viscosity[2])
+        at[FLUIDITY, i], at[LN_ETA_P, i] = np.exp(-ln_eta) * fluidity, p0 * ln_eta_p
+
+
+@compiled
+def last_before(beyond: int, nodes: int, at: np.ndarray) -> int:
+    """Last node of the row along x that ends at the node `beyond` the outlet; all rows have one length."""
+    return (beyond - nodes + 1) * (nodes // (at.shape[1] - nodes)) - 1
+
 
 Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
 
@@ -62,13 +160,42 @@ class StepInputs:
     boundary_friction: float | np.ndarray = 0.0
 
     @property
-    def fluid(self) -> Any:
+    def fluid(self) -> Fluid:
         """Table `[fluid]` of the case; None: dry."""
-        return self.oil and self.oil.fluid
+        return self.oil.fluid if self.oil else None
 
     def begin(self) -> StepInputs:
-        """Inputs of one solve, see :meth:`.oil.Oil.begin`."""
+        """Inputs of one solve, see :meth:`.step_inputs.Oil.begin`."""
         return replace(self, oil=self.oil and self.oil.begin())
+
+
+def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, float, float]:
+    """Constants of :func:`.finite_volumes.flux_through` from its third on: of shear law and speeds."""
+    flow, now = flow_law(inputs.fluid), inputs.conditions
+    stress = np.inf if flow.kind == NEWTON else flow.stress
+    rise = scales.p0 * stress_pressure(inputs.fluid)
+    return stress, stress * rise if rise else 0.0, abs(now.sliding), now.entrainment / scales.u
+
+
+def flow_table_of(inputs: StepInputs) -> np.ndarray:
+    """Table of the pressure flow, empty where the shear law has a closed form."""
+    kind, _, *constants = flow_law(inputs.fluid)
+    return flow_table(kind, *constants)
+
+
+def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndarray, ...]:
+    """Rows of inlet nodes and their derivatives by q and h.
+
+    Ambient pressure where flooded, the given oil film where starved.
+    """
+    if oil_film is None:
+        return q, np.ones_like(q), np.zeros_like(h)
+    starved = oil_film < h
+    return (
+        np.where(starved, q + 1.0 - oil_film / h, q),
+        np.ones_like(q),
+        np.where(starved, oil_film / h**2, 0.0),
+    )
 
 
 def mirrored(value: Any) -> Any:

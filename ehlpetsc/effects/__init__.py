@@ -10,10 +10,9 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from ehlpetsc.base.quantities import register
+from ehlpetsc.effects.depths import PlasticDeformation, Wear
 from ehlpetsc.effects.effect import RoughSurfaces
 from ehlpetsc.effects.heat.effect import Heat
-from ehlpetsc.effects.plastic_deformation import PlasticDeformation
-from ehlpetsc.effects.wear import Wear
 
 if TYPE_CHECKING:
     from ehlpetsc.effects.effect import Effect, Scene

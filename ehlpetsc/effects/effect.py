@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from ehlpetsc.physics import Operation
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
     from ehlpetsc.surfaces.body_field import MeshOnBodies
-    from ehlpetsc.surfaces.roughness import Roughness, SurfacePositions
+    from ehlpetsc.surfaces.moving_surface import SurfacePositions
+    from ehlpetsc.surfaces.roughness import Roughness
 
 
 @dataclass(frozen=True)
@@ -39,20 +39,20 @@ class Scene:
     @classmethod
     def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: int) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
-        from ehlpetsc.surfaces.roughness import SurfacePositions
+        from ehlpetsc.surfaces.moving_surface import SurfacePositions
 
         offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
         shift = (number - 1) * case.time.pass_shift if case.time else 0.0
         return cls(case, scales, operation, SurfacePositions((offset_1, offset_2 + shift)))
 
     @cached_property
-    def roughness(self) -> Roughness | ArealRoughness | None:
+    def roughness(self) -> Roughness | None:
         """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
         if not (self.case.surface.body_1 or self.case.surface.body_2):
             return None
-        from ehlpetsc.surfaces import roughness_of
+        from ehlpetsc.surfaces.roughness import Roughness
 
-        return roughness_of(self.case, self.scales, self.positions)
+        return Roughness.of(self.case, self.scales, self.positions)
 
     @property
     def rq(self) -> float:
@@ -63,13 +63,13 @@ class Scene:
     def mesh_on_bodies(self) -> MeshOnBodies:
         """Cells of the mesh in both bodies, `surfaces.body_field.MeshOnBodies`."""
         from ehlpetsc.surfaces.body_field import MeshOnBodies
-        from ehlpetsc.surfaces.roughness import directed_speeds
+        from ehlpetsc.surfaces.moving_surface import directed_speeds
 
         speeds = directed_speeds(self.case, self.scales)
         return MeshOnBodies(self.scales, self.positions.offsets(speeds))
 
 
-def combined_rq(case: Case, roughness: Roughness | ArealRoughness | None) -> float:
+def combined_rq(case: Case, roughness: Roughness | None) -> float:
     """Root mean square height of both profiles and the layer of asperities [m]; 0: smooth."""
     return math.hypot(roughness.rq if roughness else 0.0, case.contact.asperity_height or 0.0)
 

@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.analysis.gear_run import GearRun, lines, panels
-from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.case.derived import modulus_of, rating_of
 from ehlpetsc.case.loading import load

@@ -16,7 +16,7 @@ import numpy as np
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.path import Path, hertz, loss
 from ehlpetsc.physics.flash_temperature import STEEL, blok_flash_temperature
-from ehlpetsc.physics.friction_correlations import hoehn_michaelis
+from ehlpetsc.physics.traction import hoehn_michaelis
 
 BULK_OF_FLASH = 0.47  # of the mean flash temperature, for dip lubrication, one mesh a revolution
 

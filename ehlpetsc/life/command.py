@@ -11,7 +11,7 @@ from argparse import Namespace
 from functools import partial
 from pathlib import Path
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life.history import read_life

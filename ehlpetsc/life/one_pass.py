@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
-from ehlpetsc.run.outputs.recorder import Recorder
 from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
@@ -106,7 +106,7 @@ def run_pass(
     return Pass(bodies, figures, records.get("plastic_deformation"), yielded)
 
 
-def _depths(before: dict[str, Any], after: dict, name: str) -> list[tuple[BodyField, BodyField]]:
+def _depths(before: dict[str, np.ndarray], after: dict, name: str) -> list[tuple[BodyField, BodyField]]:
     """Depths of both bodies before and after; zero where there is no record."""
     none = NO_DEPTH, NO_DEPTH
     old, new = (records[name].depth if name in records else none for records in (before, after))

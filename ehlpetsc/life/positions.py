@@ -14,16 +14,15 @@ import numpy as np
 
 from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.tables import Case
+from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.effects.plastic_deformation import PlasticRecord
-from ehlpetsc.effects.wear import WearRecord
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.body_field import BodyFields
-from ehlpetsc.surfaces.roughness import directed_speeds
+from ehlpetsc.surfaces.moving_surface import directed_speeds
 
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
 FLANK_END_LENGTH = 1.0  # half-widths at either end of a flank whose mean wear is that of the points beyond

@@ -9,7 +9,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.base.errors import NotConverged, OutputError, PostError, Stopped, UsageError
-from ehlpetsc.effects.plastic_deformation import PlasticRecord
+from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.jumps import Rates
 from ehlpetsc.life.one_pass import Pass

@@ -28,8 +28,11 @@ DEFAULTS = {
 # six digits; mixed contact conserves the oil to 1e-6, which needs 1e-7.
 # A compliant layer makes the load nonlinear in the film: 1e-8 balances it to 1e-10.
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
-PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.preconditioner.FarFieldBand"}
-KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.gmres.FlexibleGMRES"}
+PRECONDITIONER = {
+    "pc_type": "python",
+    "pc_python_type": "ehlpetsc.nonlinear.line.preconditioner.FarFieldBand",
+}
+KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.line.gmres.FlexibleGMRES"}
 # of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its
 # pressures
 PLANE = {
@@ -45,6 +48,8 @@ INNER = {  # of incomplete LU, on several ranks in slabs of rows with a few of t
     "pc_asm_overlap": "4",
     "sub_pc_type": "ilu",
     "sub_pc_factor_levels": "1",
+    "pc_factor_shift_type": "inblocks",
+    "sub_pc_factor_shift_type": "inblocks",
 }
 OF_PRECONDITIONERS = ("pc_", "sub_", "mg_")
 # options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
@@ -88,7 +93,7 @@ class RunOptions:
         self.deferred_views: list[str] = []
         self.unused = set(self.given)
 
-    def value(self, name: str, default: Any = None) -> Any:
+    def value(self, name: str, default: object = None) -> Any:
         """Value of an option, which counts as used."""
         if name in self.given:
             PETSc.Options().hasName(name)
@@ -136,7 +141,7 @@ class RunOptions:
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
         defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PLANE, *PETSC_FACTORISATION, "snes_atol"}
-        defaults |= {INNER_PREFIX + name for name in (*INNER, *PETSC_FACTORISATION)}
+        defaults |= {INNER_PREFIX + name for name in INNER}
         of_run = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
@@ -177,7 +182,9 @@ def _line_solver(wanted: dict) -> dict:
 def _plane_solver(wanted: dict) -> dict:
     """As :func:`_line_solver`, in the plane: options of preconditioners are those of the pressures."""
     inner = {name: value for name, value in wanted.items() if name.startswith(OF_PRECONDITIONERS)}
-    inner = {INNER_PREFIX + name: value for name, value in (INNER | PETSC_FACTORISATION | inner).items()}
+    if any(name.startswith("sub_") for name in inner):  # on one rank else of no effect
+        inner = {"pc_type": "asm"} | inner
+    inner = {INNER_PREFIX + name: value for name, value in (INNER | inner).items()}
     return PLANE | inner | wanted | {name: PLANE[name] for name in ("pc_type", "pc_python_type")}
 
 
@@ -231,7 +238,7 @@ def check_options(options: dict) -> None:
             raise UsageError(f"-{name} {value}: allowed: a number")
 
 
-def _number(text: Any) -> float | None:
+def _number(text: str | float | None) -> float | None:
     try:
         return float(text)
     except (TypeError, ValueError):  # no value, or no number

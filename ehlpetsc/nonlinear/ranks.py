@@ -1,7 +1,7 @@
 """Exchange of unknowns and pressure sums between ranks: one collective, with the same few numbers from each.
 
 Every rank sends the unknowns of its outer nodes, which the stencils of its neighbours reach, and of its
-pressures what :mod:`ehlpetsc.discretisation.curvature_product` sends and the sums over its nodes.
+pressures what :mod:`ehlpetsc.discretisation.line.curvature_product` sends and the sums over its nodes.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from mpi4py import MPI
 
 from ehlpetsc.base.compiled import call_allgather, compiled
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.discretisation.curvature_product import BLOCK, TOLERANCE, Blocks, pack, unpack
-from ehlpetsc.discretisation.deflection import HALO, PressureSums
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line.curvature_product import BLOCK, TOLERANCE, Blocks, pack, unpack
+from ehlpetsc.discretisation.line.deflection import HALO, PressureSums
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4

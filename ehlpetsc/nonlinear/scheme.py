@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from petsc4py import PETSc
 
@@ -13,22 +14,30 @@ from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
 
 
-def _line(*parts: Any) -> TwoFields:
-    from ehlpetsc.nonlinear.line_matrices import line_system
+def _line() -> Callable[..., TwoFields]:
+    from ehlpetsc.nonlinear.line.system import line_system
 
-    return line_system(*parts)
+    return line_system
 
 
-def _plane(*parts: Any) -> TwoFields:
+def _plane() -> Callable[..., TwoFields]:
     from ehlpetsc.nonlinear.plane.system import plane_system
 
-    return plane_system(*parts)
+    return plane_system
+
+
+def _line_sweeps() -> type[GaussSeidelSolver]:
+    from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
+
+    return GaussSeidelSolver
 
 
 SYSTEMS = {"line": _line, "strip": _plane, "point": _plane}  # a kind loads no module of another one
+SWEEPS = {"line": _line_sweeps}
 ALLOWED = ("newton", "sweep")
 
 
@@ -39,7 +48,7 @@ def check_scheme(name: str | None) -> None:
 
 
 def solver_of(
-    case: Any, scales: Scales, film_scale: float, comm: PETSc.Comm, options: RunOptions
+    case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, options: RunOptions
 ) -> NewtonSolver | GaussSeidelSolver:
     """Solver of one scene on one communicator.
 
@@ -50,8 +59,8 @@ def solver_of(
     if name != "sweep":
         bounded = options.value("snes_type", "vinewtonrsls") == "vinewtonrsls"
         tolerance = options.real("snes_vi_zero_tolerance", ZERO_TOLERANCE) if bounded else 0.0
-        return NewtonSolver(SYSTEMS[case.kind](case, scales, film_scale, comm, tolerance), options)
-    if case.kind != "line":
+        return NewtonSolver(SYSTEMS[case.kind]()(case, scales, film_scale, comm, tolerance), options)
+    if case.kind not in SWEEPS:
         raise UsageError(
             f"-ehl_scheme sweep: the paper's sweeps solve line contacts, not a {case.kind}; leave it out"
         )
@@ -59,6 +68,4 @@ def solver_of(
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:
         raise UsageError("-ehl_scheme sweep: the paper's sweeps solve direct contact only; leave it out")
-    from ehlpetsc.nonlinear.gauss_seidel import GaussSeidelSolver
-
-    return GaussSeidelSolver(case, scales, film_scale, options.real("snes_atol"))
+    return SWEEPS[case.kind]()(case, scales, film_scale, options.real("snes_atol"))

@@ -2,7 +2,7 @@
 
 Each rank stores the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), h00 on the last rank, and
 evaluates its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`) with data of other ranks from
-:mod:`ehlpetsc.nonlinear.ranks`. The Jacobian is matrix-free (:mod:`ehlpetsc.nonlinear.jacobian`), so
+:mod:`ehlpetsc.nonlinear.ranks`. The Jacobian is matrix-free (:class:`Jacobian`), so
 that Newton's method converges as with the full matrix; the default preconditioner reads its coefficients from
 it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of the near field.
 """
@@ -10,19 +10,99 @@ it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of 
 from __future__ import annotations
 
 import weakref
+from copy import copy
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.step_inputs import StepInputs
-from ehlpetsc.discretisation.unknowns import Rows, Unknowns, n_dofs, pairs, q_of, w_of
+from ehlpetsc.discretisation.unknowns import (
+    Rows,
+    Unknowns,
+    n_dofs,
+    nodes_of_w,
+    pairs,
+    q_of,
+    w_of,
+)
 from ehlpetsc.nonlinear import events
-from ehlpetsc.nonlinear.jacobian import python_matrix
 from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_max, global_sum
+
+
+class Jacobian:
+    """Matrix-free Jacobian, context of PETSc's Python matrix; kinds of contact differ in the product.
+
+    `exchange`: of vectors between ranks.
+
+    `model`, `state`, `reynolds_derivatives`: point of linearisation, as in `ehl_problem.Evaluation`.
+    `derivatives`: of the nodes, see `contact.node_state.NodeState.derivatives`.
+    `size`: local unknowns of the whole system.
+    `active`: local indices of the unknowns in the system.
+    `inactive_nodes`: local nodes whose second unknown is not in the system.
+    """
+
+    def __init__(self, problem: EHLProblem, exchange: object, ranks: MPI.Comm):
+        self.problem, self.exchange, self.ranks = problem, exchange, ranks
+        self.active: slice | np.ndarray = slice(None)
+        self.inactive_nodes = np.arange(0)
+        self.model: Any = None
+        self.state: Any = None
+        self.derivatives: np.ndarray = None
+        self.reynolds_derivatives: np.ndarray = None
+        self.size = n_dofs(problem.local) + problem.load_is_local
+
+    def product(self, v: np.ndarray, out: np.ndarray) -> None:
+        """Fill in the local rows of the product with a local vector, zero in inactive rows; collective."""
+        raise NotImplementedError
+
+    def linearise(self, evaluation: Evaluation) -> None:
+        """Set the point of linearisation."""
+        self.model, self.reynolds_derivatives = evaluation.model, evaluation.reynolds_derivatives
+        self.state = self.model.linearised(
+            evaluation.state, self.problem.owned, partial(global_sum, self.ranks)
+        )
+        self.derivatives = self.state.derivatives()
+
+    def mult(self, mat: PETSc.Mat, v: PETSc.Vec, out: PETSc.Vec) -> None:
+        """PETSc's product."""
+        full, rows = np.zeros(self.size), np.empty(self.size)
+        full[self.active] = v.array_r
+        with events.PRODUCT:
+            self.product(full, rows)
+        out.array[:] = rows[self.active]
+
+    def createSubMatrix(
+        self, mat: PETSc.Mat, rows: PETSc.IS, columns: PETSc.IS, out: PETSc.Mat | None = None
+    ) -> PETSc.Mat:
+        """Matrix of the active unknowns of SNESVI; rows and columns are the same."""
+        restricted = copy(self)
+        restricted.restrict(rows.indices - mat.getOwnershipRange()[0])
+        return python_matrix(restricted, rows.getSizes(), mat.comm)
+
+    def restrict(self, active: np.ndarray) -> None:
+        """Leave all unknowns out of the system but those of these local indices."""
+        if len(active) < self.size:
+            is_inactive = np.ones(self.size, dtype=bool)
+            is_inactive[active] = False
+            self.active, self.inactive_nodes = active, nodes_of_w(np.flatnonzero(is_inactive))
+
+
+def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> PETSc.Mat:
+    """Square matrix with a Python context, ready for products.
+
+    `context`: with methods of PETSc's names: ``mult``, ``createSubMatrix``.
+    `sizes`: rows on this rank, and of all ranks.
+    """
+    matrix = PETSc.Mat().createPython((sizes, sizes), context, comm=comm)
+    matrix.setUp()
+    return matrix
+
 
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
@@ -40,7 +120,7 @@ class Matrices(Protocol):
     keeps_factors: bool
     linear_atol: float
 
-    def jacobian(self, ksp: PETSc.KSP) -> Any:
+    def jacobian(self, ksp: PETSc.KSP) -> Jacobian:
         """Matrix-free Jacobian, context of a Python matrix, for a Krylov solver with its options."""
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> Any:

@@ -144,20 +144,31 @@ def film_left_by_inlet(film: float, inlet: float) -> float:
     inlet
         Distance of the first node from the middle in half-widths, above 1.
     """
-    prescribed = _grubin(film, FAR_INLET)
+    prescribed = _inlet_integral(film, FAR_INLET, 3)
     low, high = np.log(film) - 20.0, np.log(film)
     while high - low > 1e-3:  # the integral falls as the film grows
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if _grubin(np.exp(middle), inlet) > prescribed else (low, middle)
+        low, high = (
+            (middle, high) if _inlet_integral(np.exp(middle), inlet, 3) > prescribed else (low, middle)
+        )
     return float(np.exp(0.5 * (low + high)) / film)
 
 
-def _grubin(film: float, inlet: float) -> float:
-    r"""Integral of g/(h_c+g)^3 over 1 < X < `inlet`; X = 1 + (inlet - 1) s^3 has nodes where g is small."""
+def rolling_left_by_inlet(film: float, inlet: float) -> float:
+    r"""Rolling friction before a light contact with an inlet of finite length, over that of a flooded one.
+
+    Each wall carries :math:`\int\frac h2\frac{dp}{dx}dx=\int 6\eta u\frac{h-h_c}{h^2}dx`, with Hertz' gap
+    before the contact and ambient viscosity; far out it falls as 1/x. Parameters: :func:`film_left_by_inlet`.
+    """
+    return _inlet_integral(film, inlet, 2) / _inlet_integral(film, FAR_INLET, 2)
+
+
+def _inlet_integral(film: float, inlet: float, power: int) -> float:
+    """Integral of g/(h_c+g)^power over 1 < X < `inlet`; X = 1 + (inlet - 1) s^3: nodes where g is small."""
     s = (np.arange(GRUBIN_POINTS) + 0.5) / GRUBIN_POINTS
     x = 1.0 + (inlet - 1.0) * s**3
     gap = 0.5 * (x * np.sqrt(x * x - 1.0) - np.log(x + np.sqrt(x * x - 1.0)))
-    return float((gap / (film + gap) ** 3 * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
+    return float((gap / (film + gap) ** power * s * s).sum() * 3.0 * (inlet - 1.0) / GRUBIN_POINTS)
 
 
 def expected_film(case: Case, scales: Scales) -> float:

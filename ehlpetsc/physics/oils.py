@@ -1,8 +1,7 @@
 """Measured oils by name: values of the keys of `[fluid]` and `[heat]`, for ``fluid.oil``.
 
-Pressure and temperature of the film change the viscosity by the law of each oil. The oils of the modulus law
-have the limiting shear stress of Hoeglund (1999), as Arana et al. (2019) print it, and an Eyring stress by
-Bair and Winer, see :meth:`Oil.at`.
+Pressure and temperature of the film change the viscosity by the modulus law. The limiting shear stress is
+Hoeglund's (1999), as Arana et al. (2019) print it, the Eyring stress Bair and Winer's, see :meth:`Oil.at`.
 """
 
 from __future__ import annotations
@@ -40,16 +39,14 @@ class Oil:
         """
         law, fluid = LAWS[self.fluid["law"]], SimpleNamespace(temperature=None, **self.fluid)
         ln_eta, slope, _ = law(0.0, temperature, law.constants(fluid, None))
-        found = {
+        ambient = fluid.modulus_a1 + fluid.modulus_a2 * temperature
+        rise = fluid.modulus_b1 + fluid.modulus_b2 * temperature
+        return self.fluid | {
             "viscosity": self.fluid["viscosity"] * math.exp(ln_eta),
             "pressure_viscosity": float(slope),
+            "eyring_stress": 2.0 * fluid.limiting_shear * ambient,
+            "eyring_stress_pressure": max(rise / ambient, 0.0),
         }
-        if self.fluid["law"] == "modulus":
-            ambient = fluid.modulus_a1 + fluid.modulus_a2 * temperature
-            rise = fluid.modulus_b1 + fluid.modulus_b2 * temperature
-            found["eyring_stress"] = 2.0 * fluid.limiting_shear * ambient
-            found["eyring_stress_pressure"] = max(rise / ambient, 0.0)
-        return self.fluid | found
 
 
 def _of_modulus(
@@ -119,32 +116,5 @@ OILS = {
         (0.2261e-3, 973.58, -176.432, -1.35312e8, 6.89389e5, -0.295586, 1.0884975e-3),
         gamma=2.52e-9,
         **{"lambda": 1.82e-9},
-    ),
-    "t9": Oil(
-        "naphthenic mineral oil: Bjoerling, Habchi, Bair, Larsson & Marklund, Tribol. Int. 66 (2013) 19; "
-        "constants from memory",
-        {
-            "viscosity": 0.007946,
-            "law": "yasutomi",
-            "yasutomi_c1": 16.09,
-            "yasutomi_c2": 17.38,
-            "yasutomi_glass": 273.15 - 83.2,
-            "yasutomi_a1": 188.95,
-            "yasutomi_a2": 0.719e-9,
-            "yasutomi_b1": 8.2e-9,
-            "yasutomi_b2": -0.5278,
-            "density": "dowson-higginson",
-            "carreau_stress": 7e6,
-            "carreau_exponent": 0.35,
-            "carreau_width": 5.0,
-            "limiting_shear": 0.083,
-        },
-        {
-            "oil_density": 872.0,
-            "oil_heat_capacity": 1950.0,
-            "oil_conductivity": 0.118,
-            "oil_conductivity_pressure": 1.54e-9,
-            "oil_conductivity_saturation": 0.33e-9,
-        },
     ),
 }

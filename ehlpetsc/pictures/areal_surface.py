@@ -1,15 +1,29 @@
-"""Roughness parameters and picture of an areal map, for ``ehlpetsc surface FILE``."""
+"""Maps of areal surfaces: of a file with its parameters, of a case."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, Rectangle
 
 from ehlpetsc.pictures import style
-from ehlpetsc.surfaces.areal_parameters import CORRELATION_THRESHOLD, ArealParameters, autocorrelation
-from ehlpetsc.surfaces.profile_parameters import CoreParameters, core_parameters
+from ehlpetsc.surfaces.parameters import (
+    CORRELATION_THRESHOLD,
+    ArealParameters,
+    CoreParameters,
+    autocorrelation,
+    core_parameters,
+)
+from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.topography import Topography
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.surfaces.roughness import MovingTopography
+
 
 SIZE = (10.0, 4.2)  # inches
 MAX_PIXELS = 1500  # of the picture, along either side
@@ -85,3 +99,72 @@ def _draw_correlation(axes: Axes, surface: Topography) -> None:
         longest = surface.parameters.sal / np.nan_to_num(surface.parameters.str, nan=1.0)
         axes.set_xlim(0.0, 1e6 * CORRELATION_LENGTHS * longest)
     axes.legend(frameon=False, **style.SMALL)
+
+
+WIDTH, MAP_WIDTH, MARGIN = 7.0, 5.3, 1.1  # inches: of the figure, of a map, above and below a map
+MAX_LENGTH = 4.0  # shown length of a surface over the width of the mesh
+
+
+def draw_maps(
+    surfaces: dict[str, MovingTopography], parts: list[tuple[float, float]], scales: Scales, travel: float
+) -> Figure:
+    """Draw the map of each rough surface, pale beyond the part that passes the whole contact.
+
+    `parts`: ends of these parts [m].
+    `travel`: of the faster surface in half-widths.
+    """
+    width = scales.grid.spacings[0] * scales.grid.shape[0]
+    lengths = [min(surface.given.length, MAX_LENGTH * width) for surface in surfaces.values()]
+    heights = [MAP_WIDTH * width / max(lengths) + MARGIN for _ in lengths]
+    size = WIDTH, sum(heights) + 0.5
+    figure, axes = style.new_figure(len(surfaces), 1, size, squeeze=False)
+    for panel, (side, surface), length, part in zip(
+        axes[:, 0], surfaces.items(), lengths, parts, strict=True
+    ):
+        X, z = heights_on_rows(surface, scales, length)
+        low, high = np.quantile(z, (EXTREME_SHARE, 1.0 - EXTREME_SHARE))
+        edges = 1e3 * X[0], 1e3 * X[-1], -5e2 * width, 5e2 * width
+        colours = dict(cmap=COLOURS, vmin=1e6 * low, vmax=1e6 * high)
+        image = panel.imshow(1e6 * z, extent=edges, origin="lower", interpolation="nearest", **colours)
+        figure.colorbar(image, ax=panel, label="height [µm]", extend="both")
+        panel.set(xlabel="abscissa of the map [mm]", ylabel=f"surface {side}, across [mm]")
+        panel.set_title(_text(surface, scales, travel, part, X), fontsize="small", loc="left")
+        if part[1] < X[-1]:
+            panel.axvspan(1e3 * max(part[1], X[0]), edges[1], color="w", alpha=0.6, lw=0)
+        _draw_contact(panel, 1e3 * (X[0] + 1.2 * scales.a), scales, width)
+    return figure
+
+
+def heights_on_rows(
+    surface: MovingTopography, scales: Scales, length: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Abscissas [m] up to a length, and mean heights [m] of the rows of the mesh there, shape (ny, n)."""
+    topography, dy, ny = surface.given, scales.grid.spacings[0], scales.grid.shape[0]
+    rows = topography.row_means(topography.middle + dy * (np.arange(ny + 1) - 0.5 * ny)).T
+    X = np.linspace(topography.X[0], topography.X[0] + length, min(MAX_PIXELS, len(topography.X)))
+    z = np.stack([np.interp(X, topography.X, row) for row in rows])
+    return X, np.broadcast_to(z, (ny, len(X)))
+
+
+def _text(
+    surface: MovingTopography, scales: Scales, travel: float, part: tuple[float, float], X: np.ndarray
+) -> str:
+    """Parameters of the whole map, and when it arrives."""
+    found, arrives = surface.given.parameters, entry_times(surface, scales)
+    texts = [f"Sa {1e6 * found.sa:.3f} µm, Sq {1e6 * found.sq:.3f} µm, Sdq {found.sdq:.3g}"]
+    if np.isfinite(found.str):
+        texts[0] += f", Str {found.str:.2g}"
+    if arrives:
+        texts.append(f"left end first, at the contact at travel {arrives[0]:.2f} a of {travel:g} a")
+        if part[1] < X[-1]:
+            texts[1] += "; pale: does not pass the whole contact"
+    return "\n".join(texts)
+
+
+def _draw_contact(axes: Axes, centre: float, scales: Scales, width: float) -> None:
+    """Draw the edge of the dry contact to scale, around an abscissa [mm]."""
+    a, line = 1e3 * scales.a, dict(fill=False, color="k", lw=1.0)
+    if np.isfinite(scales.b):
+        axes.add_patch(Ellipse((centre, 0.0), 2.0 * a, 2e3 * scales.b, **line))
+    else:
+        axes.add_patch(Rectangle((centre - a, -5e2 * width), 2.0 * a, 1e3 * width, **line))

@@ -2,7 +2,7 @@
 OUTPUT.series.json, OUTPUT.passes.json; or the profiles of a CASE.toml as they will be used.
 
 Pressure and film of one frame, of a point contact or strip as maps with sections through the middle, by
-default that with the maximum load on the solids from when both profiles fill the contact or, without load on
+default that with the maximum load on the solids from when both surfaces fill the contact or, without load on
 solids, the maximum pressure; several results at the same travel in one picture, points and strips by their
 sections along y = 0. The file name after -o determines the format (png, svg, pdf, eps ...).
 Input files are never overwritten.
@@ -17,7 +17,7 @@ import contextlib
 import re
 from pathlib import Path
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
@@ -132,16 +132,16 @@ def section_of(result: Result, y: float) -> Result:
 
 def draw_plane(result: Result, options: argparse.Namespace, output: Path) -> None:
     """Draw one picture, movie or page of a point contact or strip in both directions into a file."""
-    from ehlpetsc.pictures import fringes, plane, plane_over_time
+    from ehlpetsc.pictures import fringes, plane
 
     if options.kind == "report":
         return save_report(result, output)
     if options.kind == "movie":
-        return plane_over_time.save_movie(result, options, output)
+        return plane.save_movie(result, options, output)
     functions = {
         None: plane.draw_frame,
         "fringes": fringes.draw_fringes,
-        "contacts": plane_over_time.draw_contacts,
+        "contacts": plane.draw_contacts,
     }
     style.save(functions[options.kind](result, options), output, chosen=options)
 

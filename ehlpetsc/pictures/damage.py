@@ -14,28 +14,58 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.damage_maps import map_picture
-from ehlpetsc.pictures.weibull import weibull_picture
-from ehlpetsc.post.fatigue.statistics import (
-    MIN_ASPERITIES,
-    exceedance,
-    fitted_asperities,
-    fitted_exceedance,
-)
+from ehlpetsc.pictures.weibull import draw_distributions, weibull_picture
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.stresses.half_plane import stress, von_mises, von_mises_squared
 from ehlpetsc.post.stresses.half_space import StressTensor, stress_plane
-from ehlpetsc.results.post_result import PostResult, WeibullFit
+from ehlpetsc.results.post_result import PostResult
 
 FORMATS = ("png", "svg")
 DECADES = 7  # of damage below the maximum, as in figure 8 of the paper
-EXCEEDANCE_DECADES = 12  # of damage below the maximum in distributions
-GOOD_FIT = 0.9  # r^2 of a Weibull line that needs no word
 SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, as in the paper
 FIELD_DEPTH = 1.5  # half-widths
 STRESSES = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$", r"$\sigma_{vM}$")
 MIN_TICK_DISTANCE = 0.09  # of the depth axis
 CRITERIA = {"fatemi-socie": "Fatemi-Socie", "dang-van": "Dang Van: share of the fatigue limit; line: 1"}
+MAP_COLUMNS = 3
+
+
+def map_picture(
+    result: PostResult, surface: str, place: Callable[[np.ndarray], np.ndarray], title: str
+) -> Figure:
+    """Maps of log10 D of a plane over the surface, one a depth, and its heights.
+
+    `place`: abscissa [mm] of body points s [m].
+    """
+    passed = result.complete[surface]
+    x, y = place(result.s[passed]), 1e3 * result.y
+    count = result.z.size + (surface in result.profiles)
+    rows = -(-count // MAP_COLUMNS)
+    figure, panels = style.new_figure(
+        rows, MAP_COLUMNS, (8.0, 1.0 + 2.2 * rows), sharex=True, sharey=True, squeeze=False
+    )
+    shown = list(panels.flat[:count])
+    for axes in panels.flat[count:]:
+        axes.set_visible(False)
+    if surface in result.profiles:
+        s, heights = result.profiles[surface]
+        axes = shown.pop(0)
+        low, high = 1e6 * heights.min(), 1e6 * heights.max()
+        axes.set_title(f"height, {low:.2g} to {high:.2g} µm", fontsize="small", loc="left")
+        axes.pcolormesh(place(s), y, 1e6 * heights, cmap="gray", rasterized=True)
+    values = result.damage[surface][..., passed]
+    top = int(np.ceil(np.log10(values.max()))) if values.max() > 0.0 else 0
+    for axes, z, layer in zip(shown, result.z, values, strict=True):
+        axes.set_title(f"z/a = {z:g}", fontsize="small", loc="left")
+        powers = np.log10(np.maximum(layer, 10.0 ** (top - DECADES - 1.0)))
+        limits = {"vmin": top - DECADES, "vmax": top, "cmap": "inferno_r", "rasterized": True}
+        colours = axes.pcolormesh(x, y, powers, **limits)
+    figure.colorbar(colours, ax=panels, label=r"$\log_{10}$ D of one pass")
+    panels[0, 0].set_xlim(x.min(), x.max())
+    figure.supxlabel(f"along surface {surface} [mm]", fontsize="medium")
+    figure.supylabel("y [mm]", fontsize="medium")
+    style.set_title(figure, title)
+    return figure
 
 
 class Map(NamedTuple):
@@ -260,37 +290,6 @@ def depth_picture(result: PostResult) -> Figure:
     curves = [(f"z/a = {z:g}", result.under[k], result.fits[k]) for k, z in enumerate(result.z)]
     counted = f"{result.height.size} asperities, surface {result.main}, {_ratio(result)}"
     return draw_distributions(curves, f"{counted}, {rule_name(result)}")
-
-
-def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: str) -> Figure:
-    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit.
-
-    Damage less than `EXCEEDANCE_DECADES` below the maximum; a poor fit is dashed, its r^2 in the legend.
-    """
-    figure, axes = style.new_figure(1, 1, (7.0, 4.0))
-    highest = max((under.max(initial=0.0) for _, under, _ in curves), default=0.0)
-    least = highest * 10.0**-EXCEEDANCE_DECADES
-    for (label, under, fit), colour in zip(curves, style.shades(len(curves)), strict=True):
-        falling, fraction = exceedance(under)
-        shown = falling > least
-        damaged, count = falling[shown], fitted_asperities(under)
-        axes.plot(damaged, fraction[shown], ".", ms=3, color=colour)
-        values = np.geomspace(damaged[-1] / 3.0, 3.0 * damaged[0], 300) if damaged.size else damaged
-        is_fitted, dashes = np.isfinite(fit.alpha) and count >= MIN_ASPERITIES, "-"
-        if not is_fitted:
-            values, label = values[:0], f"{label}, {count} with damage: no fit"
-        elif fit.r_squared < GOOD_FIT:
-            dashes, label = "--", f"{label}, $r^2$ = {fit.r_squared:.2f}"
-        line = dict(color=colour, lw=1.2, ls=dashes, label=label)
-        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), **line)
-    axes.set(xscale="log", ylim=(0.0, 1.0))
-    if highest > 0.0:
-        axes.set_xlim(left=max(axes.get_xlim()[0], least))
-    axes.set(xlabel="damage D of one pass", ylabel="share of asperities above D")
-    axes.grid(color="0.92")
-    style.legend_beside(axes, title="dots: asperities\nlines: Weibull fit")
-    style.set_title(figure, title)
-    return figure
 
 
 def _conditions(result: PostResult, surface: str) -> str:

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.physics.friction_correlations import benedict_kelley, xu_kahraman
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.traction import benedict_kelley, xu_kahraman
 from ehlpetsc.pictures import style
 from ehlpetsc.results.index import groups
 from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles

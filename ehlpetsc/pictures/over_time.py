@@ -127,7 +127,7 @@ def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> 
         if len(shown) > 1:
             style.legend_beside(panel)
     axes[-1, 0].set(xlabel="time [ms]", xlim=(time[0], time[-1]))
-    note = "grey: the profiles do not yet fill the contact" if filled > time[0] else ""
+    note = "grey: the surfaces do not yet fill the contact" if filled > time[0] else ""
     style.set_title(figure, str(result.attrs["title"]), style.conditions(results), note)
     return figure
 

@@ -19,16 +19,16 @@ from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
-from ehlpetsc.surfaces import roughness_of
-from ehlpetsc.surfaces.profile import Profile
 from ehlpetsc.surfaces.profile_checks import entry_times
+from ehlpetsc.surfaces.roughness import Profile, Roughness
 
 if TYPE_CHECKING:
-    from ehlpetsc.surfaces.areal_roughness import MovingTopography
+    from ehlpetsc.surfaces.roughness import MovingTopography, RoughSurface
 
 CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
+MEASURES = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 
@@ -36,12 +36,11 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     """Profiles or maps of a case file; overrides as in `ehlpetsc.load`."""
     case = load(path, overrides)
     scales = Scales.of(case)
-    rough = roughness_of(case, scales)
+    rough = Roughness.of(case, scales)
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    draw: Callable[..., Figure] = _draw_profiles if case.kind == "line" else _draw_maps
-    figure = draw({side: rough.side(side) for side in sides}, case, scales)
+    figure = DRAWN[case.kind]({side: rough.side(side) for side in sides}, case, scales)
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.conditions is not None:
         texts.append("of the widest contact; conditions over time")
@@ -61,13 +60,16 @@ def _draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> 
 
 
 def _draw_maps(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
-    from ehlpetsc.pictures.case_maps import draw_maps
+    from ehlpetsc.pictures.areal_surface import draw_maps
 
     parts = [passing(surface, case, scales) for surface in surfaces.values()]
     return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)
 
 
-def passing(profile: Profile | MovingTopography, case: Case, scales: Scales) -> tuple[float, float]:
+DRAWN: dict[str, Callable[..., Figure]] = {"line": _draw_profiles, "strip": _draw_maps, "point": _draw_maps}
+
+
+def passing(profile: RoughSurface, case: Case, scales: Scales) -> tuple[float, float]:
     """Ends [m] of the part of a profile that passes the whole contact; equal if there is none."""
     first, last = float(profile.X[0]), float(profile.X[-1])
     arrives = entry_times(profile, scales)
@@ -114,8 +116,8 @@ def draw_running_in(results: list[Result], _options: argparse.Namespace | None) 
     figure, axes = style.new_figure(2, 3 if damages else 2, size)
     draw_surface(axes[0, 0], results)
     draw_pressure(axes[1, 0], results)
-    draw_plastic_area(axes[0, 1], rows)
-    draw_contact(axes[1, 1], rows)
+    draw_plastic_deformation(axes[0, 1], rows, results[0])
+    draw_contact(axes[1, 1], rows, results[0])
     for row, side in zip(axes if damages else (), ("1", "2"), strict=False):
         draw_fatigue(row[2], damages, side)
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
@@ -152,34 +154,37 @@ def draw_pressure(axes: Axes, results: list[Result]) -> None:
     style.legend_above(axes, title=f"at {1e6 * first.time[frame]:.4g} µs")
 
 
-def draw_plastic_area(axes: Axes, rows: list[dict]) -> None:
-    """Draw the area of the section set plastically by the end of each pass, and Ra of both surfaces."""
-    area = 1e12 * np.array([row["set_volume"] for row in rows])
-    axes.plot(*_over_passes(axes, area), ".-", color=LAST, label="plastic area")
-    axes.set(ylabel="plastic area of both surfaces [µm²]", ylim=(0.0, None))
+def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> None:
+    """Draw the area or volume set plastically by the end of each pass, and Ra or Sa of both surfaces."""
+    factor, word, unit = MEASURES[1 + (result.case.kind == "point")]
+    values = factor * np.array([row["set_volume"] for row in rows])
+    axes.plot(*_over_passes(axes, values), ".-", color=LAST, label=f"plastic {word}")
+    axes.set(ylabel=f"plastic {word} of both surfaces [{unit}]", ylim=(0.0, 1.1 * values.max() or 1.0))
+    name = "Ra" if result.case.kind == "line" else "Sa"
     ra_axes = axes.twinx()
     for side, dashes in (("1", "--"), ("2", ":")):
         if all(row[side] for row in rows) and rows[0][side]["ra"] > 0.0:
             ra = 1e6 * np.array([row[side]["ra"] for row in rows])
-            line = dict(color=style.SURFACES[side], label=f"Ra of surface {side}")
+            line = dict(color=style.SURFACES[side], label=f"{name} of surface {side}")
             ra_axes.plot(*_over_passes(axes, ra), dashes, **line)
-    ra_axes.set_ylabel("Ra [µm]")
+    ra_axes.set_ylabel(f"{name} [µm]")
     style.legend_above(axes, ra_axes)
 
 
-def draw_contact(axes: Axes, rows: list[dict]) -> None:
-    """Draw the means of the load fraction of the solids and of the contact length."""
+def draw_contact(axes: Axes, rows: list[dict], result: Result) -> None:
+    """Draw the means of the load fraction of the solids and of the contact length or area."""
+    factor, word, unit = MEASURES[result.case.kind == "point"]
     share, length = (
         np.array([row.get(name) for row in rows], float) for name in ("contact_share", "contact_length")
     )
     axes.plot(*_over_passes(axes, share), ".-", color=LAST)
     axes.set_ylabel("share of the load on solids", color=LAST)
     length_axes = axes.twinx()
-    length_axes.plot(*_over_passes(axes, 1e6 * length), ".--", color=style.SINGLE)
-    length_axes.set_ylabel("length in contact [µm]", color=style.SINGLE)
-    axes.set_ylim(bottom=0.0)
+    length_axes.plot(*_over_passes(axes, factor * length), ".--", color=style.SINGLE)
+    length_axes.set_ylabel(f"{word} in contact [{unit}]", color=style.SINGLE)
+    axes.set_ylim(0.0, 1.1 * np.nanmax(share, initial=0.0) or 1.0)
     # twice the room above, so that both curves stay apart
-    length_axes.set_ylim(0.0, 2.3e6 * np.nanmax(length, initial=0.0) or 1.0)
+    length_axes.set_ylim(0.0, 2.3 * factor * np.nanmax(length, initial=0.0) or 1.0)
 
 
 def draw_fatigue(axes: Axes, damages: list[PostResult], side: str) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import html
 import json
 import re
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
@@ -16,7 +18,6 @@ from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show, travel_of, view
-from ehlpetsc.pictures.page_values import binned, packed
 from ehlpetsc.pictures.style import hertz_at
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
@@ -31,6 +32,68 @@ SHOWN_UNITS = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m":
 HIDDEN_SCALARS = set("step time dt newton retries load wall load_error mass_error".split())
 EXTREMES = """h_min p_max film_temperature_max temperature_1_max temperature_2_max load_error
 mass_error""".split()  # of the run, in the table at the top
+MAX_MAP_NODES = 160  # of a map along either side
+MAX_VALUES = 2_000_000  # of all maps of a field on a page
+LEVELS = 65535  # of a stored value, over the maximum of its field
+FILM_ROOM = 10.0  # largest stored film over the upper end of its colours
+
+
+def binned(values: np.ndarray, width: int, reduce: Callable[..., np.ndarray]) -> np.ndarray:
+    """Groups of `width` values along the last axis reduced by `reduce(values, axis=-1)`."""
+    values = np.asarray(values)
+    if width == 1:
+        return values
+    missing = -values.shape[-1] % width
+    padded = np.concatenate([values, np.repeat(values[..., -1:], missing, axis=-1)], axis=-1)
+    return reduce(padded.reshape(*values.shape[:-1], -1, width), axis=-1)
+
+
+def packed(values: np.typing.ArrayLike, kind: type = np.float32) -> str:
+    """Numbers as little-endian bytes in base64."""
+    raw = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<"))
+    return base64.b64encode(raw).decode("ascii")
+
+
+def frames_on_page(result: Result, window: Sequence[float]) -> int:
+    """Number of frames on a page that keeps its size bounded."""
+    from ehlpetsc.pictures import plane  # which no line contact needs
+
+    _, x, y = plane.in_view(result, window)
+    widths = (-(-len(axis) // MAX_MAP_NODES) for axis in (x, y))
+    nodes = np.prod([-(-len(axis) // width) for axis, width in zip((x, y), widths, strict=True)])
+    return max(1, MAX_VALUES // int(nodes))
+
+
+def plane_maps(result: Result, chosen: np.ndarray, window: Sequence[float]) -> dict:
+    """Pressure [GPa], film [µm] and contacts of chosen frames, of each block of nodes the extreme."""
+    from ehlpetsc.pictures import plane
+
+    found = [plane.PlaneFrame.of(result, k, window) for k in chosen]
+    first = found[0]
+    width = tuple(-(-len(axis) // MAX_MAP_NODES) for axis in (first.y, first.x))
+    thickest = max(frame.thickest for frame in found)
+    fields = {
+        "pressure": (np.max, [frame.pressure for frame in found]),
+        "film": (np.min, [np.minimum(frame.film, FILM_ROOM * thickest) for frame in found]),
+    }
+    page = {
+        "x": packed(binned(first.x, width[1], np.mean)),
+        "y": packed(binned(first.y, width[0], np.mean)),
+        "contact": packed([blocks(frame.contact, width, np.max) for frame in found], np.uint8),
+        "aspect": plane.aspect(result) if np.isfinite(plane.aspect(result)) else None,
+        "highest": float(np.percentile([frame.pressure for frame in found], plane.COLOUR_PERCENTILE)),
+        "thickest": thickest,
+    }
+    for name, (reduce, values) in fields.items():
+        unit = max(float(np.max(values)), 1e-12) / LEVELS
+        levels = [np.rint(blocks(each, width, reduce) / unit) for each in values]
+        page[name] = {"unit": unit, "levels": packed(levels, np.uint16)}
+    return page
+
+
+def blocks(values: np.ndarray, width: Sequence[int], reduce: Callable[..., np.ndarray]) -> np.ndarray:
+    """Blocks of (rows, columns) of a field of shape (ny, nx) reduced as by `binned`."""
+    return binned(binned(values, width[1], reduce).T, width[0], reduce).T
 
 
 def save_report(result: Result, path: Path) -> None:
@@ -60,11 +123,9 @@ def report_data(result: Result) -> dict:
     """Data of the page, for JSON; of a point contact or strip maps, and frames of the section at y = 0."""
     line, chosen, of_plane = result, chosen_frames(result, MAX_FRAMES), {}
     if result.y is not None:
-        from ehlpetsc.pictures import plane_report
-
         line, window = result.section(), view([result])
-        chosen = chosen_frames(result, min(MAX_FRAMES, plane_report.frames_on_page(result, window)))
-        of_plane = {"maps": plane_report.maps(result, chosen, window)}
+        chosen = chosen_frames(result, min(MAX_FRAMES, frames_on_page(result, window)))
+        of_plane = {"maps": plane_maps(result, chosen, window)}
     return of_plane | {
         "title": str(result.attrs["title"]),
         "facts": facts(result),

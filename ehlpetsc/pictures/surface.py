@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import check, in_si
@@ -25,7 +25,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import areal_surface, style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
-from ehlpetsc.surfaces.profile_parameters import (
+from ehlpetsc.surfaces.parameters import (
     MIN_POINTS,
     CoreParameters,
     ProfileParameters,

@@ -1,4 +1,4 @@
-"""Weibull plots of the damage at asperities: median ranks, both fits and confidence bounds, by depth."""
+"""Damage at asperities: distributions with their fits; Weibull plots with confidence bounds, by depth."""
 
 from __future__ import annotations
 
@@ -9,12 +9,52 @@ from matplotlib.ticker import LogLocator
 
 from ehlpetsc.pictures import style
 from ehlpetsc.post.fatigue.likelihood import CONFIDENCE, weibull_likelihood
-from ehlpetsc.post.fatigue.statistics import benard_ranks, fitted_asperities, log_life
+from ehlpetsc.post.fatigue.statistics import (
+    MIN_ASPERITIES,
+    benard_ranks,
+    exceedance,
+    fitted_asperities,
+    fitted_exceedance,
+    log_life,
+)
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 
+EXCEEDANCE_DECADES = 12  # of damage below the maximum in distributions
+GOOD_FIT = 0.9  # r^2 of a Weibull line that needs no word
 COLUMNS = 3
 FRACTIONS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 0.95)
 STRETCH = 1.3  # of the lives shown
+
+
+def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: str) -> Figure:
+    """Fractions of asperities above a damage with their Weibull fits; curves: label, damage, fit.
+
+    Damage less than `EXCEEDANCE_DECADES` below the maximum; a poor fit is dashed, its r^2 in the legend.
+    """
+    figure, axes = style.new_figure(1, 1, (7.0, 4.0))
+    highest = max((under.max(initial=0.0) for _, under, _ in curves), default=0.0)
+    least = highest * 10.0**-EXCEEDANCE_DECADES
+    for (label, under, fit), colour in zip(curves, style.shades(len(curves)), strict=True):
+        falling, fraction = exceedance(under)
+        shown = falling > least
+        damaged, count = falling[shown], fitted_asperities(under)
+        axes.plot(damaged, fraction[shown], ".", ms=3, color=colour)
+        values = np.geomspace(damaged[-1] / 3.0, 3.0 * damaged[0], 300) if damaged.size else damaged
+        is_fitted, dashes = np.isfinite(fit.alpha) and count >= MIN_ASPERITIES, "-"
+        if not is_fitted:
+            values, label = values[:0], f"{label}, {count} with damage: no fit"
+        elif fit.r_squared < GOOD_FIT:
+            dashes, label = "--", f"{label}, $r^2$ = {fit.r_squared:.2f}"
+        line = dict(color=colour, lw=1.2, ls=dashes, label=label)
+        axes.plot(values, fitted_exceedance(values, fit.alpha, fit.beta), **line)
+    axes.set(xscale="log", ylim=(0.0, 1.0))
+    if highest > 0.0:
+        axes.set_xlim(left=max(axes.get_xlim()[0], least))
+    axes.set(xlabel="damage D of one pass", ylabel="share of asperities above D")
+    axes.grid(color="0.92")
+    style.legend_beside(axes, title="dots: asperities\nlines: Weibull fit")
+    style.set_title(figure, title)
+    return figure
 
 
 def weibull_picture(result: PostResult) -> Figure:

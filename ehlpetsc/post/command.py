@@ -11,10 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, ProgressLine, exit_status
 from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
-from ehlpetsc.base.progress_line import ProgressLine
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.mean_stress import MEAN_STRESSES
 from ehlpetsc.post.run import Job, run

@@ -48,7 +48,7 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:
     """Value of an attribute, text as str."""
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 

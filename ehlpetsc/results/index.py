@@ -18,6 +18,7 @@ from ehlpetsc.results.reader import Result, read_result
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
 
+NOT_OF_A_CASE = "series.", "output."  # tables of keys that do not distinguish results
 MAX_NAME_LENGTH = 80  # characters
 OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that match the same shell pattern
 
@@ -101,7 +102,7 @@ def series_values(results: list[Result]) -> tuple[str | None, list[float]]:
 def differences(results: list[Result]) -> dict[str, list]:
     """Values of each result, None for a missing key, by the dotted keys in which their case files differ."""
     tables = [flat_keys(tomllib.loads(result.attrs["case"])) for result in results]
-    keys = sorted(key for key in set().union(*tables) - {"title"} if not key.startswith("series."))
+    keys = sorted(key for key in set().union(*tables) - {"title"} if not key.startswith(NOT_OF_A_CASE))
     values = {key: [table.get(key) for table in tables] for key in keys}
     return {key: column for key, column in values.items() if any(value != column[0] for value in column)}
 
@@ -137,7 +138,7 @@ def _settings(results: list[Result], varied: str | None = None) -> list[str]:
     ]
 
 
-def _setting(case: Case, key: str, label: str, value: Any) -> str:
+def _setting(case: Case, key: str, label: str, value: object) -> str:
     if value is None:  # left out: its default
         value = case
         for name in key.split("."):

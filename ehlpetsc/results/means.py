@@ -13,7 +13,7 @@ import numpy as np
 
 import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
 from ehlpetsc.base.quantities import MEANS, REDUCTIONS, STEP_SCALARS
-from ehlpetsc.surfaces.roughness import RAMP_LENGTH
+from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import StepScalar

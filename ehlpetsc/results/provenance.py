@@ -7,12 +7,15 @@ import platform
 import subprocess
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import h5py
 import numpy as np
 
 from ehlpetsc import __version__
+
+if TYPE_CHECKING:
+    from typing import Any
 
 
 def versions(other_versions: dict[str, str]) -> str:

@@ -236,7 +236,7 @@ class Row:
     def __len__(self) -> int:
         return self.shape[0]
 
-    def __getitem__(self, key: Any) -> np.ndarray:
+    def __getitem__(self, key: int | slice | np.ndarray | tuple) -> np.ndarray:
         keys = key if isinstance(key, tuple) else (key,)
         before = self.ndim - 1  # dimensions before y
         return self._dataset[(*keys[:before], self._row, *keys[before:])]

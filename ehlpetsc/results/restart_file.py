@@ -24,7 +24,7 @@ HEADER_BYTES = 512
 SIGNATURE = b"ehlpetsc restart file %d\n" % VERSION
 
 
-def save_restart(path: Path, values: dict[str, Any]) -> None:
+def save_restart(path: Path, values: dict[str, object]) -> None:
     """Save arrays, numbers and texts to a temporary file, synchronised to disk, then renamed; OutputError."""
     content = io.BytesIO()
     with h5py.File(content, "w", libver=LIBVER, userblock_size=HEADER_BYTES) as file:

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.base.command_parser import CommandParser, exit_status, put
-from ehlpetsc.base.progress_line import duration
+from ehlpetsc.base.command_line import CommandParser, duration, exit_status, put
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.kinds import LINE
 from ehlpetsc.case.loading import load, members
@@ -28,12 +27,11 @@ from ehlpetsc.run.forecast import (
     work_time,
 )
 from ehlpetsc.run.validity import domain_faults, load_unit, warnings
-from ehlpetsc.surfaces import roughness_of
+from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.case.tables.contact import Contact
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness
     from ehlpetsc.surfaces.roughness import Roughness
 
 RIDGES = (
@@ -57,7 +55,7 @@ def explain(case: Case) -> str:
     Raises :class:`ehlpetsc.base.errors.ProfileError`.
     """
     scales = Scales.of(case)
-    rough = roughness_of(case, scales)
+    rough = Roughness.of(case, scales)
     sections = [
         [case.title],
         _series(case) if case.series else [],
@@ -110,7 +108,7 @@ def _default_friction(case: Case) -> list[str]:
     return [f"Solids: coefficient of friction {default}, where they touch"]
 
 
-def _film(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
+def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
@@ -163,7 +161,7 @@ def _variable(case: Case, s: Scales) -> list[str]:
     ]
 
 
-def _size(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
+def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     seconds, passes = START_SECONDS + work_time(case, s, rough), case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
     nodes, spacing = (
@@ -199,7 +197,7 @@ def _series(case: Case) -> list[str]:
     seconds, size = START_SECONDS, 0.0
     for _, member in members(case):
         scales = Scales.of(member)
-        seconds += work_time(member, scales, roughness_of(member, scales))
+        seconds += work_time(member, scales, Roughness.of(member, scales))
         size += file_size(member, scales)
     return [
         f"A series: {values}; below, the base case.",

@@ -15,9 +15,7 @@ from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
-    from ehlpetsc.surfaces.profile import Profile
-    from ehlpetsc.surfaces.roughness import Roughness
+    from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
 
 # wall clock time [s] of a run's start, of a Newton iteration and of each node in it, on one core of a server
 START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
@@ -35,13 +33,13 @@ COMPRESSED = 0.6  # of the size of the fields
 WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
 
 
-def lambda_ratio(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected smooth minimum film over the combined root mean square height."""
     film, rq = film_formulas.smooth_films(s, case.fluid, s.conditions)[1], combined_rq(case, rough)
     return film / rq if rq > 0 else math.inf
 
 
-def work_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the iterations [s]."""
     if case.kind != LINE:
         return _plane_time(case, s, rough)
@@ -50,7 +48,7 @@ def work_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -
     return passes * (iterations(case, s, rough) + solves) * each
 
 
-def _plane_time(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+def _plane_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps of a plane [s]."""
     fraction = _rough_fraction(case, s, rough)
     each = (1.0 - fraction) * SMOOTH_SECONDS
@@ -64,18 +62,18 @@ def memory(s: Scales) -> float:
     return PLANE_MEMORY + NODE_MEMORY * s.grid.n
 
 
-def _is_mixed(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> bool:
+def _is_mixed(case: Case, s: Scales, rough: Roughness | None) -> bool:
     return bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
 
 
-def iterations(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+def iterations(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected Newton iterations of a run of a line contact."""
     fraction, mixed = _rough_fraction(case, s, rough), _is_mixed(case, s, rough)
     each = (1.0 - fraction) * SMOOTH_ITERATIONS + fraction * (MIXED_ITERATIONS if mixed else FILM_ITERATIONS)
     return STEADY_ITERATIONS + (steps(s) if case.time else 0) * each
 
 
-def _rough_fraction(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> float:
+def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Fraction of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
@@ -106,7 +104,7 @@ def file_size(case: Case, s: Scales) -> float:
     return share * fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
 
 
-def surface_lines(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
+def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     """Both surfaces: size, roughness and travel, a line each."""
     profiles = {side: rough and rough.side(side) for side in ("1", "2")}
     lines = {side: _profile(case, s, one) if one else ["smooth"] for side, one in profiles.items()}
@@ -131,7 +129,7 @@ def wave_lines(case: Case, s: Scales) -> list[str]:
     return lines
 
 
-def lambda_line(case: Case, s: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
+def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     """Conventional lambda ratio: minimum smooth film by formula over the combined Rq; [] if smooth or dry."""
     rq = combined_rq(case, rough)
     if case.fluid is None or rq <= 0.0:
@@ -145,7 +143,7 @@ def lambda_line(case: Case, s: Scales, rough: Roughness | ArealRoughness | None)
     ]
 
 
-def _profile(case: Case, s: Scales, profile: Profile | MovingTopography) -> list[str]:
+def _profile(case: Case, s: Scales, profile: RoughSurface) -> list[str]:
     """Size, roughness and travel of one surface, a line each."""
     from ehlpetsc.surfaces.profile_checks import entry_times
 
@@ -165,7 +163,7 @@ def _profile(case: Case, s: Scales, profile: Profile | MovingTopography) -> list
     return lines
 
 
-def _part_in_contact(case: Case, s: Scales, profile: Profile | MovingTopography, reaches: float) -> list[str]:
+def _part_in_contact(case: Case, s: Scales, profile: RoughSurface, reaches: float) -> list[str]:
     """Part of a measured profile that passes the whole contact, and the travel at which all of it has."""
     length, slower = profile.given.length, s.u_max / abs(profile.speed)
     through = s.a * (case.time.travel - reaches - 2.0 * slower) / slower
@@ -178,7 +176,7 @@ def _part_in_contact(case: Case, s: Scales, profile: Profile | MovingTopography,
     return [f"{part}; the whole profile needs time.travel = {math.ceil(needed)}"]
 
 
-def banner(case: Case, scales: Scales, rough: Roughness | ArealRoughness | None, ranks: int) -> list[str]:
+def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:
     """Heading of a run in a few lines: title, size, surfaces."""
     length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
     nodes, size = " x ".join(map(str, scales.grid.shape[::-1])), f"a = {1e3 * scales.a:.4f} mm"

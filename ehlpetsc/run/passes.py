@@ -14,7 +14,7 @@ from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
 from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
-from ehlpetsc.run.outputs.checkpoint import pass_of
+from ehlpetsc.run.checkpoint import pass_of
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
@@ -85,11 +85,12 @@ class Passes:
         """Add a complete pass to the index."""
         with read_result(self.file(number)) as result:
             row: dict[str, Any] = {"pass": number, "file": self.file(number).name} | pass_summary(result)
+            unit = result.unit("steps/set_volume")
         before = self.index.rows[-1]["set_volume"] if self.index.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
         self.index.rows.append(row)
         self.index.write()
-        self._print(line(row))
+        self._print(line(row, unit, "Ra" if self.case.kind == "line" else "Sa"))
 
     def _print_end(self) -> None:
         rows, shift = self.index.rows, self.case.time.pass_shift
@@ -104,14 +105,16 @@ class Passes:
             print(text, flush=True)
 
 
-def line(row: dict) -> str:
-    """Printed line of a pass."""
-    texts = [
-        f"pass {row['pass']}: set {1e12 * row['set_volume']:.4g} um^2, added {1e12 * row['added']:.4g} um^2"
-    ]
+def line(row: dict, unit: str, mean_height: str) -> str:
+    """Printed line of a pass.
+
+    `unit`: of the plastic deformation, m^2 or m^3. `mean_height`: name of the mean deviation of heights.
+    """
+    deformed, added = (f"{1e6 ** int(unit[-1]) * row[name]:.4g} u{unit}" for name in ("set_volume", "added"))
+    texts = [f"pass {row['pass']}: set {deformed}, added {added}"]
     for side in ("1", "2"):
         if row[side]:
-            texts.append(f"Ra {side} {1e6 * row[side]['ra']:.4f} um")
+            texts.append(f"{mean_height} {side} {1e6 * row[side]['ra']:.4f} um")
     if row.get("contact_share") is not None:
         texts.append(f"share on solids {row['contact_share']:.4f}")
     return ", ".join(texts)

@@ -20,7 +20,7 @@ REQUEST, ANSWER = 71, 72  # tags of messages
 POLL_SECONDS = 0.01  # between two polls of a waiting rank
 
 
-def on_root(comm: MPI.Comm, action: Callable, *arguments: Any) -> Any:
+def on_root(comm: MPI.Comm, action: Callable, *arguments: object) -> Any:
     """Result of `action` on rank 0, on every rank; so is a fault of the user's input."""
     answer = fault = None
     if comm.rank == 0:
@@ -64,7 +64,7 @@ class WorkQueue:
             report = item, solve(item, self.group, serving)
         return self.finish(result)
 
-    def next(self, report: Any, ending: bool) -> Any:
+    def next(self, report: object, ending: bool) -> Any:
         """Report on the last item and get the next one, None at the end; collective over the group.
 
         With `ending` no group gets a further item.
@@ -103,7 +103,7 @@ class WorkQueue:
         self.serve()
         return not self._others
 
-    def _next(self, report: Any, ending: bool) -> Any:
+    def _next(self, report: object, ending: bool) -> Any:
         if report is not None:
             self.on_report(report)
         if ending:

@@ -16,8 +16,8 @@ import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ehlpetsc.base.command_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
-from ehlpetsc.base.progress_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -26,8 +26,8 @@ from ehlpetsc.results.index import Index
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.forecast import steps
-from ehlpetsc.run.outputs.progress import summary_line
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
+from ehlpetsc.run.recorder import summary_line
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 from ehlpetsc.run.validity import warnings
@@ -35,6 +35,7 @@ from ehlpetsc.run.validity import warnings
 if TYPE_CHECKING:
     from mpi4py import MPI
 
+    from ehlpetsc.case.combinations import Settings
     from ehlpetsc.case.tables import Case
     from ehlpetsc.run.simulation import AcceptedState
     from ehlpetsc.run.stop import StopRequest
@@ -44,7 +45,7 @@ WAITING = "waiting"  # state of a member that is not computed yet
 VARIED = ("key", "keys")  # of [series], in the index
 
 
-def named(settings: list[list[tuple[list[str], Any]]]) -> list[str]:
+def named(settings: list[Settings]) -> list[str]:
     """Names of the members of a series, as ``viscosity=0.002``, from the values in which members differ.
 
     Members have numbers if these names are too long or not unique, or if values are lists or tables.
@@ -74,7 +75,7 @@ def members_of(case: Case, output: Path) -> list[Member]:
 class Member:
     """Member of a series: its name, as ``viscosity=0.002``, value, case and result file."""
 
-    def __init__(self, name: str, value: Any, case: Case, output: Path) -> None:
+    def __init__(self, name: str, value: object, case: Case, output: Path) -> None:
         self.value, self.case, self.name = value, case, name
         suffix = re.sub(r"[^A-Za-z0-9.+-]", "_", name)
         self.output = output.with_name(f"{output.stem}_{suffix}.h5")

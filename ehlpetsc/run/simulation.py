@@ -45,7 +45,7 @@ class AcceptedState:
     ----------
     scalars
         Scalars of the step, as in ``steps/`` of a result file [SI units].
-    fields : shape (nx,), of a plane (ny nx,), x fastest
+    fields : shape (nx,), of a plane (ny, nx)
         Fields of the step [SI units].
     in_contact : shape as of the fields
     solution
@@ -226,7 +226,9 @@ class Simulation:
         problem, effects = self.stepper.problem, self.stepper.effects
         scalars, fields, in_contact = diagnostics(self.scene, problem, effects, state, started)
         scalars |= {"step": state.step, "time": state.time, "gmres": self._linear_iterations - gmres}
-        self.state = AcceptedState(scalars, fields, in_contact, state)
+        shape = self.scales.grid.shape
+        fields = {name: values.reshape(shape) for name, values in fields.items()}
+        self.state = AcceptedState(scalars, fields, in_contact.reshape(shape), state)
         return self.state
 
     @property
@@ -253,9 +255,9 @@ class Simulation:
                 state = self._started(watch)
             except NotConverged as error:
                 if isinstance(error.__cause__, NoSteadyStart):
-                    from ehlpetsc.run.failed_start import cures
+                    from ehlpetsc.run.checkpoint import cures
 
-                    advice = cures(self.case, self.operation.at(0.0))
+                    advice = cures(self.case, self.operation.at(0.0), self._film)
                     raise NotConverged(f"{error}{advice}") from error.__cause__
                 raise
         if isinstance(self.stepper.solver, NewtonSolver):
@@ -272,7 +274,7 @@ class Simulation:
             points = self.case.mesh.points_per_half_width // 2
             if not isinstance(failure.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
                 raise
-            from ehlpetsc.run.failed_start import coarser, guess_of
+            from ehlpetsc.run.checkpoint import coarser, guess_of
 
             try:
                 coarse = Simulation(coarser(self.case, points), self.comm, self._options)

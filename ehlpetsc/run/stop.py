@@ -8,7 +8,7 @@ import signal
 import threading
 import time as clock
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -42,7 +42,7 @@ class StopRequest:
             for name, handler in stop._before.items():
                 signal.signal(name, handler)
 
-    def _request(self, *_: Any) -> None:
+    def _request(self, *_: object) -> None:
         self.until = min(self.until, clock.monotonic())
 
     def __call__(self, comm: MPI.Comm) -> bool:

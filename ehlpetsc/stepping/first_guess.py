@@ -11,8 +11,8 @@ where nearly all nodes in contact yield, Newton's method alone does not find the
 
 import numpy as np
 
-from ehlpetsc.discretisation.deflection import fast_length
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.line.deflection import fast_length
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.physics.grid import Grid

@@ -1,11 +1,16 @@
-"""One time level of a run."""
+"""State of the contact at one time level, and the guess of the next one."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.discretisation.ehl_problem import Solution
+from ehlpetsc.base.compiled import compiled
+from ehlpetsc.discretisation.contact.node_state import PRESSURE_AFTER_REFILL
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
 from ehlpetsc.discretisation.unknowns import Unknowns
 
 
@@ -90,3 +95,72 @@ class State:
     def level(self) -> TimeLevel:
         """Time level for the predictor of later steps."""
         return TimeLevel(0.5 * sum(self.travelled), self.q, self.w)
+
+
+MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth solution may be in contact too
+LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that counts as much as one step of age
+
+
+@compiled
+def advected(rows: np.ndarray, nodes: float) -> np.ndarray:
+    """Rows along x advected by `nodes` nodes.
+
+    Cubic interpolation, limited to the range of the two neighbouring values: next to the pressure spikes of
+    asperities, two or three nodes wide, a cubic undershoots, and the resulting cavity costs Newton's method
+    iterations.
+    """
+    shift, last, moved = int(np.floor(nodes)), rows.shape[1] - 1, np.empty_like(rows)
+    t = 1.0 - (nodes - shift)
+    for row in range(len(rows)):
+        values = rows[row]
+        for i in range(len(values)):
+            k = i - shift - 1
+            a, b = values[min(max(k - 1, 0), last)], values[min(max(k, 0), last)]
+            c, d = values[min(max(k + 1, 0), last)], values[min(max(k + 2, 0), last)]
+            value = (
+                -t * (t - 1.0) * (t - 2.0) / 6.0 * a
+                + (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0 * b
+                - (t + 1.0) * t * (t - 2.0) / 2.0 * c
+                + (t + 1.0) * t * (t - 1.0) / 6.0 * d
+            )
+            moved[row, i] = min(max(value, min(b, c)), max(b, c))
+    return moved
+
+
+def neighbours(v: np.ndarray, nodes: float) -> tuple[np.ndarray, np.ndarray]:
+    """Values of the two nodes upstream of each point moved by `nodes` nodes."""
+    source = np.arange(v.shape[-1]) - int(np.floor(nodes))
+    return v.take(source, axis=-1, mode="clip"), v.take(source - 1, axis=-1, mode="clip")
+
+
+def whole_nodes(v: np.ndarray, nodes: float) -> np.ndarray:
+    """Values moved by the nearest whole number of nodes."""
+    return v.take(np.arange(v.shape[-1]) - int(np.rint(nodes)), axis=-1, mode="clip")
+
+
+def predict(
+    problem: EHLProblem, smooth: TimeLevel, levels: Sequence[TimeLevel], nodes: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Guess of q and w: the difference from the smooth solution, which roughness causes, advected.
+
+    The difference (of films the ratio, which keeps them positive) is advected with the entrainment speed from
+    one of the last three time levels, the one whose distance to the new level is nearest to a whole number of
+    nodes. Asperity pressures are two or three nodes wide, and interpolation between the nodes is the largest
+    error of a predictor: on the measured surfaces the last level alone costs 6.0 Newton iterations a step,
+    the best of three 4.6 (over a travel of 5 a). Extrapolation in time does not reduce this number.
+
+    `smooth`: steady solution of the start. `levels`: earlier time levels, latest first. `nodes`: distance of
+    each level to the new time, with the entrainment speed, in nodes.
+    """
+    best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
+    level, distance, model, rows = levels[best], nodes[best], problem.model, problem.grid.rows
+    q0, film = smooth.q, model.state(level.q, level.w).film
+    h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
+    q = q0 + advected(rows(level.q - q0), distance).ravel()
+    # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
+    smallest = np.minimum(*neighbours(rows(level.q), distance)).ravel()
+    in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the smooth solution
+    full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, smallest), in_cavity)
+    q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
+    interpolated = model.w_from_film(h0 * advected(rows(film / h0), distance).ravel())
+    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(rows(level.w), distance).ravel()))

@@ -33,6 +33,7 @@ from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start,
 
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
+RIGID_FILM = 1000.0  # a^2/R: below a thicker film the viscosity is that of the inlet, and softening it no cure
 LOAD_GROWTH = 1.2  # factor from one load to the next
 MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
@@ -141,7 +142,8 @@ class Continuation:
         return self._ramp(state, 0.0, lambda fraction: (1.0, fraction)) if rough else state
 
     def _softened(self, begin: Unknowns) -> tuple[Unknowns, float]:
-        fraction = 0.5 if self.inputs.fluid else 0.0  # without oil there is no viscosity to reduce
+        film = self.attempt.solver.problem.film_scale
+        fraction = 0.5 if self.inputs.fluid and film < RIGID_FILM else 0.0  # else no viscosity to reduce
         while fraction >= MIN_VISCOSITY_FRACTION:
             state = self._try(begin, fraction, 0.0)
             if state is not None:
@@ -172,7 +174,7 @@ def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
         change = {"exponent_factor": fraction}
         stress = list(SHEAR_LAWS[shear_law(fluid)].keys)[:1]
         change |= {key: getattr(fluid, key) / fraction**4 for key in stress}
-        from ehlpetsc.discretisation.oil import IsothermalOil
+        from ehlpetsc.discretisation.step_inputs import IsothermalOil
 
         oil = IsothermalOil(fluid.copy(update=change), oil.scales)
     return replace(inputs, oil=oil, phi=roughness * inputs.phi)

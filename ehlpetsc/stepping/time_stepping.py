@@ -1,6 +1,6 @@
 """Time stepping of a run: steady solution, time steps, retries.
 
-The initial guess of a step is that of :mod:`.predictor`. A step that does not converge is halved and counted;
+The initial guess of a step is that of :mod:`.state`. A step that does not converge is halved and counted;
 :func:`next_step` returns to the nominal step.
 """
 
@@ -18,8 +18,7 @@ from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.nonlinear import events
 from ehlpetsc.physics.operation import LEVEL_TOLERANCE
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
-from ehlpetsc.stepping.predictor import predict
-from ehlpetsc.stepping.state import State, TimeLevel
+from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 
 RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
@@ -56,6 +55,7 @@ class TimeStepping:
     computed by :meth:`start`.
 
     `ramp_time`: time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
+    `ramp_shown`: called with the share of it after each of its steps.
     """
 
     def __init__(
@@ -69,6 +69,7 @@ class TimeStepping:
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time, self._is_prepared = baseline, 0.0, False
+        self.ramp_shown: Callable[[float], object] | None = None
         time = scene.case.time
         self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
@@ -155,6 +156,8 @@ class TimeStepping:
         while state.time < -LEVEL_TOLERANCE * dt:
             state = self.advance(state, watch=watch)
             newton += state.newton
+            if self.ramp_shown:
+                self.ramp_shown(1.0 + state.time / self.ramp_time)
         begun: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
 

@@ -1,8 +1,7 @@
-"""Areal maps: matrices as text or ``.npy``, and the formats of the packages x3pio, sdfio and surfalize."""
+"""Areal maps as files: text, ``.npy``, formats of the packages x3pio, sdfio and surfalize; their gaps."""
 
 from __future__ import annotations
 
-import functools
 import warnings
 from collections.abc import Callable
 from os import PathLike
@@ -12,31 +11,21 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.gaps import filled
-from ehlpetsc.surfaces.outliers import no_data_value
-from ehlpetsc.surfaces.profile_files import MAX_ABSCISSA, TEXT, UNITS
-from ehlpetsc.surfaces.text_columns import text_columns, units_in
+from ehlpetsc.surfaces.outliers import SPIKE_WIDTH, map_spikes, without_no_data
+from ehlpetsc.surfaces.profile_files import (
+    KEYS_OF_TEXT,
+    MAX_ABSCISSA,
+    TEXT,
+    UNITS,
+    Layout,
+    by_package,
+    read_once,
+)
+from ehlpetsc.surfaces.text_files import text_columns, units_in
 
 MIN_POINTS = 4  # along either side
+MIN_PRESENT = 0.5  # of the heights of a map
 OF_PROFILES = {".smd"}  # besides text
-
-
-class MapLayout(NamedTuple):
-    """Layout of the file of a map; the keys of a profile file that apply to maps too.
-
-    `unit`: of the heights, a key of `UNITS`; default: m.
-    `spacing`, `spacing_across`: distance of the columns and of the rows [m], of a matrix; the second by
-        default as the first.
-    `decimal`, `header_lines`: see :class:`.profile_files.Layout`.
-    `fill_gaps`: width of the widest patch of missing heights that is filled [m].
-    """
-
-    unit: str | None = None
-    spacing: float | None = None
-    spacing_across: float | None = None
-    decimal: str | None = None
-    header_lines: int | None = None
-    fill_gaps: float | None = None
 
 
 class Map(NamedTuple):
@@ -53,7 +42,7 @@ class Map(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def is_map(path: str | PathLike, layout: MapLayout) -> bool:
+def is_map(path: str | PathLike, layout: Layout) -> bool:
     """Whether a file holds a map: by its suffix or, of text, a matrix, for which a spacing is stated."""
     path = Path(path)
     if path.suffix.lower() not in TEXT:
@@ -61,32 +50,20 @@ def is_map(path: str | PathLike, layout: MapLayout) -> bool:
     return layout.spacing is not None and path.is_file() and len(_columns_of(path, layout)[0]) >= MIN_POINTS
 
 
-def read_map(path: str | PathLike, layout: MapLayout | None = None) -> Map:
+@read_once
+def read_map(path: Path, layout: Layout) -> Map:
     """Map in a file, missing heights filled.
 
     Text: a matrix, one line a row along x, in the layouts of profile files. ``.npy``: a matrix. Other formats
     by the packages named in `READERS`, if they are installed.
     """
-    path = Path(path)
-    try:
-        if not path.is_file():
-            raise ProfileError(f"no such file: {path}")
-        state = path.stat()
-        return _read(path, layout or MapLayout(), state.st_mtime_ns, state.st_size)
-    except (OSError, ValueError) as error:  # ValueError: a name no file system takes
-        raise ProfileError(f"cannot be read: {error}") from None
-
-
-@functools.lru_cache(maxsize=4)  # one reading for check, summary and run
-def _read(path: Path, layout: MapLayout, _modified: int, _size: int) -> Map:
-    suffix = path.suffix.lower()
-    read = _matrix if suffix in TEXT or suffix == ".npy" else _instrument_file
-    found = checked(read(path, layout), layout)
+    is_matrix = path.suffix.lower() in TEXT | {".npy"}
+    found = checked((_matrix if is_matrix else _instrument_file)(path, layout), layout)
     found.z.flags.writeable = False
     return found
 
 
-def _matrix(path: Path, layout: MapLayout) -> Map:
+def _matrix(path: Path, layout: Layout) -> Map:
     if layout.spacing is None:
         raise ProfileError("a matrix of heights needs spacing = distance of its columns in m")
     if path.suffix.lower() == ".npy":
@@ -103,37 +80,18 @@ def _matrix(path: Path, layout: MapLayout) -> Map:
     return Map(UNITS[layout.unit or "m"] * z, layout.spacing, layout.spacing_across or layout.spacing)
 
 
-def _columns_of(path: Path, layout: MapLayout) -> tuple[np.ndarray, str]:
-    state = path.stat()
-    return _text(path, layout.decimal, layout.header_lines, state.st_mtime_ns, state.st_size)
+@read_once
+def _columns_of(path: Path, layout: Layout) -> tuple[np.ndarray, str]:
+    return text_columns(path, layout.decimal, layout.header_lines)
 
 
-@functools.lru_cache(maxsize=2)
-def _text(
-    path: Path, decimal: str | None, header_lines: int | None, _modified: int, _size: int
-) -> tuple[np.ndarray, str]:
-    return text_columns(path, decimal, header_lines)
-
-
-def _instrument_file(path: Path, layout: MapLayout) -> Map:
+def _instrument_file(path: Path, layout: Layout) -> Map:
     """Map in a file that includes its units and spacings."""
-    stated = [key for key in MapLayout._fields if key != "fill_gaps" and getattr(layout, key) is not None]
+    stated = [key for key in KEYS_OF_TEXT if getattr(layout, key) is not None]
     if stated:
         raise ProfileError(f"{stated[0]}: {path.suffix!r} includes it; leave it out")
     package, read = READERS.get(path.suffix.lower(), ("surfalize", _by_surfalize))
-    try:
-        return read(path)
-    except ModuleNotFoundError as error:
-        if error.name != package:
-            raise ProfileError(f"{package} cannot be loaded: {error}") from None
-        raise ProfileError(
-            f"format {path.suffix!r} needs the package {package} (pip install {package}); without it, "
-            "allowed: .npy or text, a matrix of heights in m, with spacing"
-        ) from None
-    except ProfileError:
-        raise
-    except Exception as error:  # various exceptions on a damaged file
-        raise ProfileError(f"{package} cannot read it: {str(error).partition(chr(10))[0]}") from None
+    return by_package(package, read, path, ".npy or text, a matrix of heights in m, with spacing")
 
 
 def _by_x3pio(path: Path) -> Map:
@@ -167,19 +125,15 @@ READERS: dict[str, tuple[str, Callable[[Path], Map]]] = {
 }  # all others: surfalize
 
 
-def checked(found: Map, layout: MapLayout) -> Map:
+def checked(found: Map, layout: Layout) -> Map:
     """Map without missing heights; ProfileError for a faulty one."""
-    z, dx, dy, notes = found
-    z = np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
+    _, dx, dy, notes = found
+    z, no_data = without_no_data(found.z, UNITS[layout.unit or "m"])
     if z.ndim != 2 or min(z.shape) < MIN_POINTS:
         shape = " x ".join(map(str, z.shape))
         raise ProfileError(f"{shape} heights; allowed: a matrix of {MIN_POINTS} x {MIN_POINTS} or more")
     if not (0 < dx < MAX_ABSCISSA and 0 < dy < MAX_ABSCISSA):
         raise ProfileError(f"spacings {dx:g} and {dy:g} m; allowed: above 0")
-    no_data = ""
-    while (value := no_data_value(_to_and_fro(z))) is not None:
-        no_data += f", {np.count_nonzero(z == value)} of them the value {value:.6g} m far from all others"
-        z[z == value] = np.nan
     wrong = np.abs(z) >= MAX_ABSCISSA
     if wrong.any():
         row, column = np.unravel_index(wrong.argmax(), z.shape)
@@ -187,14 +141,85 @@ def checked(found: Map, layout: MapLayout) -> Map:
             f"row {row + 1}, column {column + 1} is not a height below {MAX_ABSCISSA:g} m; allowed: finite "
             "heights, nan where they are missing"
         )
+    widest = layout.fill_gaps or 0.0
+    if layout.bridge_spikes and (is_spike := map_spikes(z)).any():
+        z[is_spike] = np.nan
+        widest = max(widest, (SPIKE_WIDTH + 1) * max(dx, dy))
+        notes += (f"spikes: {np.count_nonzero(is_spike)} points in all, bridged",)
     if np.isnan(z).any():
-        z, note = filled(z, dx, dy, layout.fill_gaps, no_data)
+        z, note = filled(z, dx, dy, widest, no_data)
         notes += (note,)
     return Map(z, dx, dy, notes)
 
 
-def _to_and_fro(z: np.ndarray) -> np.ndarray:
-    """Heights along a path of neighbours: every second row from its end."""
-    path = z.copy()
-    path[1::2] = z[1::2, ::-1]
-    return path.ravel()
+def filled(
+    z: np.ndarray, dx: float, dy: float, widest: float | None, source: str = ""
+) -> tuple[np.ndarray, str]:
+    """Map with missing heights filled by a membrane, the solution of Laplace's equation in each gap.
+
+    Rows and columns at the edges without any height are cut off.
+
+    `z`: m, nan where it is missing, shape (ny, nx).
+    `widest`: width of the widest gap that is filled [m]; None: none.
+    `source`: of messages, on the values that are none.
+
+    Returns the map and a note on it.
+    """
+    missing = np.isnan(z)
+    count = int(missing.sum())
+    if missing.all():
+        raise ProfileError("all heights are missing")
+    rows, columns = (np.flatnonzero(~missing.all(axis=axis)) for axis in (1, 0))
+    inside = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    z, missing = z[inside], missing[inside]
+    if missing.mean() > 1 - MIN_PRESENT:
+        raise ProfileError(
+            f"{count} heights missing{source}; allowed: no more than half of those between the first and "
+            "the last"
+        )
+    width = gap_width(missing, dx, dy)
+    if width > (widest or 0.0):
+        raise ProfileError(
+            f"{count} heights missing{source}, the widest gap {width:.3g} m; write fill_gaps = "
+            f"{width * 1.06:.2g} or more to have gaps of that width filled [m]"
+        )
+    note = (
+        f"{count} missing heights filled or, at the edges, cut off{source}; widest gap {1e6 * width:.3g} um"
+    )
+    return _with_membrane(z, missing, dx, dy) if missing.any() else z, note
+
+
+def gap_width(missing: np.ndarray, dx: float, dy: float) -> float:
+    """Width [m] of the widest gap: of the largest circle in it, between the points around it."""
+    from scipy.ndimage import distance_transform_edt
+
+    return 2.0 * float(distance_transform_edt(missing, sampling=(dy, dx)).max()) if missing.any() else 0.0
+
+
+def _with_membrane(z: np.ndarray, missing: np.ndarray, dx: float, dy: float) -> np.ndarray:
+    """Map with second differences of sum 0 at missing points; level across the edges of the map."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.linalg import spsolve
+
+    number = np.full(z.shape, -1)
+    number[missing] = np.arange(missing.sum())
+    rows, columns, values = [], [], []
+    right, diagonal = np.zeros(missing.sum()), np.zeros(missing.sum())
+    for axis, step in ((0, dy), (1, dx)):
+        weight = 1.0 / step**2
+        lower, upper = (np.take(number, range(k, z.shape[axis] - 1 + k), axis).ravel() for k in (0, 1))
+        z_lower, z_upper = (np.take(z, range(k, z.shape[axis] - 1 + k), axis).ravel() for k in (0, 1))
+        for own, other, height in ((lower, upper, z_upper), (upper, lower, z_lower)):
+            unknown, both = own >= 0, (own >= 0) & (other >= 0)
+            np.add.at(diagonal, own[unknown], weight)
+            rows.append(own[both])
+            columns.append(other[both])
+            values.append(np.full(both.sum(), -weight))
+            beside = unknown & (other < 0)
+            np.add.at(right, own[beside], weight * height[beside])
+    everyone = np.arange(len(right))
+    entries = np.concatenate([*values, diagonal])
+    places = np.concatenate([*rows, everyone]), np.concatenate([*columns, everyone])
+    whole = z.copy()
+    whole[missing] = spsolve(coo_matrix((entries, places)).tocsc(), right)
+    return whole

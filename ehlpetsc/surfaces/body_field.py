@@ -116,7 +116,7 @@ class BodyFields(NamedTuple):
 class MeshOnBodies:
     """Cells of the mesh in the abscissas of both bodies.
 
-    `offsets`: signed shift of the points of both bodies [m], see :meth:`.roughness.SurfacePositions.offsets`.
+    `offsets`: signed shift of the points of both bodies [m], see :class:`.moving_surface.SurfacePositions`.
     """
 
     def __init__(self, scales: Scales, offsets: Sequence[float] = (0.0, 0.0)) -> None:

@@ -1,11 +1,19 @@
-"""Motion of one surface through the domain: abscissas of its heights at points of the body."""
+"""Motion of surfaces through the domain: positions at time 0, abscissas of heights at points of the body."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.scales import Scales
+
+RAMP_LENGTH = 0.1  # half-widths at the beginning of a profile over which its heights increase from zero
+WAVE_NODES = 4  # nodes per wavelength below which a wave is not resolved
 MAX_SAMPLES = 5_000_000  # of a stored profile
 
 
@@ -80,3 +88,55 @@ class MovingSurface:
         length = self._ends[1] - self._ends[0] if self._ends else self.travelled * (1 + 1e-12)
         X = np.arange(min(max(int(length / step) + 1, 2), MAX_SAMPLES)) * step
         return self._ends[0] + X if self._ends else np.sort(self._origin + self._sign * X)
+
+
+@dataclass(frozen=True)
+class SurfacePositions:
+    """Positions of both surfaces at time 0: abscissas at which their profiles begin to enter [m]."""
+
+    profile_offsets: tuple[float, float] = (0.0, 0.0)
+
+    def offsets(self, speeds: Sequence[float]) -> tuple[float, ...]:
+        """Signed shift of the body points by `profile_offsets` [m].
+
+        `speeds`: see :func:`directed_speeds`.
+        """
+        return tuple(
+            -begin if speed > 0.0 else begin
+            for begin, speed in zip(self.profile_offsets, speeds, strict=True)
+        )
+
+
+def directed_speeds(case: Case, scales: Scales) -> tuple[float, ...]:
+    """Speeds of both surfaces [m/s] at which their profiles enter; 0 if a surface reverses."""
+    speeds = scales.u1, scales.u2
+    if case.conditions is None:
+        return speeds
+    return tuple(
+        direction * max(abs(speed), 1e-3 * scales.u_max)
+        for direction, speed in zip(case.conditions.directions(), speeds, strict=True)
+    )
+
+
+def passage(case: Case, scales: Scales, speed: float, side: int, positions: SurfacePositions) -> Passage:
+    """Passage of surface `side`, 0 or 1, through the domain; `speed`: see :func:`directed_speeds`."""
+    inlet, outlet = scales.x[0] * scales.a, scales.x[-1] * scales.a
+    swept_length, table, reach = 0.0, case.conditions, None
+    if table is not None and table.varies:
+        reach = table.extent()[side]
+        swept_length = max(map(abs, reach))
+    elif case.time is not None:
+        swept_length = scales.duration * abs(speed)
+    starts_rough = case.time is not None and case.time.start == "rough"
+    return Passage(
+        speed,
+        case.time is not None,
+        inlet,
+        outlet,
+        RAMP_LENGTH * scales.a,
+        swept_length,
+        positions.profile_offsets[side],
+        reach,
+        table is not None and table.profile_offsets is not None,
+        ahead=outlet - inlet + RAMP_LENGTH * scales.a if starts_rough else 0.0,
+    )

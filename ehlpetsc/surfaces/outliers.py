@@ -41,6 +41,22 @@ def no_data_value(z: np.ndarray) -> float | None:
     return None
 
 
+def without_no_data(z: np.ndarray, unit: float) -> tuple[np.ndarray, str]:
+    """Heights [m], nan where they are missing or a no-data value, and words on these values for messages.
+
+    `z`: of a profile or a map, whose rows are read to and fro, so that neighbours stay neighbours.
+    `unit`: of the heights in the file [m].
+    """
+    z, words = np.array(np.ma.filled(np.ma.asarray(z, float), np.nan)), ""
+    while True:
+        path = np.atleast_2d(z).copy()
+        path[1::2] = path[1::2, ::-1]
+        if (value := no_data_value(path.ravel())) is None:
+            return z, words
+        words += f", {np.count_nonzero(z == value)} of them the value {value / unit:.6g} far from all others"
+        z[z == value] = np.nan
+
+
 def spikes(z: np.ndarray) -> np.ndarray:
     """Whether each height belongs to a spike of at most `SPIKE_WIDTH` points, of either sign.
 
@@ -65,6 +81,11 @@ def spikes(z: np.ndarray) -> np.ndarray:
         return np.zeros(z.size, bool)
     foot = deviation > SHOULDER_RATIO * threshold
     return binary_propagation(deviation > threshold, mask=foot) & present
+
+
+def map_spikes(z: np.ndarray) -> np.ndarray:
+    """Whether each height of a map belongs to a spike of its row and of its column, see :func:`spikes`."""
+    return np.array([spikes(row) for row in z]) & np.array([spikes(column) for column in z.T]).T
 
 
 def held(z: np.ndarray) -> np.ndarray:

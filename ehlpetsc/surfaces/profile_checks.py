@@ -6,14 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.surfaces.profile import WAVE_NODES
+from ehlpetsc.surfaces.moving_surface import WAVE_NODES
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
-    from ehlpetsc.surfaces.profile import Profile
-    from ehlpetsc.surfaces.roughness import Roughness
+    from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
     from ehlpetsc.surfaces.samples import Samples
     from ehlpetsc.surfaces.topography import Topography
 
@@ -52,9 +50,7 @@ def _um(length: float) -> str:
 MAX_UNRESOLVED = 0.01  # of the height variance: more in unresolved wavelengths causes a warning
 
 
-def mesh_warnings(
-    rough: Roughness | ArealRoughness | None, scales: Scales, limit: float = MAX_UNRESOLVED
-) -> list[str]:
+def mesh_warnings(rough: Roughness | None, scales: Scales, limit: float = MAX_UNRESOLVED) -> list[str]:
     """Messages on surfaces of which the mesh does not resolve more than a share of the height variance."""
     notes, spacings = [], scales.grid.spacings[::-1]
     shortest = " x ".join(f"{1e6 * WAVE_NODES * spacing:.2f}" for spacing in dict.fromkeys(spacings))
@@ -71,7 +67,7 @@ def mesh_warnings(
     return notes
 
 
-def _needed_points(profile: Profile | MovingTopography, scales: Scales, limit: float) -> int | list[int]:
+def _needed_points(profile: RoughSurface, scales: Scales, limit: float) -> int | list[int]:
     """Nodes per half-width that leave at most a share `limit` of the height variance unresolved.
 
     Two, along and across, where the spacings of a plane differ; both are then reduced by one factor.
@@ -87,7 +83,7 @@ def _needed_points(profile: Profile | MovingTopography, scales: Scales, limit: f
     return needed[0] if np.ptp(spacings) < 1e-9 * spacings[0] else needed
 
 
-def entry_times(profile: Profile | MovingTopography, scales: Scales) -> tuple[float, float] | None:
+def entry_times(profile: RoughSurface, scales: Scales) -> tuple[float, float] | None:
     """Travel of the faster surface [half-widths] when a profile reaches and fills the contact.
 
     Its first point is then at the near edge of the Hertz contact; its full heights, ramp included, at the far
@@ -104,7 +100,7 @@ def entry_times(profile: Profile | MovingTopography, scales: Scales) -> tuple[fl
     return edge * slower, (edge + 2.0 + profile.ramp / scales.a) * slower
 
 
-def entry_warnings(case: Case, scales: Scales, rough: Roughness | ArealRoughness | None) -> list[str]:
+def entry_warnings(case: Case, scales: Scales, rough: Roughness | None) -> list[str]:
     """Warnings of profiles that do not fill the contact before the end of the run, one line each."""
     notes = []
     for side, profile in (rough.sides if rough else {}).items():

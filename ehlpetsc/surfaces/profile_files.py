@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.outliers import groups, held, no_data_value, spikes
-from ehlpetsc.surfaces.softgauges import read_softgauge
-from ehlpetsc.surfaces.text_columns import text_columns, units_in
+from ehlpetsc.surfaces.outliers import groups, held, spikes, without_no_data
+from ehlpetsc.surfaces.text_files import read_softgauge, text_columns, units_in
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
@@ -26,20 +27,22 @@ UNITS |= {"inch": 0.0254, "microinch": 0.0254e-6, "mil": 0.0254e-3}
 
 @dataclass(frozen=True)
 class Layout:
-    """Layout of a profile file; missing entries are detected from the file.
+    """Layout of the file of a profile or map; missing entries are detected from the file.
 
     `unit`, `x_unit`: units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
-    `spacing`: spacing of the points [m], for files without x.
+    `spacing`, `spacing_across`: distance of the points [m] of files without x, of the columns and of the rows
+        of a matrix; the second by default as the first.
     `columns`: columns of x and z, or of z alone, from 1.
     `decimal`: "." or ",".
     `header_lines`: lines before the numbers.
-    `fill_gaps`: longest gap of missing heights [m] that the spline bridges.
+    `fill_gaps`: widest gap of missing heights that is filled [m].
     `bridge_spikes`: whether the spline bridges the spikes of optical instruments.
     """
 
     unit: str | None = None
     x_unit: str | None = None
     spacing: float | None = None
+    spacing_across: float | None = None
     columns: tuple | None = None
     decimal: str | None = None
     header_lines: int | None = None
@@ -51,38 +54,70 @@ KEYS = tuple(Layout.__dataclass_fields__)
 KEYS_OF_TEXT = KEYS[: KEYS.index("fill_gaps")]
 
 
-def read_profile(
-    path: str | PathLike, layout: Layout | None = None
-) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+R = TypeVar("R")
+
+
+def read_once(read: Callable[[Path, Layout], R]) -> Callable[..., R]:
+    """Reading of a file, remembered for check, summary and run; ProfileError where it cannot be read."""
+
+    @functools.lru_cache(maxsize=4)
+    def remembered(path: Path, layout: Layout, _modified: int, _size: int) -> R:
+        return read(path, layout)
+
+    @functools.wraps(read)
+    def reading(path: str | PathLike, layout: Layout = Layout()) -> R:
+        path = Path(path)
+        try:
+            if not path.is_file():
+                raise ProfileError(f"no such file: {path}")
+            state = path.stat()
+            return remembered(path, layout, state.st_mtime_ns, state.st_size)
+        except (OSError, ValueError) as error:  # ValueError: a name no file system takes
+            raise ProfileError(f"cannot be read: {error}") from None
+
+    return reading
+
+
+def by_package(package: str, read: Callable[[Path], R], path: Path, otherwise: str) -> R:
+    """Content of a file, read by a package that need not be installed; `otherwise`: what needs none."""
+    try:
+        return read(path)
+    except ModuleNotFoundError as error:
+        if error.name != package:
+            raise ProfileError(f"{package} cannot be loaded: {error}") from None
+        raise ProfileError(
+            f"format {path.suffix!r} needs the package {package} (pip install {package}); without it, "
+            f"allowed: {otherwise}"
+        ) from None
+    except ProfileError:
+        raise
+    except Exception as error:  # various exceptions on a damaged file
+        raise ProfileError(f"{package} cannot read it: {str(error).partition(chr(10))[0]}") from None
+
+
+@read_once
+def read_profile(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Abscissas, from 0 on, and heights of a profile file.
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
     header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. SMD, PRF and
-    ASCII SDF, see :mod:`.softgauges`. Any other format through the package SurfaceTopography if it is
+    ASCII SDF, see :mod:`.text_files`. Any other format through the package SurfaceTopography if it is
     installed.
 
     Returns X and z [m], X increasing, heights positive out of the metal, shape (n,), and notes on the
     processing of the numbers.
     """
-    path = Path(path)
-    try:
-        if not path.is_file():
-            raise ProfileError(f"no such file: {path}")
-        state = path.stat()
-        return _read(path, layout or Layout(), state.st_mtime_ns, state.st_size)
-    except (OSError, ValueError) as error:  # ValueError: a name no file system takes
-        raise ProfileError(f"cannot be read: {error}") from None
-
-
-@functools.lru_cache(maxsize=4)  # one reading for check, summary and run
-def _read(
-    path: Path, layout: Layout, _modified: int, _size: int
-) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     from_softgauge, text_keys = read_softgauge(path), [key for key in KEYS_OF_TEXT if getattr(layout, key)]
     is_text = from_softgauge is None and path.suffix.lower() in TEXT
     if text_keys and not is_text:
         raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
-    read = from_softgauge or (_from_text(path, layout) if is_text else _from_surface_topography(path))
+    read = from_softgauge or (
+        _from_text(path, layout)
+        if is_text
+        else by_package(
+            "SurfaceTopography", _from_surface_topography, path, ".csv or two-column text, x and z in m"
+        )
+    )
     x, z, notes = checked(*read, layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, notes
@@ -142,32 +177,20 @@ def _check_matrix(columns: np.ndarray, chosen: tuple[int, ...]) -> None:
 
 
 def _from_surface_topography(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    try:
-        from SurfaceTopography import read_topography
-    except ModuleNotFoundError:
-        raise ProfileError(
-            f"format {path.suffix!r} needs the package SurfaceTopography (pip install SurfaceTopography); "
-            "without it, allowed: .csv or two-column text, x and z in m"
-        ) from None
-    try:
-        topography = read_topography(str(path)).to_unit("m")
-        if topography.dim == 1:
-            return topography.positions_and_heights()
-        x, _, z = topography.positions_and_heights()
-    except Exception as error:  # various exceptions on a damaged file
-        raise ProfileError(f"SurfaceTopography cannot read it: {str(error).partition(chr(10))[0]}") from None
+    from SurfaceTopography import read_topography
+
+    topography = read_topography(str(path)).to_unit("m")
+    if topography.dim == 1:
+        return topography.positions_and_heights()
+    x, _, z = topography.positions_and_heights()
     middle = z.shape[1] // 2  # of an areal map the central trace
     return x[:, middle], z[:, middle]
 
 
 def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Profile from x = 0 on with increasing x and filled gaps; ProfileError for a faulty one."""
-    x, z = np.array(x, float), np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
-    notes, no_data = [], ""
-    while (value := no_data_value(z)) is not None:
-        shown = f"{value / UNITS[layout.unit or 'm']:.6g}"
-        no_data += f", {np.count_nonzero(z == value)} of them the value {shown} far from all others"
-        z[z == value] = np.nan
+    x, notes = np.array(x, float), []
+    z, no_data = without_no_data(z, UNITS[layout.unit or "m"])
     bad = ~(np.abs(x) < MAX_ABSCISSA) | (np.abs(z) >= MAX_ABSCISSA)
     if bad.any():
         raise ProfileError(

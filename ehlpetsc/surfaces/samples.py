@@ -77,13 +77,9 @@ def samples(folder: Path, spec: Values) -> Samples:
     if spec.cutoff is not None:
         z = high_pass(X, z, spec.cutoff)
     if spec.short_cutoff is not None:
-        ra, z = mean_deviation(z), low_pass(X, z, spec.short_cutoff)
-        shown = [f"{1e6 * abs(spec.scale) * value:.4f} um" for value in (ra, mean_deviation(z))]
-        notes += (f"short_cutoff: Ra {shown[0]} before, {shown[1]} after",)
-    mean = float(z.mean())
-    if abs(mean) > MEAN_TOLERANCE * (z - mean).std():  # it would enter as a step and change the film
-        z = z - mean
-        notes += (f"mean height of {1e6 * mean:.4g} um subtracted",)
+        z, note = without_short_waves(z, low_pass(X, z, spec.short_cutoff), "Ra", spec)
+        notes += (note,)
+    z, notes = centred(z, notes)
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
     return Samples(X, z if spec.scale == 1.0 else spec.scale * z, True, True, notes)
@@ -95,6 +91,15 @@ def layout_of(spec: Values) -> Layout:
     return Layout(**values | {"columns": spec.columns and tuple(spec.columns)})
 
 
-def mean_deviation(z: np.ndarray) -> float:
-    """Ra: mean deviation of heights from their mean."""
-    return float(np.abs(z - z.mean()).mean())
+def without_short_waves(z: np.ndarray, mean: np.ndarray, name: str, spec: Values) -> tuple[np.ndarray, str]:
+    """Mean line or surface of heights, and a note on the mean deviation, `name`, of both."""
+    shown = (f"{1e6 * abs(spec.scale) * np.abs(part - part.mean()).mean():.4f} um" for part in (z, mean))
+    return mean, f"short_cutoff: {name} {next(shown)} before, {next(shown)} after"
+
+
+def centred(z: np.ndarray, notes: tuple[str, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Heights minus their mean, which would enter as a step and change the film, and notes with one on it."""
+    mean = float(z.mean())
+    if abs(mean) <= MEAN_TOLERANCE * (z - mean).std():
+        return z, notes
+    return z - mean, (*notes, f"mean height of {1e6 * mean:.4g} um subtracted")

@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ehlpetsc.surfaces.areal_parameters import ArealParameters, rms_gradient
 from ehlpetsc.surfaces.continued_spline import Continuation, ContinuedSpline
-from ehlpetsc.surfaces.profile import WAVE_NODES
+from ehlpetsc.surfaces.moving_surface import WAVE_NODES
+from ehlpetsc.surfaces.parameters import ArealParameters, rms_gradient
 
 RIDGE_ROWS = 4  # of a map of ridges, for its parameters
 BLOCK = 256  # columns whose splines across are in memory at a time
@@ -98,7 +98,7 @@ class Topography:
 
     @property
     def statistics(self) -> dict[str, float]:
-        """Sa and Sq [m], Ssk, see :class:`ehlpetsc.surfaces.areal_parameters.ArealParameters`."""
+        """Sa and Sq [m], Ssk, see :class:`ehlpetsc.surfaces.parameters.ArealParameters`."""
         z, sq = self._once - self._once.mean(), self.sq
         skewness = float(((z / sq) ** 3).mean()) if sq > 0 else 0.0
         return {"sa": float(np.abs(z).mean()), "sq": sq, "ssk": skewness}

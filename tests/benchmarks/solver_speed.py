@@ -35,7 +35,7 @@ from petsc4py import PETSc
 from scipy.linalg import lapack
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.nonlinear.jacobian import NearFieldMatrix
+from ehlpetsc.nonlinear.line.jacobian import NearFieldMatrix
 from ehlpetsc.run.simulation import Simulation
 
 FAST = 8.0  # nominal steps in one, on the way to where time is taken

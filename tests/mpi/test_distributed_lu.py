@@ -11,13 +11,12 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.nonlinear.jacobian import PIVOT_REGULARISATION
-from ehlpetsc.nonlinear.preconditioner.banded_jacobian import BandedJacobian
-from ehlpetsc.nonlinear.preconditioner.distributed_lu import DistributedLU, solve
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials
-from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.banded_jacobian import GROUP, BandedJacobian, exponentials
+from ehlpetsc.nonlinear.line.distributed_lu import DistributedLU, solve
+from ehlpetsc.nonlinear.line.jacobian import PIVOT_REGULARISATION
+from ehlpetsc.nonlinear.line.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 

@@ -48,6 +48,7 @@ SHORT = {
     "life": ("time.travel=0.6",),
     "mixed": QUICK,
     "moes": (),
+    "optical": ("mesh.points_per_half_width=16",),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
     "running_in": (*QUICK, "time.travel=1.2", "time.passes=2", "contact.yield_pressure=1.1e9"),

@@ -1,23 +1,26 @@
 """Areal maps as files: read, filled, levelled, filtered, turned, or refused with the key that settles it."""
 
 import sys
+from dataclasses import replace
 from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+from support import CASES
 
-from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.surfaces.areal_files import MapLayout, read_map
+from ehlpetsc.surfaces.areal_files import gap_width, read_map
 from ehlpetsc.surfaces.areal_samples import areal_samples, inscribed, turned
-from ehlpetsc.surfaces.filters import mean_surface, without_form
-from ehlpetsc.surfaces.gaps import gap_width
+from ehlpetsc.surfaces.filters import levelled, mean_surface, without_form
+from ehlpetsc.surfaces.profile_files import Layout
 
 DX, DY = 2e-6, 3e-6
 X, Y = DX * np.arange(60), DY * np.arange(40)
 Z = 1e-7 * np.cos(X / 9e-6) * np.sin(Y / 2e-5)[:, np.newaxis]
-SPACED = MapLayout(spacing=DX, spacing_across=DY)
+SPACED = Layout(spacing=DX, spacing_across=DY)
 
 
 def as_text(z, separator="\t"):
@@ -41,7 +44,7 @@ def write_sdf(path, z):
 
 
 FORMATS = {".npy": (write_npy, SPACED), ".txt": (write_text, SPACED)}
-FORMATS |= {".x3p": (write_x3p, MapLayout()), ".sdf": (write_sdf, MapLayout())}
+FORMATS |= {".x3p": (write_x3p, Layout()), ".sdf": (write_sdf, Layout())}
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
@@ -59,7 +62,7 @@ def test_missing_heights_are_filled_up_to_the_width_stated(tmp_path, suffix):
     holed = Z.copy()
     holed[10:13, 20:24] = holed[30, 5] = holed[-2:] = np.nan
     write(path, holed)
-    z, *_, notes = read_map(path, layout._replace(fill_gaps=8.1e-6))
+    z, *_, notes = read_map(path, replace(layout, fill_gaps=8.1e-6))
     assert z.shape == (38, 60)  # the last two rows are missing altogether
     np.testing.assert_allclose(z, Z[:-2], rtol=0, atol=0.03e-7)
     assert notes == ("133 missing heights filled or, at the edges, cut off; widest gap 8 um",)
@@ -107,12 +110,6 @@ def test_a_profile_in_the_format_of_maps_is_refused(tmp_path):
         read_map(tmp_path / "p.x3p")
 
 
-def test_a_matrix_needs_its_spacing(tmp_path):
-    np.save(tmp_path / "map.npy", Z)
-    with pytest.raises(ProfileError, match="^a matrix of heights needs spacing = "):
-        read_map(tmp_path / "map.npy")
-
-
 def test_a_spacing_beside_that_of_the_file_is_refused(tmp_path):
     (tmp_path / "map.x3p").touch()
     with pytest.raises(ProfileError, match=r"^spacing: '\.x3p' includes it; leave it out$"):
@@ -123,35 +120,32 @@ def test_units_named_in_a_header_are_asked_for(tmp_path):
     (tmp_path / "map.txt").write_text("height [um]\n" + as_text(1e6 * Z))
     with pytest.raises(ProfileError, match="^its header names um; write unit "):
         read_map(tmp_path / "map.txt", SPACED)
-    np.testing.assert_allclose(read_map(tmp_path / "map.txt", SPACED._replace(unit="um")).z, Z, atol=1e-15)
+    np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)
 
 
-def test_infinite_heights_are_refused_with_their_place(tmp_path):
-    z = Z.copy()
-    z[4, 6] = np.inf
+INFINITE, MOSTLY_MISSING = Z.copy(), np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
+INFINITE[4, 6] = np.inf
+SMALL = "^[0-9 x]* heights; allowed: a matrix of 4 x 4 or more$"
+REFUSED = {
+    "without spacing": (Z, Layout(), "^a matrix of heights needs spacing = "),
+    "infinite": (INFINITE, SPACED, "^row 5, column 7 is not a height below "),
+    "three rows": (Z[:3], SPACED, SMALL),
+    "one dimension": (Z[0], SPACED, SMALL),
+    "three dimensions": (Z[np.newaxis], SPACED, SMALL),
+    "words": (np.full((5, 5), "a"), SPACED, "^numbers of type <U1; allowed: "),
+    "mostly missing": (
+        MOSTLY_MISSING,
+        replace(SPACED, fill_gaps=1.0),
+        "missing; allowed: no more than half ",
+    ),
+}
+
+
+@pytest.mark.parametrize(("z", "layout", "message"), REFUSED.values(), ids=REFUSED)
+def test_a_faulty_matrix_is_refused(tmp_path, z, layout, message):
     np.save(tmp_path / "map.npy", z)
-    with pytest.raises(ProfileError, match="^row 5, column 7 is not a height below "):
-        read_map(tmp_path / "map.npy", SPACED)
-
-
-@pytest.mark.parametrize("z", [Z[:3], Z[0], Z[np.newaxis]])
-def test_a_map_of_few_rows_or_more_than_two_dimensions_is_refused(tmp_path, z):
-    np.save(tmp_path / "map.npy", z)
-    with pytest.raises(ProfileError, match="^[0-9 x]* heights; allowed: a matrix of 4 x 4 or more$"):
-        read_map(tmp_path / "map.npy", SPACED)
-
-
-def test_a_matrix_of_words_is_refused(tmp_path):
-    np.save(tmp_path / "map.npy", np.full((5, 5), "a"))
-    with pytest.raises(ProfileError, match="^numbers of type <U1; allowed: "):
-        read_map(tmp_path / "map.npy", SPACED)
-
-
-def test_a_map_mostly_missing_is_refused(tmp_path):
-    z = np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
-    np.save(tmp_path / "map.npy", z)
-    with pytest.raises(ProfileError, match="missing; allowed: no more than half "):
-        read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=1.0))
+    with pytest.raises(ProfileError, match=message):
+        read_map(tmp_path / "map.npy", layout)
 
 
 def test_the_width_of_a_gap_is_that_of_its_widest_circle():
@@ -164,11 +158,9 @@ def test_a_value_far_from_all_others_is_no_height(tmp_path):
     z = Z + 1e-9 * np.random.default_rng(2).standard_normal(Z.shape)
     z[10:13, 20:24] = z[30, 5] = 9.999e-3
     np.save(tmp_path / "map.npy", z)
-    with pytest.raises(
-        ProfileError, match=r"^13 heights missing, 13 of them the value 0\.009999 m far from "
-    ):
+    with pytest.raises(ProfileError, match=r"^13 heights missing, 13 of them the value 0\.009999 far from "):
         read_map(tmp_path / "map.npy", SPACED)
-    found = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=9e-6))
+    found = read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=9e-6))
     np.testing.assert_allclose(found.z, Z, rtol=0, atol=0.05e-7)
 
 
@@ -178,10 +170,23 @@ def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
     np.testing.assert_array_equal(read_map(tmp_path / "map.npy", SPACED).z, tilted)
 
 
-def test_spikes_of_a_map_are_not_bridged(tmp_path):
-    np.save(tmp_path / "map.npy", Z)
-    with pytest.raises(ProfileError, match="^bridge_spikes: of a profile, not of a map; leave it out$"):
-        areal_samples(tmp_path, spec(tmp_path / "map.npy", spacing=DX, bridge_spikes=True), 1e-4, False)
+def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
+    z = mean_surface(
+        DX * np.arange(150),
+        DX * np.arange(120),
+        np.random.default_rng(2).standard_normal((120, 150)),
+        9 * DX,
+        "short_cutoff",
+    )
+    z = 1e-7 * (z / z.std() + 0.01 * np.random.default_rng(3).standard_normal(z.shape))
+    z[40] += 2e-6  # a scratch along a row
+    spoilt = z.copy()
+    spoilt[70:73, 20:23] += 3e-6
+    spoilt[100, 140] -= 3e-6
+    np.save(tmp_path / "map.npy", spoilt)
+    found = read_map(tmp_path / "map.npy", replace(SPACED, bridge_spikes=True))
+    assert found.notes[0] == "spikes: 10 points in all, bridged"
+    np.testing.assert_allclose(found.z, z, rtol=0, atol=2e-7)
 
 
 def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):
@@ -189,7 +194,7 @@ def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):
     holed = plane.copy()
     holed[10:20, 20:40] = np.nan
     np.save(tmp_path / "map.npy", holed)
-    z = read_map(tmp_path / "map.npy", SPACED._replace(fill_gaps=1e-3)).z
+    z = read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=1e-3)).z
     np.testing.assert_allclose(z, plane, rtol=0, atol=1e-16)
 
 
@@ -205,8 +210,6 @@ def test_form_of_its_degree_is_subtracted_exactly(degree):
 
 
 def test_a_line_is_the_form_of_degree_one_of_a_profile():
-    from ehlpetsc.surfaces.filters import levelled
-
     z = Z[7] + 3e-3 * X
     np.testing.assert_allclose(without_form([X], z, 1), levelled(X, z), atol=1e-19)
 
@@ -336,10 +339,5 @@ REFUSED_MATRICES = {
 
 @pytest.mark.parametrize(("keys", "message"), REFUSED_MATRICES.values(), ids=REFUSED_MATRICES)
 def test_a_faulty_matrix_in_the_case_is_refused(keys, message):
-    from support import CASES
-
-    from ehlpetsc.base.errors import CaseError
-    from ehlpetsc.case.loading import load
-
     with pytest.raises(CaseError, match=message):
         load(CASES / "table1_smooth.toml", {"surface.2": {"spacing": 1e-6} | keys})

@@ -5,7 +5,7 @@ import pytest
 from support import refused
 
 from ehlpetsc.pictures.surface import main
-from ehlpetsc.surfaces.areal_parameters import ArealParameters, autocorrelation, correlation_lengths
+from ehlpetsc.surfaces.parameters import ArealParameters, autocorrelation, correlation_lengths
 
 AMPLITUDE, WAVE = 1e-7, 40e-6
 STEP = WAVE / 32

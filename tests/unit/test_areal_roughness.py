@@ -9,12 +9,11 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.areal_roughness import ArealRoughness, MovingTopography
 from ehlpetsc.surfaces.areal_samples import areal_samples
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import Passage
 from ehlpetsc.surfaces.profile_checks import absurd
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.roughness import MovingTopography, Roughness
 from ehlpetsc.surfaces.topography import Topography
 
 A = 100e-6  # half-width, m
@@ -40,7 +39,7 @@ def random_map(shape=(41, 61), step=5e-6, **options):
 
 def gap(topography, passage=AT_REST, travelled=0.0, y=Y_NODES):
     surface = MovingTopography(topography, passage, y, DY)
-    return ArealRoughness(surface, None).phi_after(X_NODES, (travelled, 0.0), DX).reshape(len(y), -1)
+    return Roughness(surface, None).phi_after(X_NODES, (travelled, 0.0), DX).reshape(len(y), -1)
 
 
 def wave_means(k, centres, cell):
@@ -72,12 +71,13 @@ def test_a_profile_is_a_ridge_as_in_a_line_contact():
     loaded = case.load(CASES / "table1_rough.toml")
     scales = Scales.of(loaded)
     line = Roughness.of(loaded, scales)
-    areal = ArealRoughness.of(loaded, scales, Y_NODES, DY, WIDTH, True)
+    strip = case.load(CASES / "table1_rough.toml", ["mesh.width=0.2"])
+    areal = Roughness.of(strip, Scales.of(strip))
     assert areal.rq == pytest.approx(line.rq, rel=1e-12)
     x = scales.x * scales.a
     for time in (0.0, 1e-4, 3e-4):
         travelled = scales.u1 * time, scales.u2 * time
-        rows = areal.phi_after(x, travelled, scales.dx).reshape(len(Y_NODES), -1)
+        rows = areal.phi_after(x, travelled, scales.dx).reshape(-1, len(x))
         alone = line.phi_after(x, travelled, scales.dx)
         np.testing.assert_allclose(rows, np.broadcast_to(alone, rows.shape), rtol=0, atol=1e-21)
 

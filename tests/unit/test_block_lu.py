@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.nonlinear.preconditioner.banded_jacobian import FILMS
-from ehlpetsc.nonlinear.preconditioner.block_lu import (
+from ehlpetsc.nonlinear.line.banded_jacobian import FILMS, GROUP, TERMS
+from ehlpetsc.nonlinear.line.block_lu import (
     FROM_LEFT,
     FROM_RIGHT,
     LEFT,
@@ -16,7 +16,6 @@ from ehlpetsc.nonlinear.preconditioner.block_lu import (
     backward_transposed,
     forward,
 )
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, TERMS
 
 
 def by_columns(rows):

@@ -5,9 +5,8 @@ import pytest
 from support import CASES
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.effects.depths import PlasticDeformation, PlasticRecord, Wear, WearRecord
 from ehlpetsc.effects.effect import Scene, Step
-from ehlpetsc.effects.plastic_deformation import PlasticDeformation, PlasticRecord
-from ehlpetsc.effects.wear import Wear, WearRecord
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields

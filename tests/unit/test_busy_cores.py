@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from ehlpetsc.run.outputs import busy_cores
-from ehlpetsc.run.outputs.busy_cores import STEPS, BusyCores
+from ehlpetsc.run import solve as busy_cores
+from ehlpetsc.run.solve import STEPS, BusyCores
 
 
 @pytest.mark.parametrize("share, ranks, words", [(0.25, 2, "3.0 times"), (0.9, 2, ""), (0.25, 1, "")])

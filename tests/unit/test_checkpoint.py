@@ -10,11 +10,10 @@ import pytest
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
+from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import flat
-from ehlpetsc.effects.plastic_deformation import PlasticRecord
-from ehlpetsc.effects.wear import WearRecord
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.outputs import checkpoint
+from ehlpetsc.run import checkpoint
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.curvature_product import Blocks, pack, unpack
-from ehlpetsc.discretisation.deflection import Deflection, PressureSums, curvature_kernel
-from ehlpetsc.discretisation.line_problem import line_problem
+from ehlpetsc.discretisation.line.curvature_product import Blocks, pack, unpack
+from ehlpetsc.discretisation.line.deflection import Deflection, PressureSums, curvature_kernel
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of
-from ehlpetsc.nonlinear.preconditioner.exponential_kernel import GROUP, exponentials, grouped_kernel
+from ehlpetsc.nonlinear.line.banded_jacobian import GROUP, exponentials, grouped_kernel
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 

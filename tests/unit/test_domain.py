@@ -11,10 +11,11 @@ from ehlpetsc.physics.film_formulas import (
     film_left_by_inlet,
     inlet_opening,
     points_for_opening,
+    rolling_left_by_inlet,
 )
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.validity import domain_faults, domain_warnings
+from ehlpetsc.run.validity import domain_faults, domain_warnings, warnings
 from ehlpetsc.stepping.convergence_check import check_ends
 
 SMOOTH = CASES / "table1_smooth.toml"
@@ -44,6 +45,22 @@ def test_film_of_a_near_inlet_equals_the_solver_result(inlet):
     expected = film_left_by_inlet(expected_film(case, Scales.of(case)), -inlet)
     found = film(mesh__inlet=inlet) / film(mesh__inlet=-4.0)
     assert expected == pytest.approx(found, abs=0.08)
+
+
+def test_rolling_friction_before_the_mesh_is_that_of_a_farther_inlet():
+    """Of a light Newtonian contact: an inlet of 3 a and one of 16 a, and the warning of the near one."""
+    light = {"contact.load": 60e3, "motion.slide_roll_ratio": 0.0}
+    light |= {"fluid.eyring_stress": None, "mesh.outlet": 2.0, "mesh.points_per_half_width": 40}
+    near, far = (load(SMOOTH, light | {"mesh.inlet": -inlet}) for inlet in (3.0, 16.0))
+    film = expected_film(near, Scales.of(near))
+    expected = rolling_left_by_inlet(film, 3.0) / rolling_left_by_inlet(film, 16.0)
+    friction = [ehlpetsc.solve(case).steps.friction[0] for case in (near, far)]
+    assert (
+        0.8 < (1.0 - friction[0] / friction[1]) / (1.0 - expected) < 1.0
+    )  # pressure thickens the oil near by
+    (line,) = (line for line in warnings(near, Scales.of(near)) if "rolling" in line)
+    assert line.startswith("mesh.inlet = -3: up to 44 % of the rolling friction ")
+    assert not any("rolling" in line for line in warnings(far, Scales.of(far)))
 
 
 def test_near_inlet_warning_gives_film_and_sufficient_inlet():

@@ -129,7 +129,7 @@ import ehlpetsc, my_supply
 case = ehlpetsc.load({BALL} | {{"starving": {{"loss": 0.5}}}}, effects=my_supply.EFFECTS)
 simulation = ehlpetsc.Simulation(case)
 state = list(simulation)[-1]
-oil = simulation.scales.grid.rows(state.film_thickness * (1.0 - state.void_fraction))[:, 0]
+oil = (state.film_thickness * (1.0 - state.void_fraction))[:, 0]
 print(state.supply / 0.15e-6, abs(oil / state.supply - 1.0).max())
 """
 

@@ -13,8 +13,8 @@ from scipy.integrate import quad
 from scipy.linalg import toeplitz
 from support import ROOT
 
-from ehlpetsc.discretisation.curvature_product import TOLERANCE, Blocks, exponentials, product
-from ehlpetsc.discretisation.deflection import SymmetricToeplitz, curvature_kernel, fast_length
+from ehlpetsc.discretisation.line.curvature_product import TOLERANCE, Blocks, exponentials, product
+from ehlpetsc.discretisation.line.deflection import SymmetricToeplitz, curvature_kernel, fast_length
 
 
 def test_fast_length_is_that_of_scipy():
@@ -59,8 +59,8 @@ def test_exponentials_are_a_quadrature_of_the_laplace_transform():
 CPU_FLAG_OF_KERNELS = {"Prescott": "sse3", "Haswell": "avx2", "SkylakeX": "avx512f"}
 TERMS = """
 import json
-from ehlpetsc.discretisation.curvature_product import exponentials
-from ehlpetsc.discretisation.deflection import curvature_kernel
+from ehlpetsc.discretisation.line.curvature_product import exponentials
+from ehlpetsc.discretisation.line.deflection import curvature_kernel
 terms = [exponentials(curvature_kernel(n), nearest) for n, nearest in ((50, 33), (12801, 9), (12801, 33))]
 print(json.dumps([[rates.tolist(), weights.tolist()] for rates, weights in terms]))
 """

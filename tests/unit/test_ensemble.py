@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from support.made_results import change_case, make_result, with_solids
 
-from ehlpetsc.analysis import ensemble
-from ehlpetsc.analysis.ensemble import run_scalars
+from ehlpetsc.analysis.summary import ensemble_table, ensembles, run_scalars
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
@@ -35,7 +34,7 @@ def opened(paths):
 
 
 def test_members_that_differ_in_seeds_form_one_ensemble(tmp_path):
-    found = ensemble.ensembles(opened(made(tmp_path, (5.0, 1.0))))
+    found = ensembles(opened(made(tmp_path, (5.0, 1.0))))
     assert list(found) == ["entrainment_speed = 5", "entrainment_speed = 1"]
     assert all(values.shape == (6,) for one in found.values() for values in one.values())
 
@@ -91,5 +90,5 @@ def test_ensemble_has_damage_quantiles(tmp_path):
     )
     assert figures["flash_temperature_2 largest"] == pytest.approx(120.0)
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
-    rows = ensemble.table(opened([path]))
+    rows = ensemble_table(opened([path]))
     assert {unit for _, name, unit, *_ in rows if "flash" in name} == {"K"}

@@ -45,9 +45,8 @@ def test_default_friction_of_solids_is_named_where_they_slide():
 
 
 def test_source_of_a_named_oil_is_printed():
-    """Of T9 with a remark that no article was read for its constants."""
-    (line,) = starting(lines("traction.toml"), "Oil t9: ")
-    assert line.endswith("Tribol. Int. 66 (2013) 19; constants from memory")
+    (line,) = starting(lines("traction.toml"), "Oil fva3: ")
+    assert line.endswith("Wingertszahn et al., Lubricants 11 (2023) 369, table A1")
 
 
 def test_rough_start_is_named():

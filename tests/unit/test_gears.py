@@ -269,26 +269,26 @@ def rated(*keys):
 
 
 def test_standards_for_fzg_c_at_stage_9():
-    """302 N m, 2250 1/min, VG 100 at 90 degrees: each standard's number, at C if it varies."""
+    """302 N m, 2250 1/min, FVA 3 at 90 degrees: each standard's number, at C if it varies."""
     rating = rated()
     at, path, found = rating.path.index("C"), rating.path, values_of(rating)
     assert rating.roughness == pytest.approx(0.25e-6, rel=1e-6)
-    # 0.048 (637.7/(6.584 8.382))^0.2 11.2^-0.05 0.25^0.25
-    assert found["mean friction coefficient"] == pytest.approx(0.04907, rel=1e-3)
+    # 0.048 (637.7/(6.584 8.382))^0.2 12.85^-0.05 0.25^0.25
+    assert found["mean friction coefficient"] == pytest.approx(0.04873, rel=1e-3)
     assert values_of(rated("gears.oil_factor=0.65"))["mean friction coefficient"] == pytest.approx(
         0.65 * found["mean friction coefficient"], rel=1e-12
     )
     assert found["loss factor H_V"] == pytest.approx(0.1958, abs=5e-5)
-    assert found["power lost"] == pytest.approx(100 * 0.04907 * 0.1958, rel=1e-3)
-    # 1.6 8.382e-3 (15e-9 226.4e9)^0.6 (0.0112 3.292/1.8976e9)^0.7 (637.7e3/1.8976e9)^-0.13 m
-    assert found["mean film"][at] == pytest.approx(0.158, abs=0.001)
+    assert found["power lost"] == pytest.approx(100 * 0.04873 * 0.1958, rel=1e-3)
+    # 1.6 8.382e-3 (16.76e-9 226.4e9)^0.6 (0.01285 3.292/1.8976e9)^0.7 (637.7e3/1.8976e9)^-0.13 m
+    assert found["mean film"][at] == pytest.approx(0.1863, abs=0.001)
     assert found["minimum lambda_GF"][at] == pytest.approx(found["mean film"][at] / 0.25, rel=1e-9)
     assert found["maximum flash temperature"][at] == pytest.approx(0.0, abs=0.1)
-    # at E: 1.11 0.04907 w 3.783/(13028 (5.562^0.5 + 1.778^0.5) (2a)^0.5)
+    # at E: 1.11 0.04873 w 3.783/(13028 (5.562^0.5 + 1.778^0.5) (2a)^0.5)
     load, a = path.load[-1], hertz(path, rating.modulus)[0][-1]
-    by_hand = 1.11 * 0.04907 * load * 3.783 / (13027.6 * (5.562**0.5 + 1.778**0.5) * (2 * a) ** 0.5)
+    by_hand = 1.11 * 0.04873 * load * 3.783 / (13027.6 * (5.562**0.5 + 1.778**0.5) * (2 * a) ** 0.5)
     assert found["maximum flash temperature"][-1] == pytest.approx(by_hand, rel=1e-3)
-    rise = found["bulk temperature"] - 363.0
+    rise = found["bulk temperature"] - 363.15
     flash = found["maximum flash temperature"]
     assert rise == pytest.approx(
         0.47 * np.interp(np.linspace(*path.rho[[0, -1]], 4001), path.rho, flash).mean(), rel=1e-3
@@ -297,10 +297,10 @@ def test_standards_for_fzg_c_at_stage_9():
 
 def test_bulk_temperature_of_smooth_flanks_takes_the_losses_of_the_oil_film():
     """ISO/TR 14179-2 has no friction where Ra is 0; the film's is Eyring's at the mean Hertz pressure."""
-    keys = ("heat.bulk_temperature=losses", "heat.reference_temperature=363.0", "surface={}")
-    case = load(CASES / "fzg.toml", list(keys))
+    keys = ("heat.bulk_temperature=losses", "heat.reference_temperature=363.15", "surface={}")
+    case = load(CASES / "fzg.toml", [*keys, "fluid.eyring_stress=5e6", "fluid.limiting_shear=0.5"])
     rating, path = rating_of(case, CASES), path_of_contact(case.gears.pair)
-    assert rating.roughness == 0.0 and 370.0 < rating.bulk < 382.6  # of Ra 0.25 um
+    assert rating.roughness == 0.0 and 370.0 < rating.bulk  # of Ra 0.25 um
     at, fluid, modulus = len(path.rho) // 4, case.fluid, rating.modulus
     conditions = Conditions(path.load[at], path.radius[at], path.speed_1[at], path.speed_2[at])
     film = contact_films(GEOMETRIES["line"], modulus, math.inf, fluid, conditions)[0]
@@ -309,18 +309,18 @@ def test_bulk_temperature_of_smooth_flanks_takes_the_losses_of_the_oil_film():
     rate = abs(path.speed_1[at] - path.speed_2[at]) / film
     stress = fluid.eyring_stress * np.arcsinh(eta * rate / fluid.eyring_stress)
     assert rating.film_friction[at] == pytest.approx(stress / p, rel=1e-6)
-    rises = [loss(path, rating.film_friction), loss(path, 0.04907)]  # in proportion to those of Ra 0.25 um
-    assert rating.bulk - 363.0 == pytest.approx(19.6 * rises[0] / rises[1], rel=0.1)
+    rises = [loss(path, rating.film_friction), loss(path, 0.04873)]  # in proportion to those of Ra 0.25 um
+    assert rating.bulk - 363.15 == pytest.approx(19.6 * rises[0] / rises[1], rel=0.1)
 
 
 def test_bulk_temperature_of_the_losses():
-    keys = ("heat.bulk_temperature=losses", "heat.reference_temperature=363.0")
+    keys = ("heat.bulk_temperature=losses", "heat.reference_temperature=363.15")
     assert rated(*keys).bulk == pytest.approx(bulk_temperatures(rated())[0], abs=0.1)
     # 71.16 kW, 0.96 %, half of it from 2 pi d^2/4 + pi d b
     rating = rated(*keys, "gears.heat_transfer=500.0")
-    heat = 0.5 * 71157.0 * 0.04907 * gear_loss_factor(rating.path)
+    heat = 0.5 * 71157.0 * 0.04873 * gear_loss_factor(rating.path)
     rises = [heat / 500.0 / (math.pi * d * (d / 2 + 14e-3)) for d in (82.5e-3, 118.4e-3)]
-    assert rating.bulk == pytest.approx(363.0 + sum(rises) / 2, abs=0.1)
+    assert rating.bulk == pytest.approx(363.15 + sum(rises) / 2, abs=0.1)
     with pytest.raises(CaseError, match="temperature of the oil"):
         load(CASES / "fzg.toml", ["heat.bulk_temperature=losses"])
 
@@ -450,7 +450,7 @@ def test_runs_until_bulk_temperatures_are_those_of_the_losses(tmp_path, monkeypa
     assert main([str(CASES / "fzg.toml"), *words, "--run", "gear.h5"]) == 0
     *_, last, file = capsys.readouterr().out.splitlines()
     used, found = ([float(word) for word in re.findall(r"\d+\.\d", part)] for part in last.split(";"))
-    assert file == "gear.h5" and 368.0 < found[0] < 378.0
+    assert file == "gear.h5" and 368.0 < found[0] < 379.0
     assert abs(used[0] - found[0]) < 1.0
     write_damage(tmp_path / "gear.post.h5")
     assert main(["gear.h5", "gear.h5"]) == 0

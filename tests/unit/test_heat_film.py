@@ -9,9 +9,8 @@ from support.film_stress import film_stress
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
-from ehlpetsc.discretisation.oil import IsothermalOil
-from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.line.reynolds import Reynolds
+from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
 from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law
@@ -321,7 +320,7 @@ def carried(profile, nodes, way=1.0, moving=False):
     kept = 0.5 * stored * change
     for _ in range(steps):
         film = np.array((zero, 1e-6 * full, full, t, stored, change, kept))
-        a, b = explicit_transport(stored, flow, t, INLET)
+        a, b = explicit_transport(1, stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
         of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
         _, _, new = state = np.array((b / a, zero, b / a))

@@ -83,9 +83,9 @@ def test_unresolved_asperities_are_given_with_their_height_fraction():
 
 
 def test_a_flattened_layer_has_a_limit_line():
-    (line,) = limit_lines("stribeck", h_min=0.7e-9)
-    assert line.startswith("layer: flattened from 76.2 nm to a film of 0.7 nm")
-    assert limit_lines("stribeck", h_min=0.8e-9) == []
+    (line,) = limit_lines("stribeck", h_min=1.3e-9)
+    assert line.startswith("layer: flattened from 132 nm to a film of 1.3 nm")
+    assert limit_lines("stribeck", h_min=1.4e-9) == []
 
 
 HEAT = "heat.bulk_temperature=363.0"

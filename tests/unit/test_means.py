@@ -8,16 +8,17 @@ import pytest
 from support.made_results import A, make_result
 
 import ehlpetsc
-from ehlpetsc.analysis.ensemble import run_scalars
 from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.analysis.summary import run_scalars
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.friction_curves import time_statistics
 from ehlpetsc.results.means import both_fill, filled_from, means
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.running_in import pass_summary
+from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH
 from ehlpetsc.surfaces.profile_checks import entry_times
-from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness
+from ehlpetsc.surfaces.roughness import Roughness
 
 CONTACT = {"radius": 0.0191, "load": 527e3, "youngs_modulus": [207e9] * 2, "poisson_ratio": [0.3] * 2}
 CASE = {

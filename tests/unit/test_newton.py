@@ -9,7 +9,7 @@ from support.running import PYTHON, called
 
 import ehlpetsc
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.nonlinear.jacobian import JacobianOperator
+from ehlpetsc.nonlinear.line.jacobian import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
 TOUCHING = {"mesh.inlet": -1.2, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
@@ -85,7 +85,7 @@ def test_nan_in_a_linear_solve_halves_the_step(monkeypatch):
 
 FAULTY = """
 import ehlpetsc
-from ehlpetsc.nonlinear import gmres
+from ehlpetsc.nonlinear.line import gmres
 
 def faulty(*arguments):
     raise ERROR("of a callback")

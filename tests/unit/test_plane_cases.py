@@ -1,21 +1,23 @@
 """Cases of points and strips: units, refusals, explain, templates, limits."""
 
 import copy
+import re
 import tomllib
 
 import numpy as np
 import pytest
+from support import ROOT
 
 import ehlpetsc
 from ehlpetsc.base.errors import CaseError, UsageError
 from ehlpetsc.case.keys import keys, template
-from ehlpetsc.case.loading import load
+from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.run.forecast import file_size, work_time
 from ehlpetsc.run.validity import limits, warnings
-from ehlpetsc.surfaces import roughness_of
+from ehlpetsc.surfaces.roughness import Roughness
 
 POINT, STRIP = (tomllib.loads(template(kind)) for kind in ("point", "strip"))
 
@@ -48,19 +50,38 @@ def test_wrong_unit_of_the_load_is_one_sentence_in_a_line_contact(tmp_path):
     assert "contact.load" in fault(tomllib.loads(template("roller")), contact__load="20 N")
 
 
-@pytest.mark.parametrize(
-    "overrides, message",
-    [
-        ({"mesh__near_field": 5}, "mesh.near_field = 5: of line contacts, not of a point; leave it out"),
-        ({"gears": {"speed": 1}}, "contact.radius = [0.0095, 0.0095]: a point contact has no [gears]"),
-        ({"operation": {"repeat": 2}}, "a point contact has no [operation]"),
-        ({"life": {"passes": 10}}, "[life]: of line contacts, not of a point; leave it out"),
-        ({"mesh__width": 900}, "mesh: 97 x 21601 nodes; allowed: 200000 in all; a smaller mesh.width"),
-        ({"mesh__points_per_half_width": [24, 3]}, "mesh.points_per_half_width = [24, 3]: allowed:"),
-    ],
-)
-def test_what_a_point_does_not_have_is_refused(overrides, message):
-    assert message in fault(POINT, **overrides)
+WAVE = {"kind": "sine", "amplitude": 1e-8, "wavelength": 5e-5}
+MAP, PROFILE = {"z": np.eye(8) * 1e-9, "spacing": 1e-5}, {"z": [0.0, 1e-9] * 50, "spacing": 1e-5}
+REFUSED = {  # by the key of the table on the page of surfaces
+    "[gears]": (POINT, {"gears": {"speed": 1}}),
+    "[life]": (POINT, {"life": {"passes": 10}}),
+    "mesh.near_field": (POINT, {"mesh.near_field": 5}),
+    "contact.load": (STRIP, {"contact.load": "20 N"}),
+    "mesh": (POINT, {"mesh.width": 900}),
+    "wavelength_across": (STRIP, {"surface.1": {"synthetic": WAVE | {"wavelength_across": 7e-5}}}),
+    "direction": (POINT, {"surface.1": {"synthetic": WAVE, "direction": 30.0}}),
+    "spacing_across": (POINT, {"surface.1": PROFILE | {"spacing_across": 1e-5}}),
+    "position_across": (POINT, {"surface.1": MAP | {"position_across": 1e-3}}),
+    "x_unit": (POINT, {"surface.1": MAP | {"x_unit": "mm"}}),
+}
+
+
+def test_what_points_and_strips_refuse_is_on_its_page():
+    """Every key of the table is refused by a message that has the key and the words of the table."""
+    page = (ROOT / "cases" / "surfaces.md").read_text().partition("What points and strips refuse")[2]
+    rows = re.findall(r"^\| (`.+`) \| (.+) \|$", page.partition("##")[0], re.MULTILINE)
+    words = {key: message for keys, message in rows for key in re.findall("`(.+?)`", keys)}
+    assert words.pop("-ehl_scheme sweep")  # below
+    assert words.keys() == REFUSED.keys()
+    for key, (tables, overrides) in REFUSED.items():
+        text = fault(tables, **overrides)
+        assert key in text and re.search("`(.+?)`", words[key])[1] in text
+
+
+def test_rows_across_are_at_least_four_a_half_width():
+    assert "mesh.points_per_half_width = [24, 3]: allowed:" in fault(
+        POINT, mesh__points_per_half_width=[24, 3]
+    )
 
 
 def test_xdmf_is_not_of_a_line_contact():
@@ -132,7 +153,7 @@ def test_limits_of_a_point():
     case = load(copy.deepcopy(POINT), {"motion.slide_roll_ratio": 1.0})
     scales = Scales.of(case)
     totals = {"p_max": 6e9, "h_min": 1e-8, "oil_pressure": 1e9, "mass_error": 0.2, "nodes_below_1nm": 3}
-    lines = limits(case, scales, roughness_of(case, scales), totals | {"friction_coefficient": 0.05})
+    lines = limits(case, scales, Roughness.of(case, scales), totals | {"friction_coefficient": 0.05})
     found = [line.partition(":")[0] for line in lines]
     assert found == ["pressure", "heat", "oil balance", "film"]
 
@@ -149,3 +170,15 @@ def test_forecast_grows_with_the_nodes_and_the_precision():
 def test_keys_state_the_unit_of_a_point():
     assert "of a point contact its load [N]" in keys("contact.load")
     assert "RESULT.xdmf" in keys("output")
+
+
+def test_heights_of_a_map_are_stored_as_their_digest():
+    z = 1e-7 * np.random.default_rng(1).standard_normal((60, 80))
+    maps = [{"z": heights, "spacing": 5e-6, "short_cutoff": 3e-5} for heights in (z, z, 2 * z)]
+    one, same, other = (load(copy.deepcopy(POINT), {"surface.1": table}) for table in maps)
+    assert one.text == same.text != other.text and len(one.text) < 2000
+    assert stored_case(one.text).surface.body_1.short_cutoff == 3e-5
+    varied = {"series": {"key": "contact.load", "values": [10.0, 20.0]}}
+    assert [
+        len(member.surface.body_1.z) for _, member in members(load(POINT | varied, {"surface.1": maps[0]}))
+    ] == [60, 60]

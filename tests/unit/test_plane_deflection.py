@@ -5,10 +5,10 @@ import pytest
 from scipy.integrate import dblquad
 from support.convergence import observed_order
 
-from ehlpetsc.discretisation.deflection import deflection_kernel
-from ehlpetsc.discretisation.plane.deflection import Deflection
-from ehlpetsc.discretisation.plane.kernel import (
+from ehlpetsc.discretisation.line.deflection import deflection_kernel
+from ehlpetsc.discretisation.plane.deflection import (
     NEAR,
+    Deflection,
     cell_potential,
     differences_of_primitive,
     free_kernel,

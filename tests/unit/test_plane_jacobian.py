@@ -10,7 +10,7 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.plane.kernel import free_kernel
+from ehlpetsc.discretisation.plane.deflection import free_kernel
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.newton import NewtonSolver

@@ -19,7 +19,7 @@ from support.made_results import P0, A, make_plane, make_result
 
 from ehlpetsc import read_result
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures import fringes, plane, plane_over_time, plane_report, style
+from ehlpetsc.pictures import fringes, plane, report, style
 from ehlpetsc.pictures.profiles import draw_case
 
 OPTIONS = plot.arguments().parse_args(["x"])
@@ -137,20 +137,20 @@ def test_fringes_name_wavelengths_and_resolve_the_film(point):
 
 def test_contacts_are_shares_of_all_steps(point):
     with read_result(point) as r:
-        shown = plane_over_time.draw_contacts(r, OPTIONS).axes[0].images[0].get_array()
+        shown = plane.draw_contacts(r, OPTIONS).axes[0].images[0].get_array()
         assert shown.max() == 100.0 * r.contact_count.max() / 5 > 0.0
 
 
 def test_movie_has_every_frame_with_common_colours(point, monkeypatch):
     seen = []
 
-    class Writer(plane_over_time.PillowWriter):
+    class Writer(plane.PillowWriter):
         def grab_frame(self, **keys):
             images = [image for axes in self.fig.axes[:2] for image in axes.images]
             seen.append(([image.get_clim() for image in images], images[0].get_array().copy()))
             super().grab_frame(**keys)
 
-    monkeypatch.setattr(plane_over_time, "PillowWriter", Writer)
+    monkeypatch.setattr(plane, "PillowWriter", Writer)
     assert draw(point, "--movie") == 0
     with image.open(point.with_suffix(".gif")) as movie:
         assert movie.n_frames == 5
@@ -159,7 +159,7 @@ def test_movie_has_every_frame_with_common_colours(point, monkeypatch):
 
 
 def test_page_holds_maps_of_every_frame(point, monkeypatch):
-    monkeypatch.setattr(plane_report, "MAX_NODES", 21)
+    monkeypatch.setattr(report, "MAX_MAP_NODES", 21)
     assert draw(point, "--report") == 0
     text = point.with_suffix(".html").read_text(encoding="utf-8")
     maps = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])["maps"]
@@ -237,7 +237,7 @@ def test_lines_load_no_module_of_planes(tmp_path):
     words = [sys.executable, "-c", code, str(tmp_path / "line.h5")]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
     assert "ehlpetsc.pictures.frames" in loaded
-    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes|case_maps)", name)]
+    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes|areal_surface)", name)]
 
 
 def test_text_of_a_narrow_picture_fits(point, tmp_path):

@@ -11,7 +11,7 @@ import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
 from ehlpetsc.case.keys import template
-from ehlpetsc.run.outputs.recorder import Recorder
+from ehlpetsc.run.recorder import Recorder
 
 BALL = {
     "title": "ball",
@@ -180,7 +180,7 @@ def test_running_point_can_be_read(tmp_path):
         recorder.checkpoint()  # which flushes the result
         with ehlpetsc.read_result(tmp_path / "a.h5") as result:
             assert result.attrs["status"] == "running"
-            assert np.array_equal(result.pressure[-1].ravel(), simulation.state.pressure)
+            assert np.array_equal(result.pressure[-1], simulation.state.pressure)
         recorder.close(ExitStatus.STOPPED)
 
 

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line_problem import line_problem
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.stepping.predictor import advected, predict
-from ehlpetsc.stepping.state import TimeLevel
+from ehlpetsc.stepping.state import TimeLevel, advected, predict
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from ehlpetsc.base import progress_line
-from ehlpetsc.base.progress_line import ERASE, ProgressLine
+from ehlpetsc.base import command_line as progress_line
+from ehlpetsc.base.command_line import ERASE, ProgressLine
 
 
 class Terminal(io.StringIO):

@@ -168,7 +168,7 @@ def test_series_is_solved_member_by_member():
 
 def test_run_continues_from_a_restart_file(case, result, tmp_path):
     recorded = tmp_path / "run.h5"
-    from ehlpetsc.run.outputs.recorder import Recorder
+    from ehlpetsc.run.recorder import Recorder
 
     simulation = ehlpetsc.Simulation(case)
     with Recorder(simulation, recorded) as recorder:

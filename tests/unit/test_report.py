@@ -8,7 +8,7 @@ import pytest
 
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.results.means import Totals
-from ehlpetsc.run.outputs import progress as report
+from ehlpetsc.run import recorder as report
 
 SCALARS = dict(dt=1.5e-7, newton=4, contacts=2, h_min=0.1234e-6, p_max=1.25e9)
 
@@ -30,7 +30,8 @@ def clock(monkeypatch):
 
 def started(begin, end, stream):
     """Progress of a run from a time to its end [s]."""
-    return report.Progress(SimpleNamespace(solution=SimpleNamespace(time=begin), end=end), stream)
+    solution, stepper = SimpleNamespace(time=begin), SimpleNamespace()
+    return report.Progress(SimpleNamespace(solution=solution, stepper=stepper, end=end), stream)
 
 
 def show(progress, step, time):

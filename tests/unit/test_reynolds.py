@@ -9,9 +9,8 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.discretisation.finite_volumes import flux_through
-from ehlpetsc.discretisation.oil import IsothermalOil
-from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
-from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
+from ehlpetsc.discretisation.line.reynolds import NoOil, Reynolds
+from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"

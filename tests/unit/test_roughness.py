@@ -14,11 +14,10 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass
-from ehlpetsc.surfaces.moving_surface import Passage
-from ehlpetsc.surfaces.profile import Profile
+from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH, Passage, directed_speeds
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
-from ehlpetsc.surfaces.roughness import RAMP_LENGTH, Roughness, directed_speeds
+from ehlpetsc.surfaces.roughness import Profile, Roughness
 from ehlpetsc.surfaces.samples import Samples, samples
 
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"

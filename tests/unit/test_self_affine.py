@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.self_affine import Spectrum, heights
+from ehlpetsc.surfaces.synthetic import Spectrum, random_heights
 
 SPECTRUM = Spectrum(0.2e-6, 0.8, 80e-6, 8e-6)
 
 
 def mean_power(shape, spacing, spectrum, seeds=40):
-    surfaces = (heights(shape, spacing, spectrum, seed) for seed in range(seeds))
+    surfaces = (random_heights(shape, spacing, spectrum, seed) for seed in range(seeds))
     return np.mean([np.abs(np.fft.fftn(z)) ** 2 for z in surfaces], axis=0)
 
 
@@ -33,12 +33,12 @@ def test_spectrum_falls_with_its_hurst_exponent_between_roll_off_and_cutoff(shap
 @pytest.mark.parametrize("shape", [(1000,), (121, 130)])
 def test_heights_have_their_sq_exactly_and_depend_on_the_seed_alone(shape):
     spacing = (1e-6,) * len(shape)
-    z = heights(shape, spacing, SPECTRUM, 3)
+    z = random_heights(shape, spacing, SPECTRUM, 3)
     assert z.shape == shape
     assert np.sqrt(np.mean(z**2)) == pytest.approx(SPECTRUM.sq, rel=1e-12)
     assert abs(z.mean()) < 1e-12 * SPECTRUM.sq
-    np.testing.assert_array_equal(z, heights(shape, spacing, SPECTRUM, 3))
-    assert np.abs(z - heights(shape, spacing, SPECTRUM, 4)).max() > SPECTRUM.sq
+    np.testing.assert_array_equal(z, random_heights(shape, spacing, SPECTRUM, 3))
+    assert np.abs(z - random_heights(shape, spacing, SPECTRUM, 4)).max() > SPECTRUM.sq
 
 
 def test_peklenik_is_the_ratio_of_waves_along_x_to_those_along_y():
@@ -66,4 +66,4 @@ def test_a_stretched_surface_keeps_the_spectrum_along_x(peklenik):
 @pytest.mark.parametrize("spacing", [5e-6, 1e-8])
 def test_unresolved_short_cutoff_is_refused_with_its_limits(spacing):
     with pytest.raises(ProfileError, match="short_cutoff = 8e-06 m; allowed: at least two spacings, .* m$"):
-        heights((500,), (spacing,), SPECTRUM, 1)
+        random_heights((500,), (spacing,), SPECTRUM, 1)

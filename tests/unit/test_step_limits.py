@@ -15,7 +15,7 @@ from ehlpetsc.discretisation.contact.yielding import (
     limit_yield_switch,
 )
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
-from ehlpetsc.nonlinear.preconditioner.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.node_pairs import NodePairs
 from ehlpetsc.physics.asperities import LayerLaw
 
 

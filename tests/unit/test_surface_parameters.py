@@ -7,15 +7,14 @@ from scipy.special import ndtr, ndtri
 from support import CASES, refused
 
 from ehlpetsc.pictures.surface import main
-from ehlpetsc.surfaces.profile_parameters import (
+from ehlpetsc.surfaces.parameters import (
     ProfileParameters,
     binned,
     core_parameters,
     correlation_length,
     power_spectrum,
 )
-from ehlpetsc.surfaces.self_affine import Spectrum, heights
-from ehlpetsc.surfaces.synthetic import ground
+from ehlpetsc.surfaces.synthetic import Spectrum, ground, random_heights
 
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
 
@@ -81,7 +80,7 @@ def test_correlation_of_a_slope_has_no_length():
 
 
 def test_spectrum_integrates_to_rq_and_falls_as_it_was_made():
-    z = heights((16_000,), (1e-6,), Spectrum(0.2e-6, 0.8, 80e-6, 8e-6), 5)
+    z = random_heights((16_000,), (1e-6,), Spectrum(0.2e-6, 0.8, 80e-6, 8e-6), 5)
     q, density = power_spectrum(z, 1e-6)
     assert np.sqrt(density.sum() * q[0] / np.pi) == pytest.approx(0.2e-6, rel=0.05)
     mean_q, mean_density = binned(q, density)

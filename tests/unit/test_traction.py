@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line_problem import line_problem
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
+from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.friction_correlations import benedict_kelley, hoehn_michaelis, xu_kahraman
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.traction import shear_stresses
+from ehlpetsc.physics.traction import benedict_kelley, hoehn_michaelis, shear_stresses, xu_kahraman
 from ehlpetsc.stepping.observables import diagnostics, mean_film
 from ehlpetsc.stepping.state import State
 

@@ -9,7 +9,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.surfaces import roughness_of
+from ehlpetsc.surfaces.roughness import Roughness
 
 tamaas = pytest.importorskip("tamaas")
 
@@ -57,7 +57,7 @@ def by_tamaas(gap, radius):
 def test_pressures_of_a_rough_dry_strip():
     simulation = Simulation(load(CASE))
     state, s = simulation.advance(), simulation.scales
-    roughness = roughness_of(simulation.case, s)
+    roughness = Roughness.of(simulation.case, s)
     gap = roughness.phi_after(s.x * s.a, (0.0, 0.0), s.a / POINTS).reshape(s.grid.shape)
     expected, found = by_tamaas(gap, s.R), s.p0 * s.grid.rows(state.solution.p)
     assert state.in_contact.sum() == pytest.approx((expected > 0.0).sum(), rel=0.015)

@@ -10,8 +10,8 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
-from ehlpetsc.discretisation.oil import IsothermalOil
-from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.discretisation.line.reynolds import Reynolds
+from ehlpetsc.discretisation.step_inputs import IsothermalOil
 from ehlpetsc.effects.heat.step import HeatStep, Temperatures
 from ehlpetsc.effects.heat.transport import Film
 from ehlpetsc.physics.laws import viscosity

@@ -12,6 +12,7 @@ from ehlpetsc.api import solve
 from ehlpetsc.case.loading import load
 
 sys.path.append(str(CASES / "paper"))
+import cmod
 import dimple
 import discs
 import optical_films
@@ -27,6 +28,7 @@ FILMS = (  # nm, of FVA 3, computed on a/32
     *(60.0, 66.9, 75.6, 87.9, 99.5, 112.2, 127.7, 144.0, 164.0, 185.8, 211.5, 239.7, 271.0),
     *(305.9, 346.5, 392.4, 442.6, 500.9, 565.5, 638.4, 719.7, 810.8, 912.6, 1026.5, 1154.4, 1295.0),
 )
+CMOD_LAYER = 0.0640, 0.0585, 0.0513, 0.0474, 0.0389  # computed on a/20
 FIRST_OF_PAO = [4, 0]  # measured 0.0062
 
 
@@ -57,6 +59,16 @@ def test_friction_of_smooth_gears(tmp_path):
     solve(case, tmp_path / "cmod.h5", progress=False).close()
     figures = GearRun(tmp_path / "cmod.h5").figures()
     assert figures["mean friction coefficient"] == pytest.approx(CMOD_FRICTION, rel=0.03)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("point, friction", zip(cmod.MEASURED, CMOD_LAYER, strict=True))
+def test_friction_of_gears_with_all_roughness_in_the_layer(point, friction, tmp_path):
+    """C-mod on a/20: the published value, within 10 % of the measured one, 15 % at 20 m/s."""
+    found = cmod.found(point.rotation, 20, tmp_path)
+    assert found.friction == pytest.approx(friction, abs=6e-5)
+    assert found.friction == pytest.approx(point.friction, rel=0.15 if point.speed == 20.0 else 0.1)
+    assert found.solids < found.friction and found.share > point.share
 
 
 @pytest.mark.parametrize("number", [6, 13, 20])

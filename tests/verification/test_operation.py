@@ -14,7 +14,7 @@ from ehlpetsc.gears import path_of_contact
 from ehlpetsc.gears.command import main as gears
 from ehlpetsc.physics.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.outputs.recorder import Recorder
+from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.state import State
 

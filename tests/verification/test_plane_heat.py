@@ -40,20 +40,19 @@ def solved(case, **options):
     return simulation, list(simulation)
 
 
-def row(simulation, state, name):
+def row(state, name):
     """Middle row of a field."""
-    rows = simulation.scales.grid.rows(state.fields[name])
-    return rows[len(rows) // 2]
+    return state.fields[name][len(state.fields[name]) // 2]
 
 
 def test_a_strip_is_the_line_with_its_heat():
     mesh, more = {"points_per_half_width": 16}, {"fluid": OIL, "time": {"travel": 0.2}}
     _, line = solved(tables(0.0125, 1e5, 3.0, mesh, **more), **TIGHT)
-    simulation, strip = solved(tables(0.0125, 1e5, 3.0, mesh | {"width": 0.3}, **more), **TIGHT)
+    _, strip = solved(tables(0.0125, 1e5, 3.0, mesh | {"width": 0.3}, **more), **TIGHT)
     assert len(line) == len(strip) > 5
     for one, other in zip(line, strip, strict=True):
         for name in (*TEMPERATURES, "heat_flux_1", "film_thickness", "shear_stress_1"):
-            rows, alone = simulation.scales.grid.rows(other.fields[name]), one.fields[name]
+            rows, alone = other.fields[name], one.fields[name]
             np.testing.assert_allclose(rows - alone, 0.0, atol=1e-9 * np.ptp(alone))
         for name in ("heat", "friction", "film_temperature_max", "film_temperature_mean"):
             assert other.scalars[name] == pytest.approx(one.scalars[name], rel=1e-10)
@@ -68,8 +67,8 @@ def test_a_fast_dry_point_has_bloks_temperature_in_its_middle_row(radii):
     flash = blok_flash_temperature(
         FRICTION, 0.5 * np.pi * s.p0 * s.a, s.u1 - s.u2, s.u1, s.u2, s.a, (STEEL.effusivity,) * 2
     )
-    assert row(simulation, state, "temperature_1").max() - BULK == pytest.approx(flash, rel=0.005)
-    assert state.temperature_1_max == row(simulation, state, "temperature_1").max()
+    assert row(state, "temperature_1").max() - BULK == pytest.approx(flash, rel=0.005)
+    assert state.temperature_1_max == row(state, "temperature_1").max()
     assert state.heat == pytest.approx(FRICTION * 20.0 * (s.u1 - s.u2), rel=1e-6)
     assert state.heat_error < 1e-9
 
@@ -84,6 +83,17 @@ def test_a_long_ellipse_is_a_line_in_its_middle_row():
     )  # radius and load per length of the same a and p0
     _, [line] = solved(tables(*equal, 3.0, {"inlet": -2.5}, fluid=OIL))
     for name in TEMPERATURES:
-        found, alone = row(simulation, state, name), line.fields[name]
+        found, alone = row(state, name), line.fields[name]
         assert found.max() - BULK == pytest.approx(alone.max() - BULK, rel=0.025)
         np.testing.assert_allclose(found, alone, atol=0.05 * np.ptp(alone))
+
+
+def test_heat_of_the_pressure_flow_is_the_work_of_entrainment():
+    r"""Of an incompressible oil in pure rolling, :math:`\int M|\nabla p|^2=\int uh\,\partial_xp`."""
+    case = tables([0.0125, 0.0125], 20.0, 3.0, {"inlet": -3.0, "width": 5.0}, fluid=OIL)
+    case["fluid"] = OIL | {"density": "incompressible", "eyring_stress": None}
+    case["motion"] = {"entrainment_speed": 3.0, "slide_roll_ratio": 0.0}
+    simulation, [state] = solved(case)
+    s = simulation.scales
+    work = s.u * (state.film_thickness * np.gradient(state.pressure, s.a * s.grid.dx, axis=1)).sum()
+    assert simulation.solution.records["heat"].source.sum() == pytest.approx(work, rel=0.05)

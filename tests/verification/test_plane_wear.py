@@ -74,9 +74,13 @@ POINT = RIDGE | {
 }
 
 
-def test_volumes_of_a_point_are_integrals_over_its_area():
+@pytest.mark.parametrize(
+    "layer", [{"asperity_height": 20e-9}, {"boundary_film": 20e-9}], ids=["layer", "rigid"]
+)
+def test_volumes_of_a_point_are_integrals_over_its_area(layer):
     """Worn volume k times pressure times sliding; plastic deformation the sum of its steps."""
-    simulation, states = solved(POINT)
+    contact = {key: value for key, value in POINT["contact"].items() if key != "asperity_height"}
+    simulation, states = solved(POINT | {"contact": contact | layer})
     s, records = simulation.scales, simulation.solution.records
     cell = s.grid.spacings[0] * s.grid.spacings[1]
     work = sum((state.contact_pressure * (s.u1 - s.u2) * state.dt).sum() * cell for state in states[1:])
@@ -91,3 +95,26 @@ def test_volumes_of_a_point_are_integrals_over_its_area():
     assert rows.shape[0] == s.grid.shape[0]
     assert rows.max(axis=1).argmax() == s.grid.shape[0] // 2
     np.testing.assert_allclose(rows, rows[::-1], atol=1e-3 * rows.max())
+
+
+@pytest.mark.parametrize("share", [4.0, 8.0])
+def test_a_ball_far_beyond_yield_is_flattened_at_its_hardness(share):
+    r"""Uniform pressure H over a circle of :math:`\pi c^2H=F`, in which the plastic depth closes the gap.
+
+    In the middle :math:`c^2/(2R)-(2-4/\pi)Hc/E^*`, elastic deflection by Johnson (1985), eq. 3.29.
+    """
+    half, radius = 1.3 * np.sqrt(2.0 * share / 3.0), 1e-4
+    contact = {"radius": [radius, radius], "load": 0.1, "material": "SAE4340"}
+    contact |= {"model": "mixed", "boundary_film": 1e-9}
+    mesh = {"inlet": -half, "outlet": half, "width": 2.0 * half, "points_per_half_width": 24}
+    case = {"title": "asperity", "contact": contact, "mesh": mesh}
+    hardness = Simulation(load(case)).scales.p0 / share
+    simulation, [state] = solved(case, f"contact.yield_pressure={hardness}")
+    s, added = (
+        simulation.scales,
+        state.solution.records["plastic_deformation"].added.reshape(state.pressure.shape),
+    )
+    c = np.sqrt(contact["load"] / (np.pi * hardness))
+    depth = 0.5 * c**2 / radius - (2.0 - 4.0 / np.pi) * hardness * c / (0.5 * s.E)
+    assert state.pressure.max() == pytest.approx(hardness, rel=1e-12)
+    assert added.max() == added[added.shape[0] // 2, added.shape[1] // 2] == pytest.approx(depth, rel=0.003)

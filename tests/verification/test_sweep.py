@@ -19,7 +19,7 @@ from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.nonlinear import gauss_seidel as sweep
+from ehlpetsc.nonlinear.line import gauss_seidel as sweep
 from ehlpetsc.run.simulation import Simulation
 
 STORED = Path(__file__).with_name("rough_contacts.npz")

@@ -5,7 +5,7 @@ import pytest
 from support import CASES
 
 from ehlpetsc.case.loading import CaseError, load
-from ehlpetsc.effects.wear import wear_depth
+from ehlpetsc.effects.depths import wear_depth
 from ehlpetsc.run.simulation import Simulation
 
 SHORT = ["mesh.points_per_half_width=40", "mesh.inlet=-1.5", "mesh.outlet=1.3", "time.travel=2.0"]

@@ -19,7 +19,7 @@ from ehlpetsc.base.toml_file import is_plain, toml_text
 from ehlpetsc.case.tables.contact import CONTACT, FLUID
 from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
 from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
-from ehlpetsc.case.tables.surface import SURFACE
+from ehlpetsc.case.tables.surface import SURFACE, with_digests
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.law import Law
@@ -37,9 +37,12 @@ class Case(Values):
 
     @property
     def text(self) -> str:
-        """TOML text with the overrides, which in the same folder defines the same case."""
+        """TOML text with the overrides, which in the same folder defines the same case.
+
+        Maps given as heights are named by a digest.
+        """
         if self._text is None:  # generated when it is needed: members of a long series
-            self.__dict__["_text"] = toml_text(self._tables)
+            self.__dict__["_text"] = toml_text(with_digests(self._tables))
         return self._text
 
     @property
@@ -142,11 +145,11 @@ def extend(
             CASE.keys[effect.table.name] = effect.table.key
 
 
-def key_of(name: str) -> Key | None:
-    """Key by its dotted name."""
+def key_of(name: object) -> Key | None:
+    """Key by its dotted name; None: there is none."""
     table: KeyTable | None = CASE
     key = None
-    for part in str(name).split("."):
+    for part in name.split(".") if isinstance(name, str) else ():
         key = table.keys.get(part) if table else None
         table = key.table if key else None
     return key

@@ -143,7 +143,7 @@ KEYS = {
     "viscosity": Required("at ambient pressure", "Pa s", 1e-6, 1e4, replaced_by=("grade", "oil")),
     "grade": GRADE.key,
     "oil": Key(
-        "measured oil, t9 by constants from memory: its keys of [fluid] and [heat], which the case overrides",
+        "measured oil: its keys of [fluid] and [heat], which the case overrides",
         choices=tuple(OILS),
         needs=("fluid.grade left out",),
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from array import array
+from hashlib import sha256
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
@@ -10,6 +12,7 @@ UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of pr
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
+DIGEST_LENGTH = 16  # characters
 
 
 def _kinds(*kinds: str, text: str, keys: dict[str, Key]) -> dict[str, KeyTable]:
@@ -101,8 +104,8 @@ KEYS = {
     "columns": Key("of x and z, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2),
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
-    "fill_gaps": Key("longest gap of missing heights that the spline bridges", "m", 0, 1),
-    "bridge_spikes": Key("have the spline bridge spikes of at most five points", kind=bool, default=False),
+    "fill_gaps": Key("longest gap of missing heights that is filled", "m", 0, 1),
+    "bridge_spikes": Key("take spikes of at most five points for missing heights", kind=bool, default=False),
     "z": Key(
         "heights in unit, here instead of in a file; of a map: its rows",
         "",
@@ -131,6 +134,18 @@ PROFILE = KeyTable(
     KEYS,
     complete=_check_source,
 )
+
+
+def with_digests(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables of a case with heights of maps, which may be long, replaced by a file named by their digest."""
+    surfaces = dict(tables.get("surface", {}))
+    for side, table in surfaces.items():
+        if isinstance(table, dict) and isinstance(table.get("z"), list) and isinstance(table["z"][0], list):
+            numbers = [array("d", row) for row in (*table["z"], table.get("x", []), table.get("y", []))]
+            digest = sha256(b"".join(row.tobytes() for row in numbers)).hexdigest()[:DIGEST_LENGTH]
+            kept = {key: value for key, value in table.items() if key not in ("x", "y", "z")}
+            surfaces[side] = {"file": f"heights_{digest}.npy"} | kept
+    return tables | {"surface": surfaces} if surfaces else tables
 
 
 OF_MAPS = ("spacing_across", "direction", "position_across")

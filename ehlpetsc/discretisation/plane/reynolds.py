@@ -4,29 +4,35 @@ r"""Discrete Reynolds equation with mass-conserving cavitation in the plane.
    uh(1-\theta)- M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial
    p}{\partial y}\Big]=0
 
-Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.reynolds`; the sum of F over the nodes is
-the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the outlet and,
-in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A strip is
-periodic across.
+Unknowns, scales and cavitation as in :mod:`ehlpetsc.discretisation.line.reynolds`; the sum of F over the
+nodes is the mass defect over that of a film `film_scale` that enters over a half-width across. Beyond the
+outlet and, in a point contact, beyond the sides the oil has ambient pressure and the film of the last node. A
+strip is periodic across.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.discretisation.ehl_problem import Share
+from ehlpetsc.discretisation.contact import contact_model, film_scale_of
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
 from ehlpetsc.discretisation.finite_volumes import DP, FLUIDITY, LN_ETA_P, RHO, RHO_P, P
-from ehlpetsc.discretisation.oil import Oil
+from ehlpetsc.discretisation.plane.deflection import Deflection, Transposition
 from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
-from ehlpetsc.discretisation.reynolds import flow_table_of, inlet, shear_constants
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.step_inputs import Oil, StepInputs, flow_table_of, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.rheology import flow_law
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.case.tables.contact import Fluid
+
 
 AMBIENT = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
 
@@ -140,7 +146,7 @@ class NoOil:
         self._derivatives = np.zeros((shape[0] * shape[1], n_dofs(STENCIL)))
         self._derivatives[:, OWN] = 1.0
 
-    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Values) -> None:
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Fluid) -> None:
         """Return None: there is no oil."""
 
     def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
@@ -150,3 +156,32 @@ class NoOil:
     def product(self, derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int) -> np.ndarray:
         """See :class:`Reynolds`."""
         return derivatives[:, OWN] * v_q[self.owned] + derivatives[:, OWN + 1] * v_h[self.owned]
+
+
+def plane_problem(
+    case: Case,
+    scales: Scales,
+    film_scale: float,
+    share: Share,
+    has_sides: tuple[bool, bool],
+    bound_tolerance: float = 0.0,
+    ranks: Transposition | None = None,
+) -> EHLProblem:
+    """Problem of the nodes of a rank, whole rows along x.
+
+    `film_scale`: expected film in a^2/R.
+    `has_sides`: whether the domain ends below and above the local rows.
+    `bound_tolerance`: of the active set in a^2/R: films this close to their bound count as on it.
+    `ranks`: transposition of the convolution; None: one rank.
+    """
+    grid, film_scale = scales.grid, film_scale_of(case, scales, film_scale)
+    model = contact_model(case, scales, film_scale, bound_tolerance)
+    constants = scales.stiffness, film_scale, grid.periodic
+    deflection = Deflection(grid.shape, grid.steps, *constants, share.owned, ranks)
+    shape = (share.last - share.first) // grid.shape[-1], grid.shape[-1]
+    if case.fluid is None:
+        reynolds: NoOil | Reynolds = NoOil(shape, share.owned)
+    else:
+        layer = case.contact.asperity_height or 0.0
+        reynolds = Reynolds(scales, grid.steps, film_scale, shape, share, has_sides, layer)
+    return EHLProblem(case, scales, share, model, deflection, reynolds, film_scale)

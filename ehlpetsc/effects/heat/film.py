@@ -7,7 +7,7 @@ those of the viscosity. Transport along the film: :mod:`.transport`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     LN_ETA_P,
     LN_THINNING_H,
     LN_THINNING_P,
+    RHO,
     THINNED_PROPERTIES,
     THINNING,
     H,
@@ -25,21 +26,26 @@ from ehlpetsc.discretisation.finite_volumes import (
     fill_mass,
     fluidities,
 )
-from ehlpetsc.discretisation.oil import IsothermalOil, last_before
+from ehlpetsc.discretisation.plane.finite_volumes import flux_across
+from ehlpetsc.discretisation.step_inputs import IsothermalOil, last_before
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
-from ehlpetsc.effects.heat.rows import in_rows
+from ehlpetsc.effects.heat.record import in_rows
 from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
+from ehlpetsc.physics.rheology import FlowLaw
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
 
 TINY = 1e-6  # y whose sinh(y)/y is 1
 
 
 class FilmHeat(NamedTuple):
-    """Oil whose viscosity depends on the film's temperature; interface of :class:`.oil.Oil`.
+    """Oil whose viscosity depends on the film's temperature; interface of :class:`.step_inputs.Oil`.
 
     `isothermal`: oil without heat; None: dry.
     `law`: constants of the oil.
@@ -65,7 +71,7 @@ class FilmHeat(NamedTuple):
         return THINNED_PROPERTIES
 
     @property
-    def fluid(self) -> Any:
+    def fluid(self) -> Fluid:
         """Table `[fluid]` of the case."""
         return self.isothermal.fluid
 
@@ -79,7 +85,7 @@ class FilmHeat(NamedTuple):
         return SolvedFilm(*self._replace(guess=self.guess.copy()))
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`.oil.Oil.fill`, from `guess`."""
+        """As :meth:`.step_inputs.Oil.fill`, from `guess`."""
         self.begin().fill(q, h, nodes, at)
 
     def with_rows(self, rows: Iterable[int], values: Iterable[np.ndarray]) -> FilmHeat:
@@ -94,7 +100,7 @@ class SolvedFilm(FilmHeat):
     """Oil of one solve: its `guess` becomes the state of the film at the nodes last filled in."""
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`.oil.Oil.fill`; changes `guess`."""
+        """As :meth:`.step_inputs.Oil.fill`; changes `guess`."""
         state, of_nodes = (np.ascontiguousarray(rows[:, nodes]) for rows in (self.guess, self.of_nodes))
         oil = self.isothermal
         heated_nodal(q, h, oil.density, oil.units, tuple(self.law), of_nodes, state, at)
@@ -114,9 +120,9 @@ def heated_nodal(
 ) -> None:
     """Fill in the properties of nodes for their faces, viscosity at the film's temperature with derivatives.
 
-    q, h, density, units and `at` as of :func:`.oil.nodal`; a node beyond the outlet has the temperature of
-    the last one. `state` of the film to start from becomes that of the nodes. `law` is a tuple: numba looks
-    up the type of a named one anew in some calls.
+    q, h, density, units and `at` as of :func:`.step_inputs.nodal`; a node beyond the outlet has the
+    temperature of the last one. `state` of the film to start from becomes that of the nodes. `law` is a
+    tuple: numba looks up the type of a named one anew in some calls.
     """
     nodes, law, (p0, film, unit) = len(q), FilmLaw(*law), units
     zero = law.viscosity[2]
@@ -245,7 +251,7 @@ def faces_in_rows(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Results of :func:`faces` of each row of nodes, flat: Couette flow, heat, spread, gradient.
 
-    `at`: nodes of all rows, then the nodes beyond their outlets, as of :meth:`.oil.Oil.fill`.
+    `at`: nodes of all rows, then the nodes beyond their outlets, as of :meth:`.step_inputs.Oil.fill`.
     """
     n = len(oil)
     nodes, beyond = in_rows(at[:, :n], rows), in_rows(at[:, n:], rows)
@@ -254,3 +260,34 @@ def faces_in_rows(
         row_at = np.concatenate([nodes[k], beyond[k]], axis=1)
         faces(row_at, law, table, row_oil, max_flow, couette[k], *of_nodes[:, k])
     return couette.ravel(), *of_nodes.reshape(3, n)
+
+
+@compiled
+def cross_flow_heat(
+    at: np.ndarray,
+    shape: tuple[int, int],
+    is_periodic: bool,
+    laws: tuple[tuple, FlowLaw, np.ndarray],
+    oil: np.ndarray,
+    max_flow: tuple[float, float],
+) -> np.ndarray:
+    r"""Heat of the flow between rows, :math:`M_y(dp/dy)^2` [W/m^2], half of each face's to either node.
+
+    `at`, `oil`, `max_flow`: as of :func:`faces_in_rows`. `shape`: rows, nodes along x.
+    `is_periodic`: whether the last row is next to the first one.
+    `laws`: law, flow and table of :func:`.plane.finite_volumes.flux_across`.
+    """
+    (rows, n), (law, flow, table) = shape, laws
+    heat = np.zeros(rows * n)
+    for left in range((rows if is_periodic else rows - 1) * n):
+        right = (left + n) % (rows * n)
+        if not (oil[left] and oil[right]):
+            continue
+        mass = flux_across(at, left, right, table, law, flow)[0]
+        pressure_flow = 2.0 * abs(mass) / (at[RHO, left] + at[RHO, right])
+        film = 0.5 * (at[H, left] + at[H, right])
+        pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))
+        half = 0.5 * pressure_flow * law[0] * abs(at[P, right] - at[P, left])
+        heat[left] += half
+        heat[right] += half
+    return heat

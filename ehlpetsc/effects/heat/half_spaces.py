@@ -9,7 +9,7 @@ The surface temperature under a flux q is, in the frame of the body,
 :math:`\chi=k/(\rho c)` (Carslaw & Jaeger 1959, sections 2.9 and 10.3). Each term obeys
 :math:`\dot A_m=-\lambda_mA_m+\chi\partial_{ss}A_m+q`, and :math:`T=\sum w_mA_m/\sqrt{k\rho c}`, so that no
 history is stored. In the plane :math:`\partial_{yy}` is beside :math:`\partial_{ss}`: each row of cells along
-x is that of a line contact, conduction between rows in :mod:`.rows`.
+x is that of a line contact, conduction between rows in :mod:`.record`.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.effects.heat.record import BodyHeat
-from ehlpetsc.effects.heat.rows import Across
+from ehlpetsc.effects.heat.record import Across, BodyHeat
 from ehlpetsc.physics.flash_temperature import Solid
 from ehlpetsc.physics.grid import Grid
 

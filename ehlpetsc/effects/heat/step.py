@@ -9,17 +9,22 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
-from ehlpetsc.discretisation.oil import IsothermalOil
-from ehlpetsc.discretisation.reynolds import flow_table_of, shear_constants
-from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
+from ehlpetsc.discretisation.step_inputs import (
+    IsothermalOil,
+    StepInputs,
+    flow_table_of,
+    mirrored,
+    shear_constants,
+)
 from ehlpetsc.effects.effect import Scene, Step
-from ehlpetsc.effects.heat.film import FilmHeat, faces_in_rows, last_profile
+from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows, last_profile
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
-from ehlpetsc.effects.heat.transport import Film, explicit_in_rows, heat_taken_in_rows, transport_in_rows
+from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken_in_rows, transport_in_rows
 from ehlpetsc.physics.flash_temperature import Solid
+from ehlpetsc.physics.rheology import flow_law
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
@@ -87,7 +92,7 @@ class HeatStep:
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-        balance = explicit_in_rows(self.rows, stored, record.flow, record.film, self.inlet)
+        balance = explicit_transport(self.rows, stored, record.flow, record.film, self.inlet)
         rows = *balance, record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
@@ -149,19 +154,23 @@ class HeatStep:
         filled, at = inputs.oil.begin(), np.empty((inputs.oil.rows, len(q) + self.rows))
         filled.fill(q, h, slice(0, len(q)), at)
         solved = filled.guess if isinstance(filled, FilmHeat) else guess
-        law = self._face_law(inputs), flow_table_of(inputs)
-        of_faces = faces_in_rows(self.rows, at, *law, oil, self._max_flow(h, oil, inputs))
+        s, table, max_flow = self.scales.grid, flow_table_of(inputs), self._max_flow(h, oil, inputs)
+        along, *across = (self._face_law(inputs, spacing) for spacing in reversed(s.steps))
+        of_faces = faces_in_rows(self.rows, at, along, table, oil, max_flow)
         couette, pressure_heat, spread, gradient = of_faces
+        for law in across:
+            laws = law, flow_law(inputs.fluid), table
+            pressure_heat += cross_flow_heat(at, s.shape, s.periodic, laws, oil, max_flow)
         if backward:
             solved, couette, pressure_heat, spread, gradient = map(
                 mirrored, (solved, -couette, pressure_heat, spread, -gradient)
             )
         return solved, couette, pressure_heat, spread, gradient
 
-    def _face_law(self, inputs: StepInputs) -> tuple:
-        """Constants of :func:`.finite_volumes.flux_through`."""
+    def _face_law(self, inputs: StepInputs, spacing: float) -> tuple:
+        """Constants of :func:`.finite_volumes.flux_through` between nodes `spacing` half-widths apart."""
         s = self.scales
-        return s.p0 / (s.a * s.grid.dx), s.h, *shear_constants(inputs, s), self.layer
+        return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), self.layer
 
     def _max_flow(self, h: np.ndarray, oil: np.ndarray, inputs: StepInputs) -> tuple[float, float]:
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
@@ -251,10 +260,7 @@ class HeatStep:
         a^2/R at the maximum speed.
         """
         total = (temperatures.shear + source + film.rubbing).sum()
-        of_film = film.old, film.stored, film.extrapolated, film.couette
-        taken = heat_taken_in_rows(
-            self.rows, *of_film, self.inlet, temperatures.film, temperatures.extrapolated
-        )
+        taken = heat_taken_in_rows(self.rows, film, self.inlet, temperatures.film, temperatures.extrapolated)
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
         s = self.scales
         flow = np.abs(film.couette.reshape(self.rows, -1)).max(axis=1)

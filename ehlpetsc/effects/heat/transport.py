@@ -28,7 +28,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled, inlined
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import FilmLaw
-from ehlpetsc.effects.heat.rows import in_rows, joined
+from ehlpetsc.effects.heat.record import in_rows, joined
 
 SWEEPS = 50
 PRESSURE, THICKNESS, LEFT, OLD, STORED, CHANGE, EXTRAPOLATED = range(7)  # rows: fields of a Film
@@ -61,24 +61,21 @@ class Film(NamedTuple):
     rubbing: np.ndarray
 
 
-@compiled
 def explicit_transport(
-    stored: np.ndarray, flow: np.ndarray, t: np.ndarray, inlet: float
+    rows: int, stored: np.ndarray, flow: np.ndarray, t: np.ndarray, inlet: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Storage and upwind transport by temperatures t of the old level, of :func:`.film.film_temperature`.
 
+    `rows`: of nodes along x.
     `stored`, `flow`: as `stored` and `couette` of :class:`Film`.
     `t`: [K], shape (nodes,).
     `inlet`: temperature of the oil that enters [K].
     """
-    nodes = len(t)
-    a, b = np.empty(nodes), np.empty(nodes)
-    for i in range(nodes):
-        from_left, from_right = max(flow[i], 0.0), max(-flow[i + 1], 0.0)
-        before, after = t[i - 1] if i > 0 else inlet, t[i + 1] if i < nodes - 1 else inlet
-        a[i] = stored[i] + from_left + from_right
-        b[i] = stored[i] * t[i] + from_left * before + from_right * after
-    return a, b
+    flow = flow.reshape(rows, -1)
+    known = np.pad(t.reshape(rows, -1), ((0, 0), (1, 1)), constant_values=inlet)
+    from_left, from_right = np.maximum(flow[:, :-1], 0.0).ravel(), np.maximum(-flow[:, 1:], 0.0).ravel()
+    carried = stored * t + from_left * known[:, :-2].ravel() + from_right * known[:, 2:].ravel()
+    return stored + from_left + from_right, carried
 
 
 @compiled
@@ -234,16 +231,6 @@ def heat_taken(
     return taken
 
 
-def explicit_in_rows(
-    rows: int, stored: np.ndarray, flow: np.ndarray, t: np.ndarray, inlet: float
-) -> list[np.ndarray]:
-    """Results of :func:`explicit_transport` of each row of nodes, flat."""
-    parts = zip(*(np.split(values, rows) for values in (stored, flow, t)), strict=True)
-    return [
-        np.concatenate(row) for row in zip(*(explicit_transport(*part, inlet) for part in parts), strict=True)
-    ]
-
-
 def transport_in_rows(
     rows: int,
     state: np.ndarray,
@@ -261,18 +248,8 @@ def transport_in_rows(
     return joined(states), joined(out)
 
 
-def heat_taken_in_rows(
-    rows: int,
-    old: np.ndarray,
-    stored: np.ndarray,
-    before_step: np.ndarray,
-    flow: np.ndarray,
-    inlet: float,
-    t: np.ndarray,
-    extrapolated: np.ndarray,
-) -> float:
+def heat_taken_in_rows(rows: int, film: Film, inlet: float, t: np.ndarray, extrapolated: np.ndarray) -> float:
     """:func:`heat_taken` of all rows of nodes."""
-    parts = zip(
-        *(np.split(values, rows) for values in (old, stored, before_step, flow, t, extrapolated)), strict=True
-    )
-    return sum(heat_taken(*before, inlet, *now) for *before, now in ((*p[:4], p[4:]) for p in parts))
+    given = film.old, film.stored, film.extrapolated, film.couette, t, extrapolated
+    parts = zip(*(np.split(values, rows) for values in given), strict=True)
+    return sum(heat_taken(*part[:4], inlet, *part[4:]) for part in parts)

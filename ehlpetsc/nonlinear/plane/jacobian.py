@@ -10,9 +10,9 @@ from mpi4py import MPI
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.plane.deflection import PressureSums
 from ehlpetsc.discretisation.unknowns import n_dofs
-from ehlpetsc.nonlinear.jacobian import Jacobian
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.ranks import all_ranks
+from ehlpetsc.nonlinear.two_fields import Jacobian
 
 SAME_PRESSURE = (
     1e-6  # relative difference: pressures that asperities carry in a cavity are left out of the elimination
@@ -64,7 +64,7 @@ class PlaneJacobian(Jacobian):
         self.deflected = (v, sums.deflection, float(sums.load[0])) if all_ranks(self.ranks, fits) else None
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
-        """See :class:`ehlpetsc.nonlinear.jacobian.Jacobian`."""
+        """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
         p, by = self.problem, self.derivatives
         local, owned = n_dofs(p.local), p.owned
         pairs = v[:local].reshape(-1, 2)

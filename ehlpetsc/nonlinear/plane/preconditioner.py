@@ -30,7 +30,7 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
-from ehlpetsc.nonlinear.plane.screened_poisson import MAX_ROW, TERMS, fill, fitted_terms
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitted_terms
 from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
@@ -76,20 +76,18 @@ class SparseForm:
         grid = problem.grid
         self.kind = kind = whole[0][problem.first : problem.last]
         self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
-        rows, entries = block * problem.local, problem.local * (7 * TERMS + MAX_ROW + 3)
-        csr = np.zeros(rows + 1, dtype=np.int32), np.empty(entries, dtype=np.int32), np.empty(entries)
-        by_pressure, by_separation = np.zeros((problem.local, 6)), np.zeros((problem.local, 6))
-        self.border = np.zeros(rows)
-        mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic, block
+        local, most = problem.local, STENCIL * problem.local
+        csr = np.zeros(local + 1, dtype=np.int32), np.empty(most, dtype=np.int32), np.zeros((most, block, block))
+        by_pressure, by_separation = np.zeros((local, STENCIL)), np.zeros((local, STENCIL))
+        border = np.zeros((local, block))
+        mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic
         scales = problem.deflection.row_scale, *grid.steps
-        count = fill(
-            tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, self.border
-        )
+        count = fill(tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, border)
+        self.border = border.ravel()
         self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
         self.by_pressure[:, ::2], self.by_separation[:, ::2] = by_pressure, by_separation
-        self._entries = csr[0], csr[1][:count].copy(), csr[2][:count].copy()  # PETSc does not copy them
-        sizes = rows, block * problem.n
-        self.matrix = PETSc.Mat().createAIJWithArrays((sizes, sizes), self._entries, comm=comm)
+        sizes, entries = (block * local, block * problem.n), (csr[0], csr[1][:count], csr[2][:count])
+        self.matrix = PETSc.Mat().createBAIJ((sizes, sizes), block, csr=entries, comm=comm)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         self.pc.setOptionsPrefix(PREFIX)
@@ -113,10 +111,10 @@ class SparseForm:
 
 
 class Factors(NamedTuple):
-    """Sparse form and coarse correction of one state, and the solution for a unit of h00."""
+    """Sparse form and coarse correction of one state (without oil none), and the solution for a unit of h00."""
 
     sparse: SparseForm
-    coarse: CoarseCorrection
+    coarse: CoarseCorrection | None
     of_h00: tuple[np.ndarray, np.ndarray, float] | None = None
 
 
@@ -174,7 +172,7 @@ class Elimination:
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
         sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
-        if coarse is None:
+        if coarse is None and p.fluid is not None:
             mask = whole[0] == PRESSURE
             mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
             flow, transport = self._gathered(sparse.by_pressure), self._gathered(sparse.by_separation)
@@ -185,20 +183,25 @@ class Elimination:
     def _pressures(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """Pressures and Reynolds unknowns of the local nodes, and the load."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        rows = sparse.reynolds_rows
         with events.BACK_SOLVE:
-            reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
-            pressure, separation = coarse(self._gathered(reynolds))
-            local, nothing = slice(p.first, p.last), np.zeros(p.share.window_size)
-            pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
-            for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
-                reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
-            left = b.copy()
-            left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
-            finer, r = sparse.solve(left)
-        pressure = pressure[local] + finer
+            coarsely, left = self._coarsely(b) if coarse else (0.0, b)
+            pressure, r = sparse.solve(left)
+        pressure = pressure + coarsely
         load = p.deflection.cell * pressure.sum()
         return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
+
+    def _coarsely(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Local pressures of the coarse correction, and the right-hand side that they leave."""
+        p, (sparse, coarse, _) = self.problem, self.factors
+        rows, nothing = sparse.reynolds_rows, np.zeros(p.share.window_size)
+        reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
+        pressure, separation = coarse(self._gathered(reynolds))
+        pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
+        for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
+            reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
+        left = b.copy()
+        left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
+        return pressure[p.share.local], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""

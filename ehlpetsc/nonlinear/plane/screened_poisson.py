@@ -23,7 +23,7 @@ from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID
 
 TERMS = 3
 LONGEST = 1.0  # smallest s_j, in 1/a
-MAX_ROW = 6 * (TERMS + 2)  # entries of a Reynolds row
+STENCIL, OWN = 6, 2  # nodes i-2 .. i+1, below, above of a row; index of i
 
 
 def fitted_terms(stiffness: float, spacings: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
@@ -35,23 +35,10 @@ def fitted_terms(stiffness: float, spacings: Sequence[float]) -> tuple[np.ndarra
     from scipy.optimize import nnls
 
     dy, dx = spacings
-    s_2 = np.geomspace(LONGEST, np.pi / max(dx, dy), TERMS) ** 2
+    s_2 = np.geomspace(LONGEST, np.pi / min(dx, dy), TERMS) ** 2
     k_2 = np.geomspace(LONGEST**2, 4.0 / dx**2 + 4.0 / dy**2, 200)  # the largest of the five-point stencil
     matrix = np.sqrt(k_2)[:, None] / (k_2[:, None] + s_2) / (2.0 * np.pi * stiffness)
     return nnls(matrix, np.ones(len(k_2)))[0], s_2
-
-
-@compiled
-def end_row(pointers: np.ndarray, columns: np.ndarray, values: np.ndarray, row: int, count: int) -> int:
-    """End a row of a sparse matrix after `count` entries, its columns sorted; return the next row."""
-    for k in range(pointers[row] + 1, count):
-        column, value, to = columns[k], values[k], k
-        while to > pointers[row] and columns[to - 1] > column:
-            columns[to], values[to] = columns[to - 1], values[to - 1]
-            to -= 1
-        columns[to], values[to] = column, value
-    pointers[row + 1] = count
-    return row + 1
 
 
 @compiled
@@ -66,86 +53,65 @@ def fill(
     by_separation: np.ndarray,
     border: np.ndarray,
 ) -> int:
-    """Fill in the rows of the nodes first .. last - 1; return the number of entries.
+    """Fill in the rows of the nodes first .. last - 1; return the number of blocks.
 
     `reduction`: kind, r_p, r_s, h_p, h_s, s_p of all nodes.
     `derivatives`: of the local Reynolds rows, (last - first, 12).
     `terms`: c_j, squares of s_j.
     `scales`: of the deflection rows; dy; dx.
-    `mesh`: n_x, nodes, first, last, whether periodic, unknowns of a node.
-    `csr`: row pointers, columns, values.
+    `mesh`: n_x, nodes, first, last, whether periodic.
+    `csr`: row pointers, columns, blocks of a pair of nodes; zeros.
     `by_pressure`, `by_separation`: of the local Reynolds rows by v and by the separation at the nodes of
         their stencil, (last - first, 6).
-    `border`: of the local rows by h00.
+    `border`: of the local rows by h00, (last - first, unknowns of a node).
     """
     (kind, r_p, r_s, h_p, h_s, s_p), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales
-    (n_x, n, first, last, periodic, block), (pointers, columns, values) = mesh, csr
-    count, row = 0, 0
-    pointers[0] = 0
+    (n_x, n, first, last, periodic), (pointers, columns, blocks) = mesh, csr
+    count, unknowns = 0, blocks.shape[1]
     for i in range(first, last):
-        x = i % n_x
-        for j in range(TERMS):
-            columns[count], values[count] = block * i + j, 2.0 * dy / dx + 2.0 * dx / dy + s_2[j] * dx * dy
-            count += 1
-            if kind[i] != VOID:
-                columns[count], values[count] = block * i + TERMS, -dx * dy
-                count += 1
-            for k in range(4):
-                near = i + (1 if k == 0 else -1 if k == 1 else n_x if k == 2 else -n_x)
-                if k == 0 and x == n_x - 1 or k == 1 and x == 0:
-                    continue
-                if near < 0 or near >= n:
-                    if not periodic:
-                        continue
-                    near = near % n
-                columns[count], values[count] = block * near + j, -dy / dx if k < 2 else -dx / dy
-                count += 1
-            row = end_row(pointers, columns, values, row, count)
+        x, row, begin = i % n_x, i - first, count
         touches = kind[i] == CONTACT or kind[i] == BOUND
-        if touches:  # the row of the deflection is that of v
-            columns[count], values[count] = block * i + TERMS, row_scale * s_p[i]
-            count += 1
-            for j in range(TERMS):
-                columns[count], values[count] = block * i + j, -row_scale * c[j]
-                count += 1
-            border[row] = -row_scale
-            row = end_row(pointers, columns, values, row, count)
-        if kind[i] == BOUND:
-            if block > TERMS + 1:
-                columns[count], values[count] = block * i + TERMS + 1, 1.0
-                count += 1
-                row = end_row(pointers, columns, values, row, count)
-            continue
-        by = derivatives[i - first]
-        edge = 0.0
-        for k in range(6):
-            near = (i + (k - 2 if k < 4 else (2 * k - 9) * n_x)) % n
-            by_r, by_h = by[2 * k], by[2 * k + 1]
-            by_pressure[i - first, k] = by_separation[i - first, k] = 0.0
-            if by_r == 0.0 and by_h == 0.0 and near != i:
+        for k in range(STENCIL):
+            near = i + (k - OWN if k < 4 else (2 * k - 9) * n_x)
+            along, inside = (k == 1 and x > 0) or (k == 3 and x < n_x - 1), 0 <= near < n
+            across = k >= 4 and (periodic or inside)
+            poisson = -dy / dx if along else -dx / dy if across else 0.0
+            by_r, by_h = derivatives[row, 2 * k], derivatives[row, 2 * k + 1]
+            if k != OWN and poisson == 0.0 and by_r == 0.0 and by_h == 0.0:
                 continue
-            at = block * near
-            gamma, by_v = 0.0, 0.0
-            if kind[near] == VOID:
-                by_v, gamma = by_r + by_h * h_p[near], by_h * h_s[near]
-            elif kind[near] == CONTACT:
+            near, at = near % n, begin
+            while at < count and columns[at] != near:  # both neighbours across in a period of two rows
+                at += 1
+            if at == count:
+                columns[at], count = near, count + 1
+            block = blocks[at]
+            for j in range(TERMS):
+                block[j, j] += poisson
+            if k == OWN:
+                for j in range(TERMS):
+                    block[j, j] += 2.0 * dy / dx + 2.0 * dx / dy + s_2[j] * dx * dy
+                    block[j, TERMS] -= 0.0 if kind[i] == VOID else dx * dy
+                    if touches:  # the row of the deflection is that of v
+                        block[TERMS, j] -= row_scale * c[j]
+                if touches:
+                    block[TERMS, TERMS] += row_scale * s_p[i]
+                    border[row, TERMS] = -row_scale
+                if kind[i] != CONTACT and unknowns > TERMS + 1:
+                    block[TERMS + 1, TERMS + 1] += 1.0
+            if kind[i] == BOUND:
+                continue
+            r, by_v, gamma = TERMS + int(touches), 0.0, 0.0
+            if kind[near] == CONTACT:
                 by_v = by_h * h_p[near]
-                columns[count], values[count] = at + TERMS + 1, by_r
-                count += 1
+                block[r, TERMS + 1] += by_r
+            elif kind[near] == VOID:
+                by_v, gamma = by_r + by_h * h_p[near], by_h * h_s[near]
             else:
                 by_v, gamma = by_r * r_p[near] + by_h * h_p[near], by_r * r_s[near] + by_h * h_s[near]
-            columns[count], values[count] = at + TERMS, by_v
-            count += 1
-            if gamma != 0.0:
-                for j in range(TERMS):
-                    columns[count], values[count] = at + j, gamma * c[j]
-                    count += 1
-            by_pressure[i - first, k], by_separation[i - first, k] = by_v, gamma
-            edge += gamma
-        border[row] = edge
-        row = end_row(pointers, columns, values, row, count)
-        if block > TERMS + 1 and kind[i] != CONTACT:
-            columns[count], values[count] = block * i + TERMS + 1, 1.0
-            count += 1
-            row = end_row(pointers, columns, values, row, count)
+            block[r, TERMS] += by_v
+            for j in range(TERMS):
+                block[r, j] += gamma * c[j]
+            by_pressure[row, k], by_separation[row, k] = by_v, gamma
+            border[row, r] += gamma
+        pointers[row + 1] = count
     return count

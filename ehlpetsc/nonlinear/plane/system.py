@@ -8,7 +8,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.plane.problem import plane_problem
+from ehlpetsc.discretisation.plane.reynolds import plane_problem
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination
@@ -53,7 +53,7 @@ class PlaneMatrices:
 def plane_system(
     case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, bound_tolerance: float = ZERO_TOLERANCE
 ) -> TwoFields:
-    """System of a point contact or a strip; arguments as of :func:`..line_matrices.line_system`."""
+    """System of a point contact or a strip; arguments as of :func:`.line.system.line_system`."""
     grid, ranks = scales.grid, comm.tompi4py()
     cuts = first_rows(grid.shape[0], ranks.size)
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)

@@ -1,0 +1,99 @@
+"""Jacobian and preconditioner of a line contact; its discrete problem and system of equations."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.discretisation.contact import contact_model, film_scale_of
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
+from ehlpetsc.discretisation.line.deflection import Deflection
+from ehlpetsc.discretisation.line.reynolds import NoOil, Reynolds
+from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
+from ehlpetsc.nonlinear.line.preconditioner import Factors, FarFieldBand
+from ehlpetsc.nonlinear.ranks import LineExchange, first_nodes
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
+
+
+def line_problem(
+    case: Case, scales: Scales, film_scale: float, first: int, last: int, bound_tolerance: float = 0.0
+) -> EHLProblem:
+    """Problem of the nodes first .. last-1 of a line contact.
+
+    `film_scale`: expected film in a^2/R.
+    `bound_tolerance`: of the active set in a^2/R: films this close to their bound count as on it.
+    """
+    grid, film_scale = scales.grid, film_scale_of(case, scales, film_scale)
+    model = contact_model(case, scales, film_scale, bound_tolerance)
+    deflection = Deflection(grid.n, grid.dx, first, last)
+    start, layer = deflection.window.start, case.contact.asperity_height or 0.0
+    if case.fluid is None:
+        reynolds: NoOil | Reynolds = NoOil(first, last, start)
+    else:
+        reynolds = Reynolds(scales, film_scale, first, last, start, layer)
+    share = Share(first, last, deflection.window, deflection.owned)
+    return EHLProblem(case, scales, share, model, deflection, reynolds, film_scale)
+
+
+class LineMatrices:
+    """Block tridiagonal factors with the far deflection, or an assembled matrix for PETSc's preconditioners.
+
+    `near_field`: nodes of deflection on either side in the assembled matrix.
+    """
+
+    keeps_factors = False  # a band is factored in less time than it takes to keep it
+    linear_atol = 1e-2
+
+    def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
+        self.problem, self.exchange, self.ranks, self.near_field = problem, exchange, ranks, near_field
+        self.factors: Factors | None = None
+
+    def jacobian(self, ksp: PETSc.KSP) -> JacobianOperator:
+        """See :class:`.two_fields.Matrices`."""
+        self.factors = Factors(self.problem, self.ranks) if is_ours(ksp.pc) else None
+        return JacobianOperator(self.problem, self.exchange.linear, self.ranks, self.factors)
+
+    def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> NearFieldMatrix | None:
+        """See :class:`.two_fields.Matrices`."""
+        if self.factors:
+            return None
+        matrix = PETSc.Mat().createAIJ((sizes, sizes), comm=ksp.comm)
+        return NearFieldMatrix(self.problem, self.near_field, matrix)
+
+    def attach(self, ksp: PETSc.KSP) -> None:
+        """See :class:`.two_fields.Matrices`; the options name the preconditioner."""
+
+    def keep(self, jacobian: JacobianOperator) -> None:
+        """See :class:`.two_fields.Matrices`."""
+
+    def begin_solve(self) -> None:
+        """See :class:`.two_fields.Matrices`."""
+        if self.factors:
+            self.factors.invalidate()
+
+
+def is_ours(pc: PETSc.PC) -> bool:
+    """Whether a preconditioner is a :class:`.preconditioner.FarFieldBand`."""
+    return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
+
+
+def line_system(
+    case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, bound_tolerance: float = ZERO_TOLERANCE
+) -> TwoFields:
+    """System of a line contact.
+
+    `film_scale`: expected film in a^2/R.
+    `bound_tolerance`: tolerance of the active set in a^2/R, ``-snes_vi_zero_tolerance`` of SNES: films this
+        close to their bound count as on it.
+    """
+    cuts, ranks = first_nodes(scales.grid.n, comm.size), comm.tompi4py()
+    first, last = cuts[comm.rank : comm.rank + 2]
+    problem = line_problem(case, scales, film_scale, first, last, bound_tolerance)
+    exchange = LineExchange(problem, cuts, ranks)
+    return TwoFields(problem, exchange, LineMatrices(problem, exchange, ranks, case.mesh.near_field), comm)

@@ -1,0 +1,166 @@
+"""State of a run in a restart file: saving, loading, checks against the case."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ehlpetsc.base.errors import OutputError
+from ehlpetsc.discretisation.unknowns import Unknowns
+from ehlpetsc.effects import EFFECTS
+from ehlpetsc.effects.effect import flat, unflat
+from ehlpetsc.results.index import flat_keys
+from ehlpetsc.results.restart_file import load_restart, save_restart
+from ehlpetsc.stepping.state import State, TimeLevel
+from ehlpetsc.stepping.steady_start import RIGID_FILM
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from ehlpetsc.case.loading import Case
+    from ehlpetsc.discretisation.ehl_problem import EHLProblem
+    from ehlpetsc.physics.operation import Conditions
+    from ehlpetsc.physics.scales import Scales
+    from ehlpetsc.run.simulation import Simulation
+
+
+TOTAL, RECORD = "total ", "record "  # prefixes of the names of totals and of effects with a record
+EARLIER = "earlier {}"  # prefix of the values of an earlier level
+OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
+NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
+NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
+SCALE_TOLERANCE = 1e-12  # relative
+SCALES = ("a", "p0", "h")  # of load, radius and elasticity
+SPEEDS = ("motion", "operation", "gears")  # tables
+
+
+class Checkpoint(NamedTuple):
+    """State from which a run continues.
+
+    `baseline` are steady q and w for the predictor, `contact_count` the steps in contact of each node,
+    `totals` those of all steps so far.
+    """
+
+    state: State
+    baseline: tuple[np.ndarray, np.ndarray]
+    contact_count: np.ndarray
+    totals: dict[str, float]
+
+
+def axes_of(scales: Scales) -> dict[str, np.ndarray]:
+    """Nodes in half-widths by the name of their axis."""
+    return dict(zip("xy", reversed(scales.grid.axes), strict=False))
+
+
+def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
+    """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
+    case, scales, state = simulation.case, simulation.scales, simulation.solution
+    smooth_q, smooth_w = simulation.stepper.baseline
+    values: dict[str, Any] = {"contact_count": contact_count}
+    values |= {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
+    values |= {"smooth_q": smooth_q, "smooth_w": smooth_w, "pass_number": simulation.pass_number}
+    values |= {"case": case.text, "contact_law": case.contact.law}
+    values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
+    values |= {name: value for name in OF_STATE if (value := getattr(state, name)) is not None}
+    for number, level in enumerate(state.earlier):
+        values |= flat(level, EARLIER.format(number))
+    for name, record in state.records.items():
+        values |= {RECORD + name: 1} | flat(record, name)
+    save_restart(path, values | {TOTAL + name: value for name, value in totals.items()})
+
+
+def load(path: Path, case: Case, scales: Scales) -> tuple[Checkpoint, list[str]]:
+    """Content of a restart file, and a message on each key of the case that has changed.
+
+    An OutputError if the file is no restart file, is damaged, or does not fit the case.
+    """
+    if case.time is None:
+        raise OutputError(f"{path}: the case is steady (no [time]); it has no time steps to continue")
+    values = load_restart(path)
+    earlier = tomllib.loads(values["case"])
+    if misfit := _misfit(values, earlier, case, scales):
+        raise OutputError(f"{path}: {misfit}")
+    return _checkpoint(values), changed_keys(earlier, tomllib.loads(case.text))
+
+
+def pass_of(path: Path) -> int:
+    """Number of the pass of a restart file; errors as in :func:`load`."""
+    return load_restart(path)["pass_number"]
+
+
+def changed_keys(earlier: dict, now: dict) -> list[str]:
+    """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics."""
+    old, new = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
+    keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
+    return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
+
+
+def _checkpoint(values: dict[str, Any]) -> Checkpoint:
+    effects = [effect for effect in EFFECTS if RECORD + effect.name in values]
+    levels = [name for name in map(EARLIER.format, range(2)) if f"{name}.q" in values]
+    of_state = {name: values[name] for name in OF_STATE if name in values}
+    state = State(
+        unflat(Unknowns, values, "unknowns"),
+        **of_state | {"travelled": tuple(values["travelled"])},
+        earlier=tuple(unflat(TimeLevel, values, name) for name in levels),
+        records={effect.name: unflat(effect.record, values, effect.name) for effect in effects},
+    )
+    totals = {name.removeprefix(TOTAL): value for name, value in values.items() if name.startswith(TOTAL)}
+    smooth = values["smooth_q"], values["smooth_w"]
+    return Checkpoint(state, smooth, values["contact_count"], totals)
+
+
+def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -> str | None:
+    """Reason why a file does not fit the case; None if it fits."""
+    for axis, now in axes_of(scales).items():
+        x, where = values.get(axis, np.zeros(1)) / values["a"], " across" if axis == "y" else ""
+        if len(x) != len(now):
+            return f"has {len(x)} nodes{where}, the case {len(now)}; [mesh] must be as it was"
+        if np.abs(x - now).max() > NODE_TOLERANCE * np.ptp(now):
+            return (
+                f"begins at {x[0]:.6g} half-widths{where}, the case at {now[0]:.6g}; [mesh] must be as it was"
+            )
+    if ("fluid" in earlier) != (case.fluid is not None) or values["contact_law"] != case.contact.law:
+        return "of another contact model, or of oil where there is none now; both must be as they were"
+    if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
+        return "of another load, radius or elasticity; what changes with time is in [operation]"
+    now_table, start = tomllib.loads(case.text), earlier.get("time", {}).get("start", "smooth")
+    if case.time.start != start:
+        return f'time.start was "{start}"; it must be as it was, or the profiles would jump'
+    if any(now_table.get(name) != earlier.get(name) for name in SPEEDS):
+        return f"of other speeds; {', '.join(SPEEDS)} must be as they were, or the profiles would jump"
+    return None
+
+
+def coarser(case: Case, points: int) -> Case:
+    """Case with fewer nodes per half-width, likewise across."""
+    across = case.mesh.points_across
+    change = {"points_per_half_width": points, "points_across": across and max(across // 2, 1)}
+    return case.copy({"mesh": case.mesh.copy(change)})
+
+
+def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:
+    """Unknowns of a problem interpolated from the solution by another one, on other nodes."""
+    h, solids = by.model.state(coarse.q, coarse.w).film, by.model.contact_pressure(coarse.w)
+    q, h, solids = (by.grid.interpolated(values, problem.grid) for values in (coarse.q, h, solids))
+    return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.h00)
+
+
+def cures(case: Case, conditions: Conditions, film: float) -> str:
+    """Advice for a case without a steady start under its first conditions; expected film in a^2/R."""
+    if film > RIGID_FILM:
+        return (
+            f". The film, {film:.0f} a^2/R, is far thicker than solids deform, and the pressure wider than "
+            "the domain. Try a higher load or a lower speed"
+        )
+    found = ["a finer mesh"]
+    if case.fluid and case.heat and case.fluid.limiting_shear is None and conditions.sliding:
+        found.append("fluid.limiting_shear, as sliding heats an oil without one beyond measure")
+    if case.fluid and conditions.entrainment == 0.0:
+        found.append("a slow entrainment instead of rest at the begin")
+    if case.fluid and not case.contact.has_contact_pressure:
+        found.append('contact.model = "mixed"')
+    return f". Try {' or '.join(found)}"

@@ -1,0 +1,279 @@
+"""Progress and summary of a run, on rank 0."""
+
+from __future__ import annotations
+
+import sys
+import time as clock
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import mpi4py
+import numpy as np
+import petsc4py
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
+from ehlpetsc.base.errors import ExitStatus
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.nonlinear import events
+from ehlpetsc.results.means import Totals
+from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
+from ehlpetsc.results.restart_file import restart_of_same
+from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
+from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.validity import limits
+from ehlpetsc.stepping.time_stepping import on_level
+
+if TYPE_CHECKING:
+    from ehlpetsc.run.simulation import AcceptedState, Simulation
+
+
+SECONDS_BETWEEN_LINES = 5.0
+MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
+
+
+class Progress:
+    """Output that shows the steps of a simulation: a line every five seconds, on a terminal one in place."""
+
+    def __init__(self, simulation: Simulation, stream: TextIO | None = None) -> None:
+        self._simulation, self._stream = simulation, stream or sys.stdout
+        self._in_place = on_terminal(self._stream) or in_notebook()
+        self._begun = simulation.solution is not None
+        self._samples: list[tuple[float, float]] = []  # wall clock, time of the run, since the first step
+        self._shown: float | None = None
+        self._pending: dict[str, float] | None = None
+        self._ramp = ProgressLine("roughness put under the film", 1.0, self._stream)
+        simulation.stepper.ramp_shown = self._ramp.reach
+
+    def write(self, state: AcceptedState) -> None:
+        """Show a step, but not the steady start, if it is the first or enough time has passed."""
+        self._ramp.clear()
+        if not self._begun:
+            self._begun = True
+            return
+        now, self._pending = clock.monotonic(), state.scalars
+        wait = SECONDS_IN_PLACE if self._in_place else SECONDS_BETWEEN_LINES
+        if self._shown is None or now - self._shown >= wait:
+            self._show(now)
+
+    def close(self, status: ExitStatus) -> None:
+        """Show the last step if it has not been shown."""
+        self._ramp.clear()
+        if self._pending:
+            self._show(clock.monotonic())
+        if self._in_place and self._shown is not None:
+            print(file=self._stream, flush=True)
+
+    def _show(self, now: float) -> None:
+        scalars, self._pending = self._pending, None
+        columns = [(s.progress, scalars[name], s.dtype) for name, s in STEP_SCALARS.items() if s.progress]
+        if self._shown is None:
+            headings = [column.heading.rjust(len(column.form.format(0))) for column, *_ in columns]
+            print(*headings, "remaining", file=self._stream)
+        cells = [c.form.format(int(v) if kind[0] == "i" else c.factor * v) for c, v, kind in columns]
+        remaining = self._remaining(now, scalars["time"], self._simulation.end)
+        begin, end = ("\r", "") if self._in_place else ("", "\n")
+        line = " ".join([*cells, f"{remaining:>9s}"])
+        print(begin + line, end=end, file=self._stream, flush=True)
+        self._shown = now
+
+    def _remaining(self, now: float, time: float, end: float) -> str:
+        """Remaining time from the rate over the last half of the wall clock time; "?": not known yet."""
+        if not self._samples or now - self._samples[-1][0] > SECONDS_IN_PLACE:
+            self._samples.append((now, time))
+        begun = self._samples[0][0]
+        since = next(sample for sample in reversed(self._samples) if sample[0] <= begun + 0.5 * (now - begun))
+        if now - begun < MIN_RATE_TIME and time < end or time <= since[1]:
+            return "0s" if time >= end else "?"
+        return duration((now - since[0]) * max(end - time, 0.0) / (time - since[1]))
+
+
+def summary_line(status: ExitStatus, totals: Totals, wall: float) -> str:
+    """Last line of the output of a run.
+
+    `wall`: wall clock time [s].
+    """
+    return f"ehlpetsc: {status.words} {totals} wall={wall:.1f}"
+
+
+class Recorder:
+    """Output that stores the accepted states of a simulation.
+
+    The restart file is written every few minutes and at a stop.
+
+    `output`: result file; the restart file is named after it. None: in memory, without a restart file.
+
+    `totals`: totals of all steps so far. `limits`: messages of :func:`ehlpetsc.run.validity.limits`, on
+    rank 0, set by :meth:`close`. `restart`: restart file.
+    """
+
+    def __init__(self, simulation: Simulation, output: Path | None) -> None:
+        self.simulation, self.comm = simulation, simulation.comm
+        self.output: Any = None if output is None else file_path(output)
+        self.restart = self.output and self.output.with_name(f"{self.output.stem}.restart.h5")
+        self.totals = Totals()
+        self.limits: list[str] = []
+        self._boundary_friction = 0.0  # maximum so far, which effects may change
+        self._lock: Lock | None = None
+        self._writer: Any = None  # a ResultWriter, on rank 0
+        self._is_open, self._saved = False, clock.monotonic()
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, kind: type | None, *_: object) -> None:
+        try:
+            if kind and self._writer:  # without communication: only this rank may have failed
+                self._writer.close(ExitStatus.STOPPED.words)
+        finally:
+            if self._lock:
+                self._lock.release()
+
+    def lock_output(self, restart: Path | None = None, overwrite: bool = False) -> Path | None:
+        """Check before the run that the result can be written, and lock it until the end.
+
+        Returns the restart file to resume from: `restart`, otherwise that of an unfinished run of the same
+        case. An OutputError if existing files may not be replaced and not `overwrite`.
+        """
+        return on_root(self.comm, self._lock_files, restart, overwrite) if self.output else restart
+
+    def _lock_files(self, restart: Path | None, overwrite: bool) -> Path | None:
+        case, inputs = self.simulation.case, inputs_of(self.simulation.case)
+        check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
+        check_output_path(self.restart, inputs)
+        self._lock = Lock(self.output)
+        self._lock.acquire()
+        return restart if restart or overwrite else restart_of_same(self.output, self.restart, case.text)
+
+    def resume(self, path: Path) -> list[str]:
+        """Set the simulation to the state of a restart file and continue its result; notes for the user."""
+        from ehlpetsc.run.checkpoint import load
+
+        stored, notes = load(path, self.simulation.case, self.simulation.scales)
+        state = stored.state
+        self.simulation.resume(state, stored.baseline)
+        self.totals = Totals(stored.totals)
+        self._open(state.step, stored.contact_count)
+        return [f"{path}, step {state.step}, {1e6 * state.time:.4f} us", *notes]
+
+    def write(self, state: AcceptedState) -> None:
+        """Store an accepted state; write the restart file if it is due."""
+        if not self._is_open:
+            self._open()
+        with events.OUTPUT:
+            on_root(self.comm, self._append, state)
+        self.totals.add(state.scalars)
+        solved = self.simulation.solution and self.simulation.solution.solution
+        if solved:
+            friction = float(np.max(solved.inputs.boundary_friction))
+            self._boundary_friction = max(self._boundary_friction, friction)
+        due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
+        if state.step and self.comm.bcast(due):
+            self.checkpoint()
+            self._saved = clock.monotonic()
+
+    def checkpoint(self) -> None:
+        """Write the restart file, if any, for the last state."""
+        if self.restart is not None:
+            on_root(self.comm, self._save)
+
+    def close(self, status: ExitStatus) -> None:
+        """Write the remaining data and the status of the run, and the restart file of an unfinished run.
+
+        A pass that is continued by the next one also leaves a restart file.
+        """
+        time = self.simulation.case.time
+        if not self._is_open:
+            return
+        if status is not ExitStatus.DONE or time is not None and time.passes > 1:
+            self.checkpoint()
+        on_root(self.comm, self._close, status)
+
+    def to_bytes(self) -> bytes:
+        """The bytes of a result in memory, on every rank."""
+        return self.comm.bcast(self._writer.to_bytes() if self.comm.rank == 0 else b"")
+
+    def _open(self, step: int | None = None, contact_count: np.ndarray | None = None) -> None:
+        """Create the result; after a restart, continue it after `step` with its contact counts."""
+        on_root(self.comm, self._create, step, contact_count)
+        self._is_open = True
+
+    def _create(self, step: int | None, count: np.ndarray | None) -> None:
+        case, scales = self.simulation.case, self.simulation.scales
+        stored = of_case(FIELDS, case)
+        attributes = {name: getattr(scales, name) for name in ("a", "b", "p0", "u1", "u2")}
+        attributes |= {
+            "title": case.title,
+            "case": case.text,
+            "h_scale": scales.h,
+            "ranks": self.comm.size,
+            "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
+            "versions": libraries(),
+        }
+        self._surfaces = stored_surfaces(self.simulation)
+        layout = Layout(
+            x=scales.x * scales.a,
+            fields=[name for name in case.output.fields if name in stored],
+            scalars=of_case(STEP_SCALARS, case),
+            precision=case.output.precision,
+            surfaces=self._surfaces,
+            y=scales.grid.axes[0] * scales.a if len(scales.grid.axes) > 1 else None,
+            kind=case.kind,
+        )
+        self._writer = ResultWriter(self.output, layout, attributes, resume_step=step, contact_count=count)
+
+    def _append(self, state: AcceptedState) -> None:
+        every, steady = self.simulation.case.output.every, self.simulation.case.time is None
+        level, nominal = self.simulation.operation.level, self.simulation.scales.dt
+        frame = every == 1 or steady or on_level(level(float(state.time), nominal), every)
+        self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
+
+    def _close(self, status: ExitStatus) -> None:
+        simulation, surfaces = self.simulation, self._surfaces
+        points = tuple(surfaces[side].s if side in surfaces else None for side in ("1", "2"))
+        for effect in simulation.stepper.effects:
+            for name, pair in effect.on_surfaces(simulation.solution.records[effect.name], points).items():
+                for side, depth in zip(("1", "2"), pair, strict=True):
+                    if depth is not None:
+                        self._writer.put_depth(side, name, depth)
+        self.totals = Totals(self.totals.values, self._writer.means(simulation.case))
+        figures = self.totals.values | self.totals.means
+        friction = max(self._boundary_friction, simulation.case.contact.boundary_friction)
+        self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures, friction)
+        self._writer.close(status.words, self.limits)
+        if simulation.case.output.xdmf and self.output:
+            from ehlpetsc.results.xdmf import write_xdmf
+
+            write_xdmf(self.output)
+
+    def _save(self) -> None:
+        from ehlpetsc.run.checkpoint import save
+
+        self._writer.flush()
+        save(self.restart, self.simulation, self._writer.contact_count, self.totals.values)
+
+
+def libraries() -> dict[str, str]:
+    """Versions of the numerical libraries by name, for the result file."""
+    petsc = ".".join(map(str, PETSc.Sys.getVersion()))
+    mpi = MPI.Get_library_version().split(",")[0].rstrip("\0")
+    return {"petsc": petsc, "petsc4py": petsc4py.__version__, "mpi4py": mpi4py.__version__, "mpi": mpi}
+
+
+def stored_surfaces(simulation: Simulation) -> dict[str, StoredSurface]:
+    """Rough surfaces, and the points of smooth ones that pass the mesh where effects have depths, by side."""
+    depths = [name for effect in simulation.stepper.effects for name in effect.surface]
+    rough, scales = simulation.roughness, simulation.scales
+    surfaces = {}
+    for side, speed, extent in zip("12", (scales.u1, scales.u2), simulation.operation.extent(), strict=True):
+        profile = rough and rough.side(side)
+        if profile:
+            surfaces[side] = StoredSurface(profile.s, profile.z, speed, profile.statistics, depths)
+        elif depths:
+            ends = scales.x[[0, -1]] * scales.a
+            s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.dx)
+            smooth = np.zeros((*scales.grid.shape[:-1], len(s)))
+            flat = dict.fromkeys(("ra", "rq", "rsk") if smooth.ndim == 1 else ("sa", "sq", "ssk"), 0.0)
+            surfaces[side] = StoredSurface(s, smooth, speed, flat, depths)
+    return surfaces

@@ -1,0 +1,250 @@
+"""Numbers in text files: columns of measuring instruments, and the formats of metrology institutes.
+
+Separator and decimal sign are detected; ambiguous files are refused with the key that resolves the ambiguity.
+The header of the formats of institutes holds spacing, unit and scale:
+
+* SMD and PRF (ISO 5436-2): axes ``CX`` and ``CZ``, optional entries, heights, each ended by ETX or ``EOR``.
+* ASCII SDF (ISO 25178-71, and BCR-1.0 before it): ``NAME = value``, heights in m over `Zscale`, each ended by
+  ``*``.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import re
+import unicodedata
+from pathlib import Path
+
+import numpy as np
+
+from ehlpetsc.base.errors import ProfileError
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[ed][+-]?\d+)?"
+MISSING = r"(?:-?nan(?:\(ind\))?|-?1\.#\w+|#?n/?a|bad|\*+|-+)"  # markers, besides empty cells
+CELL = re.compile(f"(?:({NUMBER})|({MISSING})?)", re.IGNORECASE)
+WITH_UNIT = re.compile(rf"(?>{NUMBER})\s*[^\W\d_/:.-]", re.IGNORECASE)  # as 0.12 um, unlike a date or a name
+COMMENT = re.compile(r"(?:^|(?<=[\s,;|]))#(?!n/?a).*", re.IGNORECASE | re.MULTILINE)
+SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})  # minus and dash of word processors
+UNIT_NAMES = {
+    "m": ("m",),
+    "mm": ("mm",),
+    "um": ("um", "\u00b5m", "\u03bcm", "micron", "microns", "micrometer", "micrometre"),
+    "nm": ("nm",),
+    "angstrom": ("\u00c5", "ang", "angstrom", "angstroms", "\u00e5ngstr\u00f6m"),
+    "inch": ("in", "in.", "inch", "inches"),
+    "microinch": ("uin", "\u00b5in", "\u03bcin", "microin", "microinch", "microinches"),
+    "mil": ("mil", "mils", "thou"),
+}
+UNIT_OF_NAME = {name.lower(): unit for unit, names in UNIT_NAMES.items() for name in names}
+UNIT_IN_HEADER = re.compile(
+    rf"[\[(/]\s*({'|'.join(map(re.escape, UNIT_OF_NAME))})\s*(?:[\])]|[\s;,|\"]|$)",
+    re.MULTILINE | re.IGNORECASE,
+)
+
+
+def text_columns(
+    path: Path, decimal: str | None = None, header_lines: int | None = None
+) -> tuple[np.ndarray, str]:
+    """Numbers of a text file, shape (columns, rows), and the lines above them.
+
+    nan for missing numbers: empty cells and the markers `MISSING`. A column of words is nan throughout. Any
+    other word is refused with its line.
+
+    `decimal`: "." or ","; default: detected.
+    `header_lines`: lines before the numbers; default: all lines before the first line of numbers.
+    """
+    lines = _decoded(path).translate(SIGNS).split("\n")
+    above = _first_line(lines) if header_lines is None else min(header_lines, len(lines))
+    header, body = "\n".join(lines[:above]), COMMENT.sub("", "\n".join(lines[above:]))
+    body, separator = _with_points(_unquoted(body), decimal)
+    columns = np.empty((0, 0))
+    if re.search(r"\d", body):
+        try:
+            columns = np.loadtxt(io.StringIO(body), delimiter=separator, comments=None, ndmin=2).T
+        except ValueError:
+            columns = _cell_by_cell(body, separator, above).T
+        while len(columns) and np.isnan(columns[-1]).all():  # behind separators at the ends of the lines
+            columns = columns[:-1]
+    if not columns.size:
+        raise ProfileError("0 points; allowed: lines of numbers, x and z")
+    if header_lines is None and above:
+        _check_last_heading(lines[above - 1], above, separator, len(columns))
+    return columns, header
+
+
+def units_in(header: str) -> list[str]:
+    """Units of length in brackets, or after a slash, in a header, in their order."""
+    header = unicodedata.normalize("NFC", header)  # an A and a ring above to one letter
+    return [UNIT_OF_NAME[name.lower()] for name in UNIT_IN_HEADER.findall(header)]
+
+
+def _decoded(path: Path) -> str:
+    raw = path.read_bytes()
+    if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        text = raw.decode("utf-16", "replace")
+    elif b"\0" in raw:
+        raise ProfileError("not text; allowed: columns of numbers, x and z")
+    else:
+        try:
+            text = raw.decode("utf-8-sig")
+        except UnicodeDecodeError:  # instruments write µ and degrees in a national code page
+            text = raw.decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _first_line(lines: list[str]) -> int:
+    """Index of the first line of numbers; with a column of words, of the first line like the last one."""
+    numbers = (k for k, line in enumerate(lines) if "1" in (kinds := _kinds(line)) and "w" not in kinds)
+    first = next(numbers, None)
+    if first is None:
+        last = next(filter(None, map(_kinds, reversed(lines))), "")
+        first = next((k for k, line in enumerate(lines) if "1" in last == _kinds(line)), len(lines))
+    return first
+
+
+def _kinds(line: str) -> str:
+    """Kinds of the words in a line: 1 for a number, 0 for a marker of a missing one, w for another word."""
+    words = re.split(r"[\s,;|]+", COMMENT.sub("", line).strip(" \t,;|"))
+    found = [CELL.fullmatch(word.strip("\"'")) for word in words if word]
+    return "".join("w" if match is None else "1" if match[1] else "0" for match in found)
+
+
+def _unquoted(text: str) -> str:
+    """Text with quoted cells as bare ones, then separated by tabs, as a comma in quotes is decimal."""
+    if '"' not in text:
+        return text
+    outside = re.sub(r'"[^"\n]*"', "", text)
+    separator = next((sign for sign in ";\t|," if sign in outside), " ")
+    return "\n".join("\t".join(row) for row in csv.reader(text.split("\n"), delimiter=separator))
+
+
+def _with_points(text: str, decimal: str | None) -> tuple[str, str | None]:
+    """Numbers with decimal points, and their separator; None: blanks."""
+    separator = next((sign for sign in ";\t|" if sign in text), None)
+    if separator is None and "," in text and decimal != ",":
+        in_numbers = re.search(r"\d +[-+.]?\d", text) and not re.search(r"(?<!\d),|,(?!\d)", text)
+        if decimal or not in_numbers:
+            return text, ","
+    if decimal is None and re.search(r"\d,\d", text) and re.search(r"\d\.|\.\d", text):
+        raise ProfileError('its numbers contain both "," and "."; write decimal = "," or decimal = "."')
+    return text.replace({",": ".", ".": ","}.get(decimal or "", ""), "").replace(",", "."), separator
+
+
+def _cell_by_cell(text: str, separator: str | None, above: int) -> np.ndarray:
+    """Numbers of lines read one by one; nan for missing ones and for columns of words."""
+    lines = enumerate(text.split("\n"), above + 1)
+    rows = {n: line.strip().split(separator) for n, line in lines if line.strip(",;| \t")}
+    *_, width = map(len, rows.values())
+    for n, row in rows.items():
+        if len(row) != width:
+            raise ProfileError(
+                f"line {n}: {len(row)} numbers, the last line has {width}; allowed: as many in every line, "
+                f"numbers alone below the header, or header_lines = {n} if that one belongs to it"
+            )
+    columns = zip(*rows.values(), strict=True)
+    return np.array([_column([cell.strip(" '") for cell in cells], list(rows)) for cells in columns]).T
+
+
+def _column(cells: list[str], lines: list[int]) -> list[float]:
+    """Numbers of the cells of one column, in lines with these numbers."""
+    found = [CELL.fullmatch(cell) for cell in cells]
+    are_words = not any(match and match[1] for match in found)
+    for cell, match, line in zip(cells, found, lines, strict=True):
+        if match is None and (not are_words or WITH_UNIT.match(cell)):
+            raise ProfileError(_no_number(cell, line))
+    numbers = (match[1] if match else None for match in found)
+    return [float(re.sub("[dD]", "e", number)) if number else np.nan for number in numbers]
+
+
+def _check_last_heading(line: str, number: int, separator: str | None, width: int) -> None:
+    """Refuse a line above the numbers that is one of them with a word in a cell."""
+    cells = [cell.strip(" \"'") for cell in line.strip().split(separator)]
+    if separator and len(cells) == width > 1 and any(re.fullmatch(NUMBER, cell) for cell in cells):
+        if word := next((cell for cell in cells if WITH_UNIT.match(cell)), None):
+            raise ProfileError(f"{_no_number(word, number)}, or header_lines = {number}")
+
+
+def _no_number(cell: str, line: int) -> str:
+    return (
+        f'line {line}: "{cell[:40]}" is not a number; allowed in a cell: a number without its unit, nothing, '
+        "nan, N/A, BAD, --- or ***"
+    )
+
+
+SDF_MAGIC = re.compile(rb"\s*a(BCR|ISO)-\d")
+SMD_AXES = re.compile(rb"^\s*CX[\s\0].*\n\s*CZ[\s\0]", re.MULTILINE)
+HEAD = 2000  # bytes in which the format is recognised
+SMD_UNITS = {"M": 1.0, "MM": 1e-3, "UM": 1e-6, "NM": 1e-9}
+AXIS_WORDS = 6  # name, type, number of points, unit, scale, type of the numbers
+
+
+def read_softgauge(path: Path) -> tuple[np.ndarray, np.ndarray] | None:
+    """Abscissas and heights [m] of a profile, nan for missing ones; None: a file of another format.
+
+    Of an areal SDF file the central trace.
+    """
+    with open(path, "rb") as file:
+        head = file.read(HEAD).replace(b"\r\n", b"\n")
+    if SDF_MAGIC.match(head):
+        return _sdf(path.read_text("latin-1"))
+    if SMD_AXES.search(head):
+        return _smd(path.read_text("latin-1").replace("\0", " "))
+    return None
+
+
+def _smd(text: str) -> tuple[np.ndarray, np.ndarray]:
+    records = re.split(r"\x03|^EOR\s*$", text, flags=re.MULTILINE)
+    if len(records) < 3:
+        raise ProfileError("SMD: fewer than 3 records; allowed: axes, entries and heights, each ended by EOR")
+    lines = [line.split() for line in (records[0] + "\n" + records[1]).splitlines()]
+    axis_x, axis_z = (next(words for words in lines if words[:1] == [name]) for name in ("CX", "CZ"))
+    if len(axis_x) < AXIS_WORDS or len(axis_z) < AXIS_WORDS:
+        raise ProfileError("SMD: allowed: CX and CZ with type, points, unit, scale and type of the numbers")
+    listed = [words[2] for words in lines if words[:2] == ["SPACING", "CX"] and len(words) > 2]
+    spacing = next(iter([*axis_x[AXIS_WORDS:], *listed]), None)
+    if spacing is None:
+        raise ProfileError("SMD: x without spacing; allowed: equally spaced points, CX I or SPACING CX")
+    z = _smd_length(axis_z) * _numbers(records[2], "SMD")
+    _check_count(z.size, int(_number(axis_z[2], "SMD")), "CZ", "SMD")
+    return np.arange(z.size) * (_smd_length(axis_x) * _number(spacing, "SMD")), z
+
+
+def _smd_length(axis: list[str]) -> float:
+    """Length of one in the data of an axis [m]."""
+    if axis[3].upper() not in SMD_UNITS:
+        raise ProfileError(f"SMD: unit {axis[3]} of {axis[0]}; allowed: m, mm, um, nm")
+    return SMD_UNITS[axis[3].upper()] * _number(axis[4], "SMD")
+
+
+def _sdf(text: str) -> tuple[np.ndarray, np.ndarray]:
+    head, _, rest = text.partition("\n*")
+    entries = (line.partition("=") for line in head.splitlines() if "=" in line)
+    header = {name.strip().lower(): value.strip() for name, _, value in entries}
+    needed = ("NumPoints", "NumProfiles", "Xscale", "Zscale")
+    if missing := [name for name in needed if name.lower() not in header]:
+        raise ProfileError(f"SDF: {missing[0]} is missing; allowed: a header with it")
+    points, traces = (int(_number(header[name], "SDF")) for name in ("numpoints", "numprofiles"))
+    z = _numbers(rest.partition("*")[0], "SDF")
+    _check_count(z.size, points * traces, "NumPoints NumProfiles", "SDF")
+    trace = z.reshape(traces, points)[traces // 2]
+    spacing = _number(header["xscale"], "SDF")
+    return np.arange(points) * spacing, _number(header["zscale"], "SDF") * trace
+
+
+def _numbers(text: str, form: str) -> np.ndarray:
+    words = ["nan" if word.upper() == "BAD" else word for word in text.split()]
+    return np.array([_number(word, form) for word in words])
+
+
+def _number(word: str, form: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise ProfileError(f'{form}: "{word[:40]}" is not a number; allowed: numbers, and BAD') from None
+
+
+def _check_count(found: int, stated: int, name: str, form: str) -> None:
+    if found != stated or not found:
+        raise ProfileError(f"{form}: {found} heights, {name} = {stated} in its header; allowed: as many")
