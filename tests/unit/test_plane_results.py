@@ -1,16 +1,12 @@
 """Results of points and strips: files, sections, comparison, restart, XDMF."""
 
-import re
-
 import h5py
 import numpy as np
 import pytest
-from support import ROOT
 
 import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
-from ehlpetsc.case.keys import template
 from ehlpetsc.run.recorder import Recorder
 
 BALL = {
@@ -189,16 +185,3 @@ def test_running_point_can_be_read(tmp_path):
             assert result.attrs["status"] == "running"
             assert np.array_equal(result.pressure[-1], simulation.state.pressure)
         recorder.close(ExitStatus.STOPPED)
-
-
-def test_page_goes_from_a_map_to_a_contact_map(tmp_path, monkeypatch, capsys):
-    page = (ROOT / "ehlpetsc" / "run" / "README.md").read_text()
-    (code,) = (code for code in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "contact_map" in code)
-    assert len(code.splitlines()) <= 24
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "ball.toml").write_text(template("point"))
-    exec(compile(code.replace('"travel": 0.5', '"travel": 0.05'), "page", "exec"), {})
-    assert capsys.readouterr().out.startswith("(57, 65) 0.")
-    assert (tmp_path / "contact_map.png").stat().st_size > 5000
-    with ehlpetsc.read_result(tmp_path / "ball.h5") as result:
-        assert result.steps.contact_share[-1] > 0.05 and result.contact_count.shape == (57, 65)

@@ -87,7 +87,15 @@ NOT_GEOMETRY = ("load_file", "heat_transfer", "oil_factor")
 PATH_COLUMNS = {"path": ("path", "position"), "load": ("load", "w")}  # of gears.load_file
 GEARS_KEYS = {
     "module": Required("normal module", "m", 1e-5, 1),
-    "teeth": Required("of pinion and wheel", "", 5, 10_000, kind=int, many="two"),
+    "teeth": Required(
+        "of pinion and wheel, the driving and the driven one; 1000000: a rack",
+        *("", 5, 1_000_000),
+        kind=int,
+        many="two",
+    ),
+    "internal": Key(
+        "the wheel is a ring with teeth inside; its shift as in DIN 3960", kind=bool, default=False
+    ),
     "pressure_angle": Key("of the basic rack", "degrees", 5, 40, default=20.0),
     "helix_angle": Key("at the reference circle; the middle slice is solved", "degrees", 0, 45, default=0.0),
     "profile_shift": Key("`x1` and `x2`, of the play-free pair (DIN 3960)", "", -2, 4, many="two"),
