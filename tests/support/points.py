@@ -1,8 +1,8 @@
 """Cases of point contacts by Moes' numbers, their films."""
 
-import numpy as np
-
 import sys
+
+import numpy as np
 
 from support import CASES
 
