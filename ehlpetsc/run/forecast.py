@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ehlpetsc import __version__
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.case.kinds import LINE
 from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
@@ -22,7 +23,6 @@ START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
 SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
-LINE = "line"
 # of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
 PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.15, 0.3, 0.5
 # its growth with the nodes, and what does not grow [s]; steady start in steps
