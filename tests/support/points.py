@@ -1,6 +1,8 @@
-"""Cases of point contacts by Moes' numbers."""
+"""Cases of point contacts by Moes' numbers, their films."""
 
 import sys
+
+import numpy as np
 
 from support import CASES
 
@@ -21,6 +23,15 @@ def point(M, L, points, changes=None, width=4.0):
         if value is not None:
             tables[table][name] = value
     return tables
+
+
+def lowest(film):
+    """Minimum of a film (ny, nx) between the nodes: of the parabola through 3 x 3 about the lowest one."""
+    j, i = np.unravel_index(np.argmin(film), film.shape)
+    (a, b, c), (d, e, f), (g, h, k) = film[j - 1 : j + 2, i - 1 : i + 2]
+    slope, mixed = 0.5 * np.array([h - b, f - d]), 0.25 * (k - g - c + a)
+    curvature = np.array([[h - 2.0 * e + b, mixed], [mixed, f - 2.0 * e + d]])
+    return e - 0.5 * slope @ np.linalg.solve(curvature, slope)
 
 
 def moes_film(scales, film):
