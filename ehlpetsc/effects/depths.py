@@ -51,7 +51,9 @@ class BodyDepth(Effect[D]):
         if before is None:
             zero = self.scene.mesh_on_bodies.zero
             return self.record(depth=zero, hidden=zero, **entries)
-        return before._replace(hidden=self._ahead_of_profiles(before.depth))
+        roughness, faces = self.scene.roughness, self.scene.mesh_on_bodies.faces((0.0, 0.0))
+        profiles = (roughness.surface_1, roughness.surface_2) if roughness else (None, None)
+        return before._replace(hidden=BodyFields(*map(_ahead, before.depth, profiles, faces)))
 
     def inputs(self, record: D, inputs: StepInputs, step: Step) -> StepInputs:
         """Add both depths to the gap."""
@@ -68,12 +70,6 @@ class BodyDepth(Effect[D]):
     ) -> dict[str, Sequence[np.ndarray | None]]:
         """Depth along both surfaces."""
         return dict.fromkeys(self.surface, self.scene.mesh_on_bodies.at_points(record.depth, points))
-
-    def _ahead_of_profiles(self, depth: BodyFields) -> BodyFields:
-        """Part of the depths of earlier passes ahead of the profiles, `BodyFields`."""
-        roughness, faces = self.scene.roughness, self.scene.mesh_on_bodies.faces((0.0, 0.0))
-        profiles = (roughness.surface_1, roughness.surface_2) if roughness else (None, None)
-        return BodyFields(*map(_ahead, depth, profiles, faces))
 
 
 def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -> BodyField:

@@ -45,7 +45,8 @@ def new_figure(rows: int, columns: int, size: tuple[float, float], **shared: obj
 
 def set_title(figure: Figure, *lines: str) -> None:
     """Set the title above all panels; empty lines are left out."""
-    figure.suptitle("\n".join(filter(None, lines)), fontsize="medium")
+    text = folded("\n".join(filter(None, lines)), figure.get_figwidth())
+    figure.suptitle(text, fontsize="medium")
 
 
 def fonts(size: Sequence[float] | None) -> AbstractContextManager:
@@ -75,7 +76,8 @@ def folded(text: str, width: float) -> str:
     """Text whose lines are broken after commas to fit a width [inches] in the font of :func:`fonts`."""
     letters = int(LETTERS * width / min(1.0, max(MIN_FONT, width / FULL_WIDTH)))
     kept = [line.replace(" ", "\xa0").replace(",\xa0", ", ") for line in text.splitlines()]
-    return "\n".join(textwrap.fill(line, letters, break_long_words=False) for line in kept)
+    lines = [textwrap.fill(line, letters, break_long_words=False) for line in kept]
+    return "\n".join(lines).replace("\xa0", " ")
 
 
 def shades(count: int) -> list:
@@ -194,8 +196,8 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
     elif varies or case.motion:
         u1, u2 = speeds_at(result, frame or 0)
         u = 0.5 * (u1 + u2)
-        ratio = f"slide/roll ratio {(u1 - u2) / u + 0.0:.3g}" if u else "no entrainment"
-        texts += [f"u = {u:.3g} m/s", ratio]
+        ratio = f"slide/roll ratio {(u1 - u2) / u + 0.0:.4g}" if u else "no entrainment"
+        texts += [f"u = {u:.4g} m/s", ratio]
     a, p0 = result.attrs["a"], result.attrs["p0"]
     texts.append(f"a = {1e3 * a:.3g} mm")
     if case.kind == "point" and abs(result.attrs["b"] / a - 1.0) > EQUAL:
@@ -204,7 +206,7 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
         width, p0 = _whole_hertz_at(result, frame)
         texts.append(f"half-width {width / a:.3g} a")
     texts.append(f"p0 = {1e-9 * p0:.3g} GPa")
-    texts.append(f"oil {1e3 * case.fluid.viscosity:.3g} mPa s" if case.fluid else "dry")
+    texts.append(f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry")
     if (place := getattr(result, "place", None)) is not None:
         texts.append(f"section at y = {place / a:.3g} a" if place else "section at y = 0")
     return texts

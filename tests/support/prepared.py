@@ -27,7 +27,7 @@ ehlpetsc.discretisation.ehl_problem ehlpetsc.effects.heat.step ehlpetsc.results.
 ehlpetsc.results.reader ehlpetsc.results.restart_file ehlpetsc.results.running_in ehlpetsc.results.writer
 ehlpetsc.run.cli ehlpetsc.run.validity
 ehlpetsc.run.forecast ehlpetsc.run.explain ehlpetsc.run.checkpoint ehlpetsc.stepping.observables
-ehlpetsc.stepping.state ehlpetsc.stepping.state ehlpetsc.stepping.steady_start
+ehlpetsc.stepping.state ehlpetsc.stepping.steady_start
 ehlpetsc.surfaces.body_field ehlpetsc.surfaces.roughness
 """.split()
 
