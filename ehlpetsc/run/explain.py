@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
-    "(mesh.width), touch on 0.8 of the dry area, in mixed lubrication under more load"
+    "(mesh.width), touch on 0.7 of the dry area and carry more of the load in mixed lubrication"
 )
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
