@@ -90,6 +90,7 @@ class Extreme:
                 "poisson_ratio": 0.3,
                 "model": "mixed",
                 "asperity_height": 20e-9,
+                "adsorbed_film": 1e-9,
                 "boundary_friction": 0.1,
             },
             "fluid": {
@@ -127,7 +128,10 @@ class Extreme:
         if self.sq:
             waves = {"roll_off": max(scales.a, 100e-6), "short_cutoff": max(0.4 * scales.a, 25e-6)}
             surface = {"kind": "self-affine", "sq": self.sq, "hurst": 0.8, "seed": 1, **waves}
-            tables |= {"surface": {"1": {"synthetic": surface}}, "time": {"travel": travel, "start": "rough", "courant": 1.0}}
+            tables |= {
+                "surface": {"1": {"synthetic": surface}},
+                "time": {"travel": travel, "start": "rough", "courant": 1.0},
+            }
         return load(tables)
 
 

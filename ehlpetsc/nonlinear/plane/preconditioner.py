@@ -77,7 +77,8 @@ class SparseForm:
         self.kind = kind = whole[0][problem.first : problem.last]
         self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
         local, most = problem.local, STENCIL * problem.local
-        csr = np.zeros(local + 1, dtype=np.int32), np.empty(most, dtype=np.int32), np.zeros((most, block, block))
+        pointers, columns = np.zeros(local + 1, dtype=np.int32), np.empty(most, dtype=np.int32)
+        csr = pointers, columns, np.zeros((most, block, block))
         by_pressure, by_separation = np.zeros((local, STENCIL)), np.zeros((local, STENCIL))
         border = np.zeros((local, block))
         mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic
@@ -86,7 +87,7 @@ class SparseForm:
         self.border = border.ravel()
         self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
         self.by_pressure[:, ::2], self.by_separation[:, ::2] = by_pressure, by_separation
-        sizes, entries = (block * local, block * problem.n), (csr[0], csr[1][:count], csr[2][:count])
+        sizes, entries = (block * local, block * problem.n), (pointers, columns[:count], csr[2][:count])
         self.matrix = PETSc.Mat().createBAIJ((sizes, sizes), block, csr=entries, comm=comm)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
@@ -111,7 +112,7 @@ class SparseForm:
 
 
 class Factors(NamedTuple):
-    """Sparse form and coarse correction of one state (without oil none), and the solution for a unit of h00."""
+    """Sparse form and, with oil, coarse correction of one state; the solution for a unit of h00."""
 
     sparse: SparseForm
     coarse: CoarseCorrection | None
