@@ -152,7 +152,8 @@ settings_of_ranks() {
 
 # Leave out the comments of Open MPI on an exit status that the run has explained, on signals that it passes on, and
 # on the names of the settings above. Its other comments become their first sentence, once, with the names in them;
-# status 2 where there is nothing else: the launcher has refused.
+# status 2 where there is nothing else: the launcher has refused; 3 where it has lost its words of it, as Open MPI 4
+# does once in five times.
 without_comment() {
     trap '' INT TERM HUP USR1
     local left_out='(prterun|mpirun[.a-z]*)[ \n]+(detected|noticed)|^Primary job|Deprecated variable: +(hwloc|rmaps)_default_'
@@ -176,9 +177,14 @@ without_comment() {
             next
         }
         inside { held = held $0 "\n"; next }
+        /ORTE_ERROR_LOG: .*show_help/ { lost = 1; next }
         /^\[[^ ]*:[0-9]+\] / { of_mpi = of_mpi $0 "\n"; next }
         { print; others = 1; fflush() }
-        END { if (inside) printf "%s", held; if (!refused) printf "%s", of_mpi; exit refused && !others ? 2 : 0 }'
+        END {
+            if (inside) printf "%s", held
+            if (!refused && !lost) printf "%s", of_mpi
+            exit others ? 0 : refused ? 2 : lost ? 3 : 0
+        }'
 }
 
 # mpirun loses what comes before its ranks are there; the run takes the same request twice as one
@@ -210,6 +216,11 @@ run_ranks() {
         wait $job || status=$?
     done
     wait $filter || refused=$?
+    if [ $status = 1 ] && [ $refused = 3 ]; then # a process without mpirun says the same
+        "$python" -c "from mpi4py import MPI" 2>&1 >/dev/null | without_comment >&2 || refused=2
+        [ $refused = 2 ] || say "mpirun: refused, and lost its reason; type the same again"
+        exit 2
+    fi
     if [ $status = 1 ] && [ $refused = 2 ]; then exit 2; fi
     # of SIGUSR1 only mpirun and a Python die that have hardly begun: the run takes it as a request
     if [ -n "$asked" ] && [ $status = 138 ]; then stopped_early; fi

@@ -87,7 +87,7 @@ def draw(computed: list[Found]) -> Figure:
         panel.set_ylim(bottom=0.0)
         panel.xaxis.set_major_formatter("{x:g}")
         panel.grid(lw=0.3)
-        panel.legend(**style.SMALL)
+        panel.legend(loc="center left", **style.SMALL)
     style.set_title(figure, "FZG type C-mod, 183.4 N m, FVA 3, 90 °C, all roughness in the layer")
     return figure
 

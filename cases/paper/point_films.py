@@ -19,15 +19,15 @@ MODULUS, RADIUS = 231e9, 0.0127  # E' [Pa], m
 ALPHA, VISCOSITY = 22e-9, 0.04  # 1/Pa, Pa s
 
 
-def tables(M: float, L: float, points: int) -> dict:
+def tables(M: float, L: float, points: int, modulus: float = MODULUS, radius: float = RADIUS) -> dict:
     """Case of a ball of Moes' numbers M and L on -2.5 to 1.5 a."""
-    two_u = (L / (ALPHA * MODULUS)) ** 4
+    two_u = (L / (ALPHA * modulus)) ** 4
     return {
         "title": f"M = {M:g}, L = {L:g}",
         "contact": {
-            "radius": [RADIUS, RADIUS],
-            "load": M * MODULUS * RADIUS**2 * two_u**0.75,
-            "youngs_modulus": 0.91 * MODULUS,  # two bodies of Poisson's ratio 0.3
+            "radius": [radius, radius],
+            "load": M * modulus * radius * radius * two_u**0.75,
+            "youngs_modulus": 0.91 * modulus,  # two bodies of Poisson's ratio 0.3
             "poisson_ratio": 0.3,
         },
         "fluid": {
@@ -39,7 +39,7 @@ def tables(M: float, L: float, points: int) -> dict:
             "gamma": 2.3e-9,
             "lambda": 1.7e-9,
         },
-        "motion": {"entrainment_speed": 0.5 * two_u * MODULUS * RADIUS / VISCOSITY},
+        "motion": {"entrainment_speed": 0.5 * two_u * modulus * radius / VISCOSITY},
         "mesh": {"inlet": -2.5, "outlet": 1.5, "width": 4.0, "points_per_half_width": points},
     }
 

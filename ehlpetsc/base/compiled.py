@@ -138,7 +138,7 @@ def compiled(function: Callable | None = None, **options: object) -> Any:
         return lambda function: compiled(function, **options)
     if not COMPILED:
         return function
-    options = {"cache": True, "error_model": "numpy"} | options
+    options = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True} | options
     try:
         return numba.njit(**options)(function)
     except RuntimeError:  # neither the package's directory nor the user's can be written to
@@ -182,7 +182,34 @@ def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:
     raise NotImplementedError
 
 
+def code_of(function: Any, *arguments: Any) -> int:
+    """Address, for `call_code`, of a compiled function for arguments of these types."""
+    types = tuple(map(numba.typeof, arguments))
+    function.compile(types)
+    found = function.overloads[types]
+    return found.library.get_pointer_to_function(found.fndesc.llvm_func_name)
+
+
 if COMPILED:
+
+    @intrinsic
+    def call_code(
+        typing: Context, function: Type, address: Type, arguments: Type
+    ) -> tuple[Signature, Callable]:
+        """``function(*arguments)`` at its address, which LLVM does not compile again into the caller."""
+        called = function.get_call_type(typing, tuple(arguments), {})
+
+        def code(context: BaseContext, builder: IRBuilder, signature: Signature, given: list[Value]) -> Value:
+            types, convention = called.args, context.call_conv
+            kind = convention.get_function_type(called.return_type, types)
+            values = cgutils.unpack_tuple(builder, given[2], len(types))
+            callee = builder.inttoptr(given[1], kind.as_pointer())
+            status, result = convention.call_function(builder, callee, called.return_type, types, values)
+            with cgutils.if_unlikely(builder, status.is_error):
+                convention.return_status_propagate(builder, status)
+            return result
+
+        return called.return_type(function, address, arguments), code
 
     @intrinsic
     def call_at(

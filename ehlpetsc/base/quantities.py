@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,6 +54,13 @@ FIELDS = {
 STORED = list(FIELDS)
 """Fields that a case stores unless it names its own."""
 
+Count = partial(StepScalar, "1", dtype="i4", over_run="sum")
+Error = partial(StepScalar, "1", over_run="max", summary=".2e")
+AtEnd = partial(StepScalar, over_run="last", summary=".4g")
+Compared = partial(StepScalar, compared=True)
+Integral = partial(StepScalar, integrated=True, compared=True)
+Condition = partial(StepScalar, only="variable")
+
 STEP_SCALARS = {
     "step": StepScalar(
         "1",
@@ -68,96 +76,61 @@ STEP_SCALARS = {
     "dt": StepScalar(
         "s", "time step", progress=Column("dt/us", 1e6, "{:>9.5f}"), of=lambda o: o.state.dt or 0.0
     ),
-    "newton": StepScalar(
-        "1",
+    "newton": Count(
         "Newton iterations of the step, retries included",
-        dtype="i4",
-        over_run="sum",
         summary="d",
         progress=Column("newton", 1, "{:>6d}"),
         of=lambda o: o.state.newton,
     ),
-    "gmres": StepScalar("1", "GMRES iterations of the step, retries included", dtype="i4", over_run="sum"),
-    "retries": StepScalar(
-        "1", "attempts that did not converge", dtype="i4", over_run="sum", of=lambda o: o.state.retries
-    ),
-    "h_min": StepScalar(
+    "gmres": Count("GMRES iterations of the step, retries included"),
+    "retries": Count("attempts that did not converge", of=lambda o: o.state.retries),
+    "h_min": Compared(
         "m",
         "minimum film thickness",
         over_run="min",
         summary=".9g",
         progress=Column("h_min/um", 1e6, "{:>9.5f}"),
-        compared=True,
         of=lambda o: o.fields["film_thickness"].min(),
     ),
-    "p_max": StepScalar(
+    "p_max": Compared(
         "Pa",
         "maximum pressure",
         over_run="max",
         summary=".9g",
         progress=Column("p_max/GPa", 1e-9, "{:>9.4f}"),
-        compared=True,
         of=lambda o: o.fields["pressure"].max(),
     ),
-    "contacts": StepScalar(
-        "1",
+    "contacts": Count(
         "nodes in contact",
-        dtype="i4",
-        over_run="sum",
         summary="d",
         progress=Column("contacts", 1, "{:>8d}"),
         compared=True,
         of=lambda o: int(o.loads.contact_mask.sum()),
     ),
-    "load": StepScalar("N", "integral of the pressure", integrated=True, compared=True, of=lambda o: o.load),
-    "load_error": StepScalar(
-        "1",
-        "relative error of the load",
-        over_run="max",
-        summary=".2e",
-        of=lambda o: abs(o.load / o.conditions.load - 1.0),
-    ),
-    "mass_error": StepScalar(
-        "1",
+    "load": Integral("N", "integral of the pressure", of=lambda o: o.load),
+    "load_error": Error("relative error of the load", of=lambda o: abs(o.load / o.conditions.load - 1.0)),
+    "mass_error": Error(
         "mass defect summed over all nodes, relative to the mass that the contact carries",
-        over_run="max",
-        summary=".2e",
         of=lambda o: o.mass_error,
     ),
-    "approach": StepScalar("m", "undeformed separation h00", compared=True, of=lambda o: o.approach),
-    "friction": StepScalar(
-        "N", "friction force on surface 2", integrated=True, compared=True, of=lambda o: o.friction_2
-    ),
-    "friction_1": StepScalar(
-        "N", "friction force on surface 1, in +x", integrated=True, compared=True, of=lambda o: o.friction_1
-    ),
-    "friction_coefficient": StepScalar(
+    "approach": Compared("m", "undeformed separation h00", of=lambda o: o.approach),
+    "friction": Integral("N", "friction force on surface 2", of=lambda o: o.friction_2),
+    "friction_1": Integral("N", "friction force on surface 1, in +x", of=lambda o: o.friction_1),
+    "friction_coefficient": AtEnd(
         "1",
         "magnitude of the mean friction force of both walls over load",
-        over_run="last",
-        summary=".4g",
         of=lambda o: 0.5 * abs(o.friction_2 - o.friction_1) / o.load,
     ),
-    "film_central": StepScalar(
-        "m",
-        "mean film of the middle half of the Hertz contact of the instant",
-        over_run="last",
-        summary=".4g",
-        of=lambda o: o.mean_film,
+    "film_central": AtEnd(
+        "m", "mean film of the middle half of the Hertz contact of the instant", of=lambda o: o.mean_film
     ),
-    "lambda_ratio": StepScalar(
+    "lambda_ratio": AtEnd(
         "1",
         "expected smooth minimum film over the combined Rq",
-        over_run="last",
-        summary=".4g",
         of=lambda o: o.smooth_film / o.rq if o.rq else np.nan,
     ),
-    "mean_gap_ratio": StepScalar(
-        "1",
-        "mean film over the combined Rq",
-        over_run="last",
-        summary=".4g",
-        of=lambda o: o.mean_film / o.rq if o.rq else np.nan,
+    "mean_gap_ratio": AtEnd(
+        "1", "mean film over the combined Rq", of=lambda o: o.mean_film / o.rq if o.rq else np.nan
     ),
     "oil_pressure": StepScalar(
         "Pa",
@@ -166,86 +139,58 @@ STEP_SCALARS = {
         only="fluid",
         of=lambda o: o.oil_pressure.max(),
     ),
-    "nodes_below_1nm": StepScalar(
-        "1",
+    "nodes_below_1nm": Count(
         "nodes out of contact under less than 1 nm of oil",
-        dtype="i4",
-        over_run="sum",
         only="fluid",
         of=lambda o: int((~o.loads.contact_mask & (o.fields["film_thickness"] < MIN_CONTINUUM_FILM)).sum()),
     ),
-    "contact_share": StepScalar(
+    "contact_share": Compared(
         "1",
         "share of the load on the solids",
         over_run="max",
         summary=".4g",
         label="contact_share_max",
-        compared=True,
         only="mixed",
         of=lambda o: o.loads.contact_pressure.sum() / o.loads.pressure.sum(),
     ),
-    "contact_length": StepScalar(
+    "contact_length": Integral(
         "m^2",
         "length where solids carry; of a compliant layer, integral of the real area fraction",
-        integrated=True,
-        compared=True,
         only="mixed",
         of=lambda o: o.cell * o.model.real_area_fraction(o.loads).sum(),
     ),
-    "contact_length_10mpa": StepScalar(
+    "contact_length_10mpa": Integral(
         "m^2",
         "length where asperities carry more than 10 MPa",
-        integrated=True,
-        compared=True,
         only="compliant",
         of=lambda o: o.cell * o.loads.contact_mask.sum(),
     ),
-    "contact_length_100mpa": StepScalar(
+    "contact_length_100mpa": Integral(
         "m^2",
         "length where asperities carry more than 100 MPa",
-        integrated=True,
-        compared=True,
         only="compliant",
         of=lambda o: o.cell * (o.loads.contact_pressure > HIGH_PRESSURE / o.scene.scales.p0).sum(),
     ),
-    "thin_length": StepScalar(
-        "m^2",
-        "length where the film is thin",
-        integrated=True,
-        compared=True,
-        only="mixed",
-        of=lambda o: o.cell * o.thin.sum(),
+    "thin_length": Integral(
+        "m^2", "length where the film is thin", only="mixed", of=lambda o: o.cell * o.thin.sum()
     ),
-    "thin_share": StepScalar(
+    "thin_share": Compared(
         "1",
         "share of the load where the film is thin",
-        compared=True,
         only="mixed",
         of=lambda o: o.loads.pressure[o.thin].sum() / o.loads.pressure.sum(),
     ),
-    "radius": StepScalar(
-        "m", "radius of relative curvature", only="variable", of=lambda o: o.conditions.radius
+    "radius": Condition("m", "radius of relative curvature", of=lambda o: o.conditions.radius),
+    "load_given": Condition(
+        "N", "load of the operating conditions", integrated=True, of=lambda o: o.conditions.load
     ),
-    "load_given": StepScalar(
-        "N",
-        "load of the operating conditions",
-        integrated=True,
-        only="variable",
-        of=lambda o: o.conditions.load,
+    "speed_1": Condition("m/s", "speed of surface 1", of=lambda o: o.conditions.u1),
+    "speed_2": Condition("m/s", "speed of surface 2", of=lambda o: o.conditions.u2),
+    "displacement_1": Condition(
+        "m", "distance travelled by surface 1 since time 0, signed", of=lambda o: o.state.travelled[0]
     ),
-    "speed_1": StepScalar("m/s", "speed of surface 1", only="variable", of=lambda o: o.conditions.u1),
-    "speed_2": StepScalar("m/s", "speed of surface 2", only="variable", of=lambda o: o.conditions.u2),
-    "displacement_1": StepScalar(
-        "m",
-        "distance travelled by surface 1 since time 0, signed",
-        only="variable",
-        of=lambda o: o.state.travelled[0],
-    ),
-    "displacement_2": StepScalar(
-        "m",
-        "distance travelled by surface 2 since time 0, signed",
-        only="variable",
-        of=lambda o: o.state.travelled[1],
+    "displacement_2": Condition(
+        "m", "distance travelled by surface 2 since time 0, signed", of=lambda o: o.state.travelled[1]
     ),
     "wall": StepScalar("s", "wall clock time of the step", over_run="sum", of=lambda o: o.wall),
 }

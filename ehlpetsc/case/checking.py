@@ -168,7 +168,8 @@ def _checked(
 def _table_of(key: Key, value: object) -> KeyTable | None:
     """Table of the value of a key; of several that of its kind."""
     if key.variants and isinstance(value, dict):
-        return key.variants.get(str(value.get("kind")))
+        kind = value.get("kind")
+        return key.variants.get(kind) if isinstance(kind, str) else None
     return key.table
 
 

@@ -7,9 +7,10 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,11 +18,11 @@ from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import FAULTY, check, is_number
+from ehlpetsc.case.checking import FAULTY, check, in_contact, is_number, is_point
 from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
-from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.geometry import GEOMETRIES
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
@@ -31,8 +32,8 @@ if TYPE_CHECKING:
 Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 
-def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[float]]:
-    """Columns of a text file in SI units, by key of a table; raises `ProfileError`."""
+def read_table(path: Path, units: Mapping[str, str], names: Columns) -> dict[str, list[float]]:
+    """Columns of a text file in SI units, `units` by key; raises `ProfileError`."""
     from ehlpetsc.surfaces.text_files import text_columns
 
     try:
@@ -41,7 +42,7 @@ def read_table(path: Path, table: KeyTable, names: Columns) -> dict[str, list[fl
     except OSError as error:
         raise ProfileError(f"cannot be read: {error.strerror}: {path}") from None
     headings = [line.partition("#")[0].strip() for line in header.splitlines()]
-    factors = _factors(next(filter(None, reversed(headings)), ""), table, names)
+    factors = _factors(next(filter(None, reversed(headings)), ""), units, names)
     if len(factors) != len(columns):
         count = f"{len(factors)} column names, {len(columns)} columns of numbers"
         allowed = f"a line with some of {_spellings(names)}, and numbers below it"
@@ -54,7 +55,12 @@ def _spellings(names: Columns) -> str:
     return ", ".join(spellings[0] for spellings in names.values())
 
 
-def _factors(heading: str, table: KeyTable, names: Columns) -> dict[str, float]:
+def units_in(tables: Tables, table: KeyTable) -> dict[str, str]:
+    """Units of the keys of a table in the contact of the tables of a case."""
+    return {name: in_contact(key, tables).unit for name, key in table.keys.items()}
+
+
+def _factors(heading: str, units: Mapping[str, str], names: Columns) -> dict[str, float]:
     """Factor to SI units of each column named in a heading, by key; units are in brackets: ``time [us]``."""
     key_by_name = {name: key for key, spellings in names.items() for name in spellings}
     factors: dict[str, float] = {}
@@ -65,7 +71,7 @@ def _factors(heading: str, table: KeyTable, names: Columns) -> dict[str, float]:
             allowed = f"allowed: one each of {_spellings(names)}"
             raise ProfileError(f"column {shortened(name.strip())!r}: {allowed}")
         try:
-            factors[key] = factor(unit.rstrip(")] ") or table.keys[key].unit, table.keys[key].unit)
+            factors[key] = factor(unit.rstrip(")] ") or units[key], units[key])
         except UnitFault as fault:
             raise ProfileError(f"column {shortened(word.strip())!r}: {fault}") from None
     return factors
@@ -87,11 +93,12 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
 
         values, _ = check(GEARS, gears)
         return of_gears(path_of_contact(values.pair)) if values else None
-    values = check(OPERATION, operation)[0] if isinstance(operation, dict) else None
+    values = check(OPERATION, operation, root=tables)[0] if isinstance(operation, dict) else None
     if values is None:
         return None
     if values.file is not None:
-        return _table(read_table(folder / values.file, OPERATION, COLUMNS), tables, values.repeat)
+        columns = read_table(folder / values.file, units_in(tables, OPERATION), COLUMNS)
+        return _table(columns, tables, values.repeat)
     columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
     return _table(columns, tables, values.repeat)
 
@@ -104,7 +111,7 @@ def with_columns(tables: Tables, folder: Path, of: Sequence[str] = tuple(FILES))
     for name in of:
         (key, table, names), given = FILES[name], tables.get(name)
         if isinstance(given, dict) and isinstance(given.get(key), str):
-            columns = read_table(folder / given[key], table, names)
+            columns = read_table(folder / given[key], units_in(tables, table), names)
             tables = tables | {name: {k: v for k, v in given.items() if k != key} | columns}
     return tables
 
@@ -149,7 +156,7 @@ def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> Cond
 
     def refuse(key: str, wrong: np.ndarray, allowed: str) -> None:
         for k in np.flatnonzero(wrong)[:1]:
-            unit = OPERATION.keys[key].unit
+            unit = units_in(tables, OPERATION)[key]
             raise ProfileError(f"row {k + 1}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
 
     for key, column in values.items():
@@ -175,9 +182,11 @@ def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> Cond
 def _constants(tables: Tables) -> dict[str, float]:
     """Constant conditions in the other tables of a case."""
     constants: dict[str, float] = {}
-    with contextlib.suppress(*FAULTY):
-        contact = tables["contact"]
-        constants |= {key: float(contact[key]) for key in ("load", "radius") if contact.get(key, 0.0) > 0.0}
+    for key in ("load", "radius"):
+        with contextlib.suppress(*FAULTY):
+            value = tables["contact"][key]
+            value = value[0] if key == "radius" and is_point(tables) else value
+            constants |= {key: float(value)} if value > 0.0 else {}
     with contextlib.suppress(*FAULTY):
         motion = tables["motion"]
         u, xi = float(motion["entrainment_speed"]), float(motion.get("slide_roll_ratio", 0.0))
@@ -192,8 +201,12 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         return tables  # constant conditions, or faults that the check of the keys reports
     contact, motion, time = (tables.get(name, {}) for name in named)
     load, radius, u, xi = table.reference()
-    contact = contact | {"load": load, "radius": radius}
-    motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
+    kind = "point" if is_point(tables) else "line"
+    radii: Any = _radii(contact["radius"], radius) if kind == "point" else radius
+    contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
+    speeds = {"speed_1": table.u1, "speed_2": table.u2}
+    if any((speed != constants.get(key)).any() for key, speed in speeds.items()):
+        motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
     if isinstance(tables.get("gears"), dict) and "pass_shift" not in time:
         time = time | {"pass_shift": check(GEARS, tables["gears"])[0].pair.hunting_shift}
     if "travel" not in time:
@@ -201,8 +214,18 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         with contextlib.suppress(*FAULTY):
             given = (contact[key] for key in ("youngs_modulus", "poisson_ratio"))
             modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in given))
-            time["travel"] = table.swept_length() / hertz_line(load, radius, modulus)[0]
+            ratio = radii[1] / radii[0] if kind == "point" else math.inf
+            half_width = GEOMETRIES[kind].half_width(load, radius, modulus, ratio)
+            time["travel"] = float(table.swept_length() / half_width)
     return tables | {"contact": contact, "motion": motion, "time": time}
+
+
+def _radii(given: Any, radius: float) -> Any:
+    """Radii of a point contact with one along [m], in the ratio of those given; without one as given."""
+    with contextlib.suppress(*FAULTY):
+        along, across = given
+        return [radius, across * (radius / along)]
+    return given
 
 
 def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:

@@ -14,6 +14,7 @@ from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.case.checking import FAULTY, Fault, check, values_of
+from ehlpetsc.case.combinations import keys_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.law import STANDARD_TEMPERATURE
@@ -123,7 +124,10 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
         return []
-    if "surface." in str(data.get("series")):
+    varied: list[object] = []
+    with contextlib.suppress(*FAULTY):
+        varied = [*keys_of(data["series"])]
+    if any(isinstance(name, str) and name.startswith("surface.") for name in varied):
         return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
     from ehlpetsc.surfaces.samples import samples
 
@@ -151,8 +155,9 @@ def with_layer_stiffness(case: Case) -> Case:
     from ehlpetsc.physics.asperities import asperity_stiffness
     from ehlpetsc.physics.scales import Scales
 
-    profiles = [case.surface.side(side) for side in ("1", "2")]
-    cutoffs = [profile.short_cutoff for profile in profiles if profile and profile.short_cutoff]
+    surfaces = [case.surface.side(side) for side in ("1", "2")]
+    tables = [table for surface in surfaces if surface for table in (surface, surface.synthetic)]
+    cutoffs = [cutoff for table in tables if (cutoff := getattr(table, "short_cutoff", None))]
     longest = max(cutoffs, default=None) or LAYER_NODES * Scales.of(case).dx
     stiffness = asperity_stiffness(contact.asperity_height, longest)
     return case.copy({"contact": contact.copy({"asperity_stiffness": stiffness})})

@@ -8,7 +8,6 @@ from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.case.checking import Fault, is_point
 from ehlpetsc.case.messages import show
-from ehlpetsc.case.tables.motion import MAX_NODES
 from ehlpetsc.case.tables.surface import areal_keys
 from ehlpetsc.physics.geometry import GEOMETRIES
 from ehlpetsc.physics.scales import reduced_modulus
@@ -17,18 +16,15 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
 LINE = "line"  # the kind of contact whose surfaces are profiles
-VARIABLE = ("gears", "operation")  # tables
+MAX_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 
 
-def variable_point(data: Tables) -> list[Fault]:
-    """Fault of a point contact whose load, radius or speeds change with time."""
-    table = next((name for name in VARIABLE if name in data), None)
-    if table is None or not is_point(data):
+def point_of_gears(data: Tables) -> list[Fault]:
+    """Fault of a point contact of gear teeth."""
+    if "gears" not in data or not is_point(data):
         return []
     given = f"contact.radius = {show(data['contact']['radius'])}"
-    text = (
-        f"{given}: a point contact has no [{table}]; leave the radius out (mesh.width: a strip), or [{table}]"
-    )
+    text = f"{given}: a point contact has no [gears]; leave the radius out (mesh.width: a strip), or [gears]"
     return [Fault("contact.radius", text)]
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol, Self, TypeVar
 import numpy as np
 
 from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
+from ehlpetsc.base.quantities import AtEnd, Count
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
@@ -50,7 +51,9 @@ class BodyDepth(Effect[D]):
         if before is None:
             zero = self.scene.mesh_on_bodies.zero
             return self.record(depth=zero, hidden=zero, **entries)
-        return before._replace(hidden=self._ahead_of_profiles(before.depth))
+        roughness, faces = self.scene.roughness, self.scene.mesh_on_bodies.faces((0.0, 0.0))
+        profiles = (roughness.surface_1, roughness.surface_2) if roughness else (None, None)
+        return before._replace(hidden=BodyFields(*map(_ahead, before.depth, profiles, faces)))
 
     def inputs(self, record: D, inputs: StepInputs, step: Step) -> StepInputs:
         """Add both depths to the gap."""
@@ -68,12 +71,6 @@ class BodyDepth(Effect[D]):
         """Depth along both surfaces."""
         return dict.fromkeys(self.surface, self.scene.mesh_on_bodies.at_points(record.depth, points))
 
-    def _ahead_of_profiles(self, depth: BodyFields) -> BodyFields:
-        """Part of the depths of earlier passes ahead of the profiles, `BodyFields`."""
-        roughness, faces = self.scene.roughness, self.scene.mesh_on_bodies.faces((0.0, 0.0))
-        profiles = (roughness.surface_1, roughness.surface_2) if roughness else (None, None)
-        return BodyFields(*map(_ahead, depth, profiles, faces))
-
 
 def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -> BodyField:
     """Depth ahead of a profile, in excess of that of its row, the minimum in the mesh at the start."""
@@ -86,12 +83,10 @@ def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -
 
 def _volume(name: str, text: str) -> StepScalar:
     """Volume of both depths in the record of an effect."""
-    return StepScalar(
+    return AtEnd(
         "m^3",
         f"{text} since the first pass",
         integrated=True,
-        over_run="last",
-        summary=".4g",
         compared=True,
         of=lambda o: o.scene.mesh_on_bodies.volume(o.state.records[name].depth),
     )
@@ -115,11 +110,8 @@ class PlasticDeformation(BodyDepth[PlasticRecord]):
     name = "plastic_deformation"
     record = PlasticRecord
     scalars = {
-        "yielding": StepScalar(
-            "1",
+        "yielding": Count(
             "nodes that yield",
-            dtype="i4",
-            over_run="sum",
             summary="d",
             compared=True,
             of=lambda o: np.count_nonzero(o.state.records["plastic_deformation"].added),

@@ -1,8 +1,9 @@
-r"""Involute geometry of an external cylindrical gear pair (Niemann & Winter, Maschinenelemente 2; DIN 3960).
+r"""Involute geometry of a cylindrical gear pair (Niemann & Winter, Maschinenelemente 2; DIN 3960).
 
 Positions on the line of action are measured in the transverse section from the base circle of the pinion:
-:math:`\rho_1`, the radius of curvature of its profile. Flank 1 belongs to the pinion, flank 2 to the wheel;
-the pinion drives.
+:math:`\rho_1`, the radius of curvature of its profile. Flank 1 belongs to the pinion, which drives, flank 2
+to the wheel. A ring with teeth inside has, as in DIN 3960, a negative number of teeth, negative diameters
+and a negative centre distance: the same equations then hold, with :math:`L<0` and :math:`\rho_2<0`.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ class GearPair:
     `addendum`, `tip_clearance`: of the basic rack, over the module.
     `tip_radius`: radius of the tip edges [m].
     `tip_relief`: depth of the relief at both tips, falling linearly to none at B and D [m].
+    `internal`: whether the wheel is a ring with teeth inside.
     `load_sharing`: see :mod:`ehlpetsc.gears.load_sharing`; by default by relief and helix.
     `mesh_stiffness`: single stiffness c' of a tooth pair per face width [Pa]; by default that of ISO 6336-1.
     `path`, `load`: positions from the pitch point [m] and load of a pair there [N/m], of a tooth contact
@@ -67,9 +69,16 @@ class GearPair:
     mesh_stiffness: float | None = None
     path: tuple | None = None
     load: tuple | None = None
+    internal: bool = False
     given: dict = field(default_factory=dict, init=False, compare=False)
 
     def __post_init__(self) -> None:
+        if self.internal:
+            for name in ("teeth", "tip_diameter"):
+                if (pair := getattr(self, name)) is not None:
+                    object.__setattr__(self, name, (pair[0], -abs(pair[1])))
+            if self.centre_distance is not None:
+                object.__setattr__(self, "centre_distance", -abs(self.centre_distance))
         if self.profile_shift is None or not 0.0 < self.pressure_angle < 45.0:
             return
         names = ("centre_distance", "tip_diameter")
@@ -128,7 +137,7 @@ class GearPair:
     def undercut_shifts(self) -> tuple[float, ...]:
         r"""Profile shifts below which a rack undercuts, addendum - :math:`z\sin^2\alpha_t/(2\cos\beta)`."""
         per_tooth = 0.5 * math.sin(self.transverse_angle) ** 2 / math.cos(math.radians(self.helix_angle))
-        return tuple(self.addendum - per_tooth * z for z in self.teeth)
+        return tuple(self.addendum - per_tooth * z if z > 0 else -math.inf for z in self.teeth)
 
     @property
     def load_ratio(self) -> float:
@@ -225,7 +234,8 @@ class GearPair:
 
     def _a_and_e(self) -> tuple[float, float]:
         rho = [
-            math.sqrt((0.5 * d) ** 2 - r * r) for d, r in zip(self.tip_diameter, self.base_radii, strict=True)
+            math.copysign(math.sqrt((0.5 * d) ** 2 - r * r), d)
+            for d, r in zip(self.tip_diameter, self.base_radii, strict=True)
         ]
         return self.line_of_action - rho[1], rho[0]
 
@@ -249,7 +259,7 @@ class GearPair:
     @property
     def partners(self) -> int:
         r"""Number of wheel teeth that one pinion tooth meets, :math:`z_2/\gcd(z_1,z_2)`."""
-        return self.teeth[1] // math.gcd(*self.teeth)
+        return abs(self.teeth[1]) // math.gcd(*self.teeth)
 
     @property
     def hunting_shift(self) -> float:
@@ -274,18 +284,22 @@ class GearPair:
         if self.load_sharing == "thirds" and self.helix_angle:
             faults.append('load_sharing = "thirds": of spur gears; allowed with helix_angle: "stiffness"')
         r_b = self.base_radii
-        if not self.centre_distance > sum(r_b):
+        if self.internal and not self.teeth[0] < -self.teeth[1]:
+            return ["gears.teeth: allowed with internal: more of the wheel than of the pinion"]
+        if not abs(self.centre_distance) > abs(sum(r_b)):
+            between = "difference" if self.internal else "sum"
             faults.append(
-                f"centre_distance = {self.centre_distance:g}: the base circles overlap; allowed: above "
-                f"{sum(r_b):.5g} m, the sum of their radii"
+                f"centre_distance = {abs(self.centre_distance):g}: the base circles overlap; allowed: above "
+                f"{abs(sum(r_b)):.5g} m, the {between} of their radii"
             )
         for name, d, r in zip(FLANK_NAMES, self.tip_diameter, r_b, strict=True):
-            if not d > 2.0 * r:
+            if not abs(d) > 2.0 * abs(r):
                 faults.append(
-                    f"tip_diameter = {d:g} of the {name}: no involute flank below its base circle; allowed: "
-                    f"above {2.0 * r:.5g} m"
+                    f"tip_diameter = {abs(d):g} of the {name}: no involute flank below its base circle; "
+                    f"allowed: above {2.0 * abs(r):.5g} m"
                 )
         faults = faults or self._faults_of_the_path() or self._faults_of_the_shift()
+        faults = faults or self._faults_of_the_ring()
         faults = faults or self._faults_of_the_tips() or self._faults_of_the_load()
         return [f"gears.{fault}" for fault in faults]
 
@@ -312,11 +326,38 @@ class GearPair:
             )
         return notes
 
+    def _faults_of_the_ring(self) -> list[str]:
+        r"""Tips of a pinion that cut into those of its ring beside the path (KHK, Gear technical reference).
+
+        .. math:: \theta_1z_1/z_2+inv\,\alpha_w-inv\,\alpha_{a2}\ge\theta_2
+        """
+        if not self.internal:
+            return []
+        tips = [0.5 * abs(d) for d in self.tip_diameter]
+        distance, angle = abs(self.centre_distance), involute(self.working_angle)
+        at_tips = [involute(math.acos(abs(r) / tip)) for r, tip in zip(self.base_radii, tips, strict=True)]
+        apart = tips[1] ** 2 - tips[0] ** 2
+        cosines = (
+            (apart - distance**2) / (2.0 * distance * tips[0]),
+            (apart + distance**2) / (2.0 * distance * tips[1]),
+        )
+        if max(map(abs, cosines)) >= 1.0:  # the tip circles do not meet
+            return []
+        first, second = map(math.acos, cosines)
+        ratio = self.teeth[0] / -self.teeth[1]
+        if (first + at_tips[0] - angle) * ratio + angle - at_tips[1] >= second:
+            return []
+        return [
+            "tip_diameter: the tips of the pinion cut into those of the ring beside the path of contact; "
+            "allowed: more teeth of the ring, or lower tips"
+        ]
+
     def _faults_of_the_tips(self) -> list[str]:
         """Tips at which both flanks meet below the tip diameter."""
         return [
-            f"tip_diameter = {d:.5g} of the {name}: its teeth are pointed below it, the thickness of the tip "
-            f"is {1e3 * thickness:.3g} mm; allowed: above 0 mm, by a smaller profile_shift or tip diameter"
+            f"tip_diameter = {abs(d):.5g} of the {name}: its teeth are pointed below it, the thickness of "
+            f"the tip is {1e3 * thickness:.3g} mm; allowed: above 0 mm, by a smaller profile_shift or tip "
+            "diameter"
             for name, d, thickness in zip(FLANK_NAMES, self.tip_diameter, self.tip_thicknesses, strict=True)
             if thickness <= 0.0
         ]
@@ -325,10 +366,11 @@ class GearPair:
         """Given loads at positions off the line of action, or that do not fit the torque."""
         if self.load is None:
             return []
-        if max(map(abs, self.path)) > self.line_of_action:
+        longest = abs(self.line_of_action) + (self.points["E"] if self.internal else 0.0)
+        if max(map(abs, self.path)) > longest:
             return [
                 f"path = {self.path[0]:g} to {self.path[-1]:g} m from the pitch point; allowed: within "
-                f"{self.line_of_action:.3g} m, the line of action; a unit, path [mm], is read"
+                f"{longest:.3g} m, the line of action; a unit, path [mm], is read"
             ]
         (low, high), ratio = LOAD_RATIO, self.load_ratio
         if not low <= ratio <= high:
@@ -341,7 +383,7 @@ class GearPair:
     def _faults_of_the_shift(self) -> list[str]:
         """The first given length that is not that of the profile shift."""
         for name in self.given:
-            given, free = (np.atleast_1d(getattr(self, key)) for key in (name, f"play_free_{name}"))
+            given, free = (np.abs(np.atleast_1d(getattr(self, key))) for key in (name, f"play_free_{name}"))
             if not np.abs(given - free).max() <= TOLERANCE * self.module:
                 own, lengths = (", ".join(f"{value:.5g}" for value in of) for of in (given, free))
                 reason = f"the play-free pair of this profile_shift has {lengths} m"
@@ -353,17 +395,18 @@ class GearPair:
         faults = []
         for name, other, over, r in (
             ("wheel", "pinion", a <= 0.0, r_b[1]),
-            ("pinion", "wheel", e >= length, r_b[0]),
+            ("pinion", "wheel", e >= length and not self.internal, r_b[0]),
         ):
             if over:
                 faults.append(
                     f"tip_diameter: the tips of the {name} reach below the base circle of the {other} "
-                    f"(interference); allowed for the {name}: below {2.0 * math.hypot(length, r):.5g} m"
+                    f"(interference); allowed for the {name}: {'above' if self.internal else 'below'} "
+                    f"{2.0 * math.hypot(length, r):.5g} m"
                 )
         ratio = self.contact_ratio
         if not faults and not 1.0 <= ratio < 2.0:
             faults.append(
-                f"tip_diameter = {list(self.tip_diameter)}: contact ratio {ratio:.3f}, at a distance "
-                f"of the centres of {self.centre_distance:g} m; allowed: 1 to 2"
+                f"tip_diameter = {list(map(abs, self.tip_diameter))}: contact ratio {ratio:.3f}, at a "
+                f"distance of the centres of {abs(self.centre_distance):g} m; allowed: 1 to 2"
             )
         return faults

@@ -46,6 +46,7 @@ def single_stiffness(pair: GearPair) -> float:
         return pair.mesh_stiffness
     beta, (x1, x2) = math.radians(pair.helix_angle), pair.shifts
     n1, n2 = (z / (math.cos(pair.base_helix_angle) ** 2 * math.cos(beta)) for z in pair.teeth)
+    n2 = math.inf if pair.internal else n2  # of a ring, as in the standard
     terms = (1.0, 1.0 / n1, 1.0 / n2, x1, x1 / n1, x2, x2 / n2, x1 * x1, x2 * x2)
     q = sum(c * term for c, term in zip(COMPLIANCE, terms, strict=True))
     rack = 1.0 + 0.5 * (1.2 - pair.addendum - pair.tip_clearance)
@@ -83,6 +84,8 @@ def corner_gap(pair: GearPair, rho: np.ndarray) -> np.ndarray:
         beyond, tip = np.maximum(end - here, 0.0), 0.5 * pair.tip_diameter[side]
         turned = angle - math.acos(base / tip) - beyond / base
         x, y = pair.centre_distance - tip * np.cos(turned), tip * np.sin(turned)
+        if flank < 0.0:  # seen from the centre of a ring
+            x, y = -x, -y
         with np.errstate(invalid="ignore"):
             roll = np.sqrt((x * x + y * y) / flank**2 - 1.0)
         psi = (end - beyond) / flank - angle - roll + np.arctan(roll)

@@ -120,7 +120,7 @@ def bulk_temperatures(
         mean = 0.5 * (flashes[1:] + flashes[:-1]) @ np.diff(path.rho) / np.ptp(path.rho)
         return (rating.oil + BULK_OF_FLASH * float(mean),) * 2
     heat = 0.5 * pair.torque * pair.angular_speeds[0] * loss(path, coefficient)
-    areas = [np.pi * d * (0.5 * d + pair.face_width) for d in pair.tip_diameter]
+    areas = [np.pi * abs(d) * (0.5 * abs(d) + pair.face_width) for d in pair.tip_diameter]
     return tuple(rating.oil + heat / (h * area) for h, area in zip(heat_transfer, areas, strict=True))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ehlpetsc.life import laws
 from ehlpetsc.surfaces.body_field import BodyField
-from ehlpetsc.surfaces.filters import MIN_SPACINGS, low_pass
+from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line
 
 if TYPE_CHECKING:
     from ehlpetsc.life.jumps import Rates
@@ -123,7 +123,7 @@ class LifeBody(NamedTuple):
         width, met = self.s[1] - self.s[0], self.columns_within(stretch)
         pit = self.pit
         if short_cutoff and pit.any() and short_cutoff > MIN_SPACINGS * width:
-            pit = np.maximum(low_pass(self.s, pit, short_cutoff), 0.0)
+            pit = np.maximum(mean_line(self.s, pit, short_cutoff, "short_cutoff"), 0.0)
         wear, pit = self.wear[met], pit[met]
         first, last = self.s[met][[0, -1]]
         before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -15,7 +15,6 @@ from ehlpetsc.base.errors import CaseError, NotConverged
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.effects.effect import flat, unflat
-from ehlpetsc.life.band import band, lines_of, passes_to_failure
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
 from ehlpetsc.life.history import LifeFile, LifeHistory
@@ -24,6 +23,9 @@ from ehlpetsc.life.one_pass import Pass, run_pass
 from ehlpetsc.life.positions import Positions
 from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.prepare import prepare
+from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
 from ehlpetsc.run.ranks import on_root
@@ -31,6 +33,13 @@ from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
+CRITERIA = {  # name: post.criterion, post.mean_stress
+    "von-mises": ("von-mises", "none"),
+    "morrow": ("von-mises", "morrow"),
+    "goodman": ("von-mises", "goodman"),
+    "fatemi-socie": ("fatemi-socie", "none"),
+}
+SIDES = ("1", "2")
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
 
 
@@ -229,3 +238,40 @@ class _Life:
         parted = last["broken_out"] or last["solved"] != len(solved_round.passes)
         yields = self.jumps.is_yielding(max(last["yielded"], solved_round.yielded))
         return 0 if parted or yields else int(last["jump"])
+
+
+def passes_to_failure(file: Path, settings: tuple[str, ...] = ()) -> tuple[float, float]:
+    """Passes until D = 1 at the worst point of each surface, of the pass in a result file."""
+    with Loads(file, settings) as loads:
+        job, prepared = Job(str(file), "", settings=settings), prepare(loads, SIDES, lambda text: None)
+        worst = []
+        for side in SIDES:
+            values = solve(prepared, side, job)
+            damage = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
+            worst.append(float(np.nanmax(damage)))
+    first, second = (1.0 / damage if damage > 0.0 else np.inf for damage in worst)
+    return first, second
+
+
+def band(file: Path) -> dict[str, tuple[float, float]]:
+    """`passes_to_failure` by each of the `CRITERIA`, of one solved pass, without wear.
+
+    The criteria are fitted to the same strain-life tests and differ by the stresses that they count; none is
+    tested for rolling contact. The band is the least uncertainty of a life; ratios of lives by one criterion
+    are more certain.
+    """
+    return {
+        name: passes_to_failure(file, (f"post.criterion={criterion}", f"post.mean_stress={mean}"))
+        for name, (criterion, mean) in CRITERIA.items()
+    }
+
+
+def lines_of(found: dict[str, tuple[float, float]], chosen: tuple[float, float]) -> Iterator[str]:
+    """Lines of a band: ratios of each criterion to the `chosen` one, and the factor of the band."""
+    for k, side in enumerate(SIDES):
+        lives = [both[k] for both in found.values()]
+        ratios = ", ".join(f"{name} {both[k] / chosen[k]:.2g}" for name, both in found.items())
+        yield (
+            f"first failure of surface {side} by criterion, over {chosen[k]:.3g} passes: {ratios} "
+            f"(band of a factor {max(lives) / min(lives):.2g})"
+        )

@@ -55,7 +55,7 @@ class Positions:
         self._sign = -1.0 if (directed_speeds(case, scales)[1] > 0.0) == (shift > 0.0) else 1.0
         self.passes_2 = 1.0
         if case.gears:
-            pinion, wheel = case.gears.pair.teeth
+            pinion, wheel = map(abs, case.gears.pair.teeth)
             self.passes_2 = self.count * pinion / wheel
 
     def records(

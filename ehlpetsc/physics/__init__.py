@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -26,4 +27,5 @@ def operation_of(case: Case, scales: Scales) -> Operation:
     if not table.varies:
         conditions = Conditions(*(float(column[0]) for column in table[1:5]))
         return ConstantOperation(conditions, min(travel, table.swept_length()))
-    return VariableOperation(table, case.time.courant, scales.dx, scales.E, travel)
+    half_width = partial(scales.geometry.half_width, modulus=scales.E, ratio=scales.radius_ratio)
+    return VariableOperation(table, case.time.courant, scales.dx, half_width, scales.grid.growth, travel)

@@ -40,6 +40,7 @@ class Geometry(NamedTuple):
     """Quantities in which the kinds of contact differ.
 
     `dry`: of [contact] and E' [Pa].
+    `half_width`: along x [m], of load, radius along x, E' and the ratio of the radii; also of arrays.
     `rows`: rows of nodes across, of [mesh] and the dry contact.
     `grid`: of [contact], [mesh] and the dry contact.
     `moes`: Moes' M and L of viscosity, mean speed, alpha, load, radius along x and E'.
@@ -49,6 +50,7 @@ class Geometry(NamedTuple):
     """
 
     dry: Callable[[Values, float], Dry]
+    half_width: Callable[..., np.ndarray]
     rows: Callable[[Values, Dry], int]
     grid: Callable[[Values, Values, Dry], Grid]
     moes: Callable[..., tuple[float, float]]
@@ -70,6 +72,16 @@ def line(contact: Values, modulus: float) -> Dry:
 def ellipse(contact: Values, modulus: float) -> Dry:
     """Dry point contact."""
     return Dry(*hertz_ellipse(contact.load, contact.radius, contact.radius_across, modulus)[:3])
+
+
+def line_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, ratio: float) -> np.ndarray:
+    """Half-width of dry line contacts [m]."""
+    return np.sqrt(8.0 * load * radius / (np.pi * modulus))
+
+
+def point_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, ratio: float) -> np.ndarray:
+    """Semi-axis along x of dry ellipses of one shape [m]."""
+    return hertz_ellipse(1.0, 1.0, ratio, modulus).a * np.cbrt(load * radius)
 
 
 def line_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
@@ -176,8 +188,10 @@ def point_film(scales: Scales) -> float:
 
 
 GEOMETRIES = {
-    "line": Geometry(line, one_row, line_grid, line_groups, line_films, line_film),
-    "strip": Geometry(line, strip_rows, strip_grid, line_groups, line_films, line_film),
-    "point": Geometry(ellipse, point_rows, point_grid, point_groups, point_films, point_film),
+    "line": Geometry(line, line_half_width, one_row, line_grid, line_groups, line_films, line_film),
+    "strip": Geometry(line, line_half_width, strip_rows, strip_grid, line_groups, line_films, line_film),
+    "point": Geometry(
+        ellipse, point_half_width, point_rows, point_grid, point_groups, point_films, point_film
+    ),
 }
 """Kinds of contact by name, :attr:`ehlpetsc.case.tables.Case.kind`."""

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 SLOTS = 10  # constants that compiled loops get of any law
 STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature
+PRIVATE = {"cache": False, "no_cpython_wrapper": True}  # called by compiled functions alone
 Numbers: TypeAlias = float | np.ndarray
 Derivatives = tuple[Any, ...]
 FluidValues = SimpleNamespace  # of [fluid], checked or to be completed
@@ -92,7 +93,7 @@ def _or_else(
     state: int,
     pair: bool,
 ) -> Callable[..., Derivatives]:
-    count, law = n_constants(function, state), inlined(function, cache=False)
+    count, law = n_constants(function, state), inlined(function, **PRIVATE)
     if pair:  # in one branch: what depends on p alone is computed once
 
         def here(at: tuple, c: tuple[float, ...]) -> Derivatives:
@@ -103,7 +104,7 @@ def _or_else(
         def here(at: tuple, c: tuple[float, ...]) -> Derivatives:
             return law(*(at + c[:count]))
 
-    here = inlined(here, cache=False)
+    here = inlined(here, **PRIVATE)
     if other is None:
 
         def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
@@ -114,7 +115,7 @@ def _or_else(
         def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
             return here(at, c) if k == kind else other(k, at, c)
 
-    return inlined(call, cache=False)
+    return inlined(call, **PRIVATE)
 
 
 def padded(constants: tuple[float, ...]) -> tuple[float, ...]:

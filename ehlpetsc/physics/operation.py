@@ -24,9 +24,9 @@ class Conditions(NamedTuple):
     Attributes
     ----------
     load
-        w' [N/m].
+        [N/m], of a point contact [N].
     radius
-        Radius of relative curvature R [m].
+        Radius of relative curvature R along the direction of motion [m]; that across is in proportion.
     u1, u2
         Speeds of surfaces 1 and 2 [m/s], signed.
     """

@@ -6,6 +6,7 @@ no overshoot, continuous first derivatives. Distances travelled are their exact 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -33,7 +34,7 @@ class ConditionsTable(NamedTuple):
     time
         [s], increasing from 0 on, shape (n,).
     load, radius, u1, u2
-        [N/m], [m], [m/s], [m/s], shape (n,).
+        [N/m], of a point contact [N], [m] along the direction of motion, [m/s], [m/s], shape (n,).
     repeat
         Number of repetitions of the table.
     profile_offsets
@@ -149,8 +150,10 @@ class VariableOperation:
         Courant number of the time steps.
     dx
         Spacing of the nodes [m].
-    modulus
-        E' [Pa].
+    half_width
+        Half-width of the dry contact [m] of arrays of load and radius.
+    growth
+        Exponent of load times radius in its square.
     travel
         Distance of the faster surface at the end of the run [m]; by default that of the whole table.
     """
@@ -158,7 +161,8 @@ class VariableOperation:
     table: ConditionsTable
     courant: float
     dx: float
-    modulus: float
+    half_width: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    growth: float
     travel: float | None = None
     varies = True
 
@@ -248,13 +252,17 @@ class VariableOperation:
         """Time levels of one repetition of the table [s], 0 and its end included."""
         fine = self.table.sampled()
         slopes = [cubic(fine.time, 1) for cubic in self._cubics]
-        half_width = np.sqrt(8.0 * fine.load * fine.radius / (np.pi * self.modulus))
+        half_width = self.half_width(fine.load, fine.radius)
         cell = self.courant * self.dx
         with np.errstate(over="ignore"):
             rates = [
                 fine.speed / cell,  # steps per second: the faster surface moves by the Courant number a step
                 # and so do the edges of the Hertz contact
-                0.5 * half_width * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius) / cell,
+                0.5
+                * self.growth
+                * half_width
+                * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius)
+                / cell,
             ]
             rates += [np.abs(v) / (MAX_SPEED_CHANGE * self.courant * fine.speed.max()) for v in slopes[2:]]
         rate = np.maximum.reduce(rates)

@@ -45,7 +45,8 @@ def new_figure(rows: int, columns: int, size: tuple[float, float], **shared: obj
 
 def set_title(figure: Figure, *lines: str) -> None:
     """Set the title above all panels; empty lines are left out."""
-    figure.suptitle("\n".join(filter(None, lines)), fontsize="medium")
+    text = folded("\n".join(filter(None, lines)), figure.get_figwidth())
+    figure.suptitle(text, fontsize="medium")
 
 
 def fonts(size: Sequence[float] | None) -> AbstractContextManager:
@@ -75,7 +76,8 @@ def folded(text: str, width: float) -> str:
     """Text whose lines are broken after commas to fit a width [inches] in the font of :func:`fonts`."""
     letters = int(LETTERS * width / min(1.0, max(MIN_FONT, width / FULL_WIDTH)))
     kept = [line.replace(" ", "\xa0").replace(",\xa0", ", ") for line in text.splitlines()]
-    return "\n".join(textwrap.fill(line, letters, break_long_words=False) for line in kept)
+    lines = [textwrap.fill(line, letters, break_long_words=False) for line in kept]
+    return "\n".join(lines).replace("\xa0", " ")
 
 
 def shades(count: int) -> list:

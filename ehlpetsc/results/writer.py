@@ -82,7 +82,7 @@ class Layout:
         for name in FIELDS:
             if name in self.fields:
                 dtype = np.dtype("u1" if FIELDS[name].dtype == "u1" else self.precision)
-                rows = max(1, CHUNK_BYTES // (math.prod(self.shape) * dtype.itemsize))
+                rows = frames_of_chunk(self.shape, dtype.itemsize)
                 options = _growing(rows, *self.shape) | self._compression(dtype)
                 self._add(file, name, FIELDS[name], dtype=dtype, **options)
         self._add(file, "step", OTHERS["step"], **_growing(CHUNK_STEPS))
@@ -127,6 +127,14 @@ class Layout:
         for axis, dim in enumerate(dims):
             group = dataset.parent
             dataset.dims[axis].attach_scale(group[dim] if dim in group else file[dim])
+
+
+def frames_of_chunk(shape: tuple[int, ...], itemsize: int) -> int:
+    """Frames in a chunk of a field.
+
+    Of a plane one: compressed chunks that grow frame by frame leave holes in the file, twice its size.
+    """
+    return 1 if len(shape) > 1 else max(1, CHUNK_BYTES // (math.prod(shape) * itemsize))
 
 
 def _growing(rows: int, *width: int) -> dict[str, tuple]:

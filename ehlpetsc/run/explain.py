@@ -9,6 +9,7 @@ import numpy as np
 
 from ehlpetsc.base.command_line import CommandParser, duration, exit_status, put
 from ehlpetsc.case.combinations import combinations, keys_of
+from ehlpetsc.case.kinds import LINE
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
@@ -33,6 +34,10 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables.contact import Contact
     from ehlpetsc.surfaces.roughness import Roughness
 
+RIDGES = (
+    "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
+    "(mesh.width), touch on 0.7 of the dry area and carry more of the load in mixed lubrication"
+)
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
@@ -60,6 +65,7 @@ def explain(case: Case) -> str:
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
+        [RIDGES] * (bool(rough) and case.kind == LINE),
         _size(case, scales, rough),
         [f"Warning: {line}" for line in warnings(case, scales)],
         [f"Refused: {line}" for line in domain_faults(case, scales)],

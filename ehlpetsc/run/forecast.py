@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from ehlpetsc import __version__
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.case.kinds import LINE
 from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.physics import film_formulas
-from ehlpetsc.results.writer import CHUNK_BYTES, CHUNK_STEPS
+from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -22,7 +23,6 @@ START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
 SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
-LINE = "line"
 # of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
 PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.15, 0.3, 0.5
 # its growth with the nodes, and what does not grow [s]; steady start in steps
@@ -96,7 +96,7 @@ def file_size(case: Case, s: Scales) -> float:
     """
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
-    frames, rows = count // case.output.every + 1, max(1, CHUNK_BYTES // (s.grid.n * value))
+    frames, rows = count // case.output.every + 1, frames_of_chunk(s.grid.shape, value)
     stored = set(case.output.fields) & set(of_case(FIELDS, case))
     fields = sum(FIELDS[name].dtype == "f8" for name in stored)
     scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)

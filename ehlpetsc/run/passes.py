@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.errors import ExitStatus
+from ehlpetsc.base.quantities import STEP_SCALARS, unit_in
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
@@ -85,7 +86,7 @@ class Passes:
         """Add a complete pass to the index."""
         with read_result(self.file(number)) as result:
             row: dict[str, Any] = {"pass": number, "file": self.file(number).name} | pass_summary(result)
-            unit = result.unit("steps/set_volume")
+            unit = unit_in(STEP_SCALARS["set_volume"], self.case.kind)
         before = self.index.rows[-1]["set_volume"] if self.index.rows else 0.0
         row["added"] = row.get("set_volume", 0.0) - before
         self.index.rows.append(row)

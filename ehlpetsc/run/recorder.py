@@ -22,6 +22,7 @@ from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, in
 from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.stop import Deadline
 from ehlpetsc.run.validity import limits
 from ehlpetsc.stepping.time_stepping import on_level
 
@@ -117,7 +118,7 @@ class Recorder:
         self._boundary_friction = 0.0  # maximum so far, which effects may change
         self._lock: Lock | None = None
         self._writer: Any = None  # a ResultWriter, on rank 0
-        self._is_open, self._saved = False, clock.monotonic()
+        self._is_open, self._next_save = False, Deadline(simulation.case.output.checkpoint)
 
     def __enter__(self) -> Recorder:
         return self
@@ -168,10 +169,9 @@ class Recorder:
         if solved:
             friction = float(np.max(solved.inputs.boundary_friction))
             self._boundary_friction = max(self._boundary_friction, friction)
-        due = clock.monotonic() - self._saved > 60.0 * self.simulation.case.output.checkpoint
-        if state.step and self.comm.bcast(due):
+        if state.step and self._next_save(self.comm):
             self.checkpoint()
-            self._saved = clock.monotonic()
+            self._next_save = Deadline(self.simulation.case.output.checkpoint)
 
     def checkpoint(self) -> None:
         """Write the restart file, if any, for the last state."""

@@ -126,14 +126,8 @@ class Run:
             printed: list[Output] = (
                 [] if not self.root else [self, self._progress or Progress(self.simulation, self.out)]
             )
-            return solve(self.simulation, [self.recorder, *self._busy_cores(), *printed], self.stop)
-
-    def _busy_cores(self) -> list[Output]:
-        """Output that notices busy cores, of several ranks."""
-        if self.simulation.comm.size == 1:
-            return []
-
-        return [BusyCores(self.simulation.comm, self._print)]
+            of_ranks: list[Output] = [BusyCores(self.simulation.comm, self._print)]
+            return solve(self.simulation, [self.recorder, *of_ranks, *printed], self.stop)
 
     def write(self, state: AcceptedState) -> None:
         """Print the unused options after the first step, when PETSc has read those of the solver."""

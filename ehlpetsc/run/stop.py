@@ -1,4 +1,4 @@
-"""Stop on request: a signal or the time limit ends a run after the current step."""
+"""Deadlines of a run: a signal or the time limit ends it after the current step, restart files are due."""
 
 from __future__ import annotations
 
@@ -17,14 +17,25 @@ SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGUSR1)
 GRACE_TIME = 0.4  # s for the current step: mpirun kills one second after it has forwarded a signal
 
 
-class StopRequest:
+class Deadline:
+    """Wall clock time so many minutes from now on; 0: never."""
+
+    def __init__(self, minutes: float = 0.0) -> None:
+        self.until = clock.monotonic() + 60.0 * minutes if minutes else math.inf
+
+    def __call__(self, comm: MPI.Comm) -> bool:
+        """Whether it is over; equal on every rank of the communicator."""
+        return comm.allreduce(int(clock.monotonic() >= self.until)) > 0
+
+
+class StopRequest(Deadline):
     """Stop request of a run: a signal on any rank, or the time limit; 0 minutes: no limit.
 
     Ignored signals, as SIGHUP under nohup, remain ignored.
     """
 
     def __init__(self, minutes: float = 0.0, signals: tuple[signal.Signals, ...] = SIGNALS) -> None:
-        self.until = clock.monotonic() + 60.0 * minutes if minutes else math.inf
+        super().__init__(minutes)
         before = {name: signal.getsignal(name) for name in signals}
         self._before = {n: b for n, b in before.items() if b not in (signal.SIG_IGN, None)}
         for name in self._before:
@@ -44,10 +55,6 @@ class StopRequest:
 
     def _request(self, *_: object) -> None:
         self.until = min(self.until, clock.monotonic())
-
-    def __call__(self, comm: MPI.Comm) -> bool:
-        """Whether to stop; equal on every rank of the communicator."""
-        return comm.allreduce(int(clock.monotonic() >= self.until)) > 0
 
     def overdue(self, comm: MPI.Comm) -> bool:
         """Whether the grace time of the current step is over; equal on every rank of the communicator."""

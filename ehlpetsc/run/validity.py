@@ -198,7 +198,8 @@ def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
             axes.append((given.Y, z.mean(axis=1)))
         slopes = [np.polyfit(X - X.mean(), heights, 1)[0] for X, heights in axes]
         variance = sum(slope**2 * X.var() for slope, (X, _) in zip(slopes, axes, strict=True))
-        fraction = variance / z.var() if z.any() else 0.0
+        total = float(z.var())  # 0 also of heights whose squares are below the smallest number
+        fraction = variance / total if total else 0.0
         if fraction > MAX_TILT_VARIANCE:
             rises = [(abs(slope) * np.ptp(X), np.ptp(X)) for slope, (X, _) in zip(slopes, axes, strict=True)]
             text = " and ".join(f"{1e6 * rise:.3g} um over {1e3 * length:.3g} mm" for rise, length in rises)

@@ -41,18 +41,8 @@ def _orthonormal_polynomials(x: np.ndarray, degree: int) -> np.ndarray:
     return np.linalg.qr(np.polynomial.legendre.legvander(centred, degree))[0]
 
 
-def high_pass(x: np.ndarray, z: np.ndarray, cutoff: float) -> np.ndarray:
-    """Roughness: profile minus the mean line of cut-off `cutoff` [m], see `mean_line`."""
-    return z - mean_line(x, z, cutoff, "cutoff")
-
-
-def low_pass(x: np.ndarray, z: np.ndarray, cutoff: float) -> np.ndarray:
-    """Profile without waves shorter than `cutoff` [m]: S-filter of ISO 3274, see `mean_line`."""
-    return mean_line(x, z, cutoff, "short_cutoff")
-
-
 def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarray:
-    r"""Mean line of the Gaussian profile filter of ISO 16610-21.
+    r"""Mean line of the Gaussian profile filter of ISO 16610-21: profile without shorter waves.
 
     The convolution with :math:`s(x)=\frac{1}{\alpha\lambda_c}\exp[-\pi(x/\alpha\lambda_c)^2]`,
     :math:`\alpha=\sqrt{\ln 2/\pi}`: of a wave of length :math:`\lambda` it passes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.surfaces import synthetic
-from ehlpetsc.surfaces.filters import high_pass, levelled, low_pass, without_form
+from ehlpetsc.surfaces.filters import levelled, mean_line, without_form
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 if TYPE_CHECKING:
@@ -75,9 +75,9 @@ def samples(folder: Path, spec: Values) -> Samples:
     elif spec.level:
         z = levelled(X, z)
     if spec.cutoff is not None:
-        z = high_pass(X, z, spec.cutoff)
+        z = z - mean_line(X, z, spec.cutoff, "cutoff")
     if spec.short_cutoff is not None:
-        z, note = without_short_waves(z, low_pass(X, z, spec.short_cutoff), "Ra", spec)
+        z, note = without_short_waves(z, mean_line(X, z, spec.short_cutoff, "short_cutoff"), "Ra", spec)
         notes += (note,)
     z, notes = centred(z, notes)
     if spec.flip:

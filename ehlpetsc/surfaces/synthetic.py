@@ -120,7 +120,7 @@ class Spectrum(NamedTuple):
     `hurst`: H, between 0 and 1.
     `roll_off`, `short_cutoff`: longest self-affine and shortest wavelength along x [m].
     `peklenik`: ratio of the wavelengths along x to those along y, for two dimensions; below 1 the lay is
-        along y.
+        along y. The spectrum along x stays the same.
     """
 
     sq: float
@@ -165,10 +165,33 @@ def random_heights(
     along, *across = turned_wavenumbers(shape, spacing, direction)
     q = np.sqrt(sum(np.square(component / spectrum.peklenik) for component in across) + along**2)
     noise = np.fft.rfftn(np.random.default_rng(seed).standard_normal(shape))
-    noise *= np.sqrt(spectrum.density(q, len(shape)))
+    power = spectrum.density(q, len(shape))
+    if across and not direction:
+        power *= _same_along(along[0], spectrum, spacing[0] * shape[0])
+    noise *= np.sqrt(power)
     noise.flat[0] = 0.0
     z = np.fft.irfftn(noise, s=shape, axes=range(len(shape)))
     return z * (spectrum.sq / np.sqrt(np.mean(z**2)))
+
+
+def _same_along(q: np.ndarray, spectrum: Spectrum, period: float) -> np.ndarray:
+    """Factor by which a stretched surface has the spectrum along x of an isotropic one of this period across.
+
+    Without it a lay longer than the period would leave only the waves of q_y = 0, a steeper spectrum.
+
+    `q`: angular wavenumbers along x [rad/m].
+    `period`: across [m].
+    """
+    if spectrum.peklenik == 1.0:
+        return np.ones_like(q)
+
+    def along(peklenik: float) -> np.ndarray:
+        count = np.ceil(peklenik * period / spectrum.short_cutoff)
+        across = 2 * np.pi / (peklenik * period) * np.arange(-count, count + 1)
+        return spectrum.density(np.hypot.outer(across, q), 2).sum(axis=0)
+
+    stretched = along(spectrum.peklenik)
+    return np.divide(along(1.0), stretched, out=np.ones_like(q), where=stretched > 0.0)
 
 
 def turned_wavenumbers(

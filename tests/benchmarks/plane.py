@@ -4,14 +4,17 @@
 of a circular contact, M = 200 and L = 10, each in a process of its own; every table is Markdown.
 
 - smooth: steady start, counted as one step.
-- wave: cos kx cos ky of a half-width, 10 nm, pure rolling.
+- wave: cos kx cos ky of a half-width, a hundredth of the film (2 nm), pure rolling.
 - rigid, layer: self-affine roughness in mixed contact, slide/roll ratio 0.3, with a boundary film or a
-  compliant layer. Roughness fills the contact from the first step on (`time.start = "rough"`).
+  compliant layer.
+
+Waves and roughness fill the contact from the first step on (`time.start = "rough"`).
 
 Time is processor time, on several ranks wall time; its unit is a zero-padded convolution of the mesh, the
 median of some in the same process. The last column is the processor time of the whole process. Errors of the
-smooth films are against check values, extrapolated from two independent programs; all others are against the
-finest mesh at the same instant.
+smooth films, the minimum that of a parabola through 3 x 3 nodes, are against check values, extrapolated from
+two independent programs, and have an order and a limit; all others are against the finest mesh at the same
+instant.
 """
 
 from __future__ import annotations
@@ -40,7 +43,8 @@ import petsc4py
 petsc4py.init(sys.argv[:1])
 import numpy as np
 from mpi4py import MPI
-from support.points import moes_film, point
+from support.convergence import order_and_limit
+from support.points import lowest, moes_film, point
 
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.run.simulation import Simulation
@@ -48,7 +52,7 @@ from ehlpetsc.run.simulation import Simulation
 M, L = 200.0, 10.0
 CENTRAL, LOWEST = 3.641, 1.740  # H of the smooth contact, extrapolated from two independent programs
 HALF_WIDTH = 172.8907e-6  # a [m]
-WAVE = {"kind": "sine", "amplitude": 10e-9, "wavelength": HALF_WIDTH, "wavelength_across": HALF_WIDTH}
+WAVE = {"kind": "sine", "amplitude": 2e-9, "wavelength": HALF_WIDTH, "wavelength_across": HALF_WIDTH}
 ROUGH = {"kind": "self-affine", "sq": 0.15e-6, "hurst": 0.8, "seed": 1}
 ROUGH |= {"roll_off": 0.5 * HALF_WIDTH, "short_cutoff": 0.25 * HALF_WIDTH}
 SLIDING = {"surface.1": {"synthetic": ROUGH}, "motion.slide_roll_ratio": 0.3}
@@ -171,6 +175,14 @@ def measured(scene: str, side: int, ranks: int, chosen: argparse.Namespace, fiel
     return json.loads(printed.splitlines()[-1])
 
 
+def smooth_films(fields: Path) -> tuple[float, float]:
+    """Central and minimum film after Moes of stored fields."""
+    with np.load(fields) as values:
+        side, unit = round(np.sqrt(values["film"].size)), float(values["unit"])
+        film = unit * values["film"].reshape(side, side)
+        return film[(side - 1) // 2, 5 * (side - 1) // 8], lowest(film)
+
+
 def errors(fields: Path, finest: Path, is_smooth: bool) -> dict[str, float]:
     """Relative errors against the finest mesh, of the smooth films against the check values."""
     with np.load(fields) as values, np.load(finest) as best:
@@ -179,12 +191,13 @@ def errors(fields: Path, finest: Path, is_smooth: bool) -> dict[str, float]:
         stride = (round(np.sqrt(fine.size)) - 1) // (side - 1)
         fine = fine.reshape([round(np.sqrt(fine.size))] * 2)[::stride, ::stride]
         middle = (side - 1) // 2, 5 * (side - 1) // 8  # y = 0, x = 0
-        h_c, unit = fine[middle], float(values["unit"])
+        h_c = fine[middle]
         y, x = np.meshgrid(np.linspace(-2.0, 2.0, side), np.linspace(-2.5, 1.5, side), indexing="ij")
         local = float(np.abs(film - fine)[x**2 + y**2 <= 1.0].max() / h_c)
         found = {"p_max": values["p_max"] / best["p_max"] - 1.0, "film": local}
         if is_smooth:
-            found |= {"h_c": film[middle] * unit / CENTRAL - 1.0, "h_min": film.min() * unit / LOWEST - 1.0}
+            of_moes = smooth_films(fields)
+            found |= {"h_c": of_moes[0] / CENTRAL - 1.0, "h_min": of_moes[1] / LOWEST - 1.0}
         else:
             found |= {"h_c": film[middle] / h_c - 1.0, "h_min": film.min() / best["film"].min() - 1.0}
         if best["share"]:
@@ -242,6 +255,11 @@ def summary(chosen: argparse.Namespace, rows: list[dict], folder: Path) -> None:
         )
         cells = [found.get(name, "") for name in ERRORS]
         print(line([scene, side, row["seconds"] * row["steps"], *cells]))
+    if "smooth" in chosen.scenes and len(chosen.meshes) > 2:
+        found = [smooth_films(folder / f"smooth{side}.npz") for side in sorted(chosen.meshes)[-3:]]
+        for name, values in zip(("central", "minimum"), zip(*found, strict=True), strict=True):
+            order, limit = order_and_limit(*values)
+            print(f"\nsmooth {name} film: {values[-1]:.4f}, order {order:.2f}, limit {limit:.4f}")
 
 
 def main() -> None:

@@ -26,6 +26,16 @@ STRIP = {
     "contact.yield_pressure": None,
 }
 LAYER = {"contact.boundary_film": None, "contact.asperity_height": 30e-9}
+ROUGH = {"kind": "self-affine", "sq": 40e-9, "hurst": 0.8, "seed": 1}
+ROUGH |= {"roll_off": 40e-6, "short_cutoff": 20e-6}
+MIXED = {
+    "surface.1.synthetic": ROUGH,
+    "fluid.viscosity": 0.01,
+    "motion.slide_roll_ratio": 0.3,
+    "time": {"travel": 0.3, "start": "rough", "courant": 1.0},
+}
+REVERSED = {"mesh.inlet": -2.0, "mesh.outlet": 2.0, "motion": None, "operation.time": [0.0, 1e-1]}
+REVERSED |= {"operation.load": [1.5, 1.9], "operation.speed_1": [-0.05] * 2, "operation.speed_2": [-0.03] * 2}
 TIGHT = {"snes_atol": "1e-10"}
 CASES = {
     "point": (lambda: load(point(50.0, 5.0, 10)), 1),
@@ -33,6 +43,8 @@ CASES = {
         lambda: load(point(50.0, 5.0, 10, {"contact.boundary_film": None, "contact.model": "direct"})),
         1,
     ),
+    "rough point": (lambda: load(point(50.0, 5.0, 8), MIXED), 1),
+    "rough point, reversed": (lambda: load(point(50.0, 5.0, 8), MIXED | REVERSED), 1),
     "strip": (lambda: load(CASE, STRIP), 12),
     "strip with a layer": (lambda: load(CASE, STRIP | LAYER), 12),
 }

@@ -12,6 +12,7 @@ from ehlpetsc.analysis.compare import compare
 from ehlpetsc.results.reader import read_result
 
 CASE = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT)]
+BALL = [ROOT / "cases" / "ball.toml", *settings("mesh.points_per_half_width=8", "time.travel=0.5")]
 
 
 @pytest.fixture(scope="session")
@@ -83,17 +84,20 @@ def test_killed_run_restarts_from_its_last_checkpoint(whole, tmp_path):
     assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".tmp")] == []
 
 
-def test_time_limit_writes_a_restart_file(tmp_path):
-    done = run(*CASE, "--time-limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
+@pytest.mark.parametrize("case", [CASE, BALL], ids=["line", "point"])
+def test_time_limit_writes_a_restart_file(tmp_path, case):
+    done = run(*case, "--time-limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
     assert done.returncode == 4
     # the limit is long over in step 5, which is not waited for
-    assert last_step(tmp_path / "table1_rough.h5") == (4, "stopped")
-    assert (tmp_path / "table1_rough.restart.h5").exists()
+    assert last_step(tmp_path / f"{case[0].stem}.h5") == (4, "stopped")
+    assert (tmp_path / f"{case[0].stem}.restart.h5").exists()
 
 
-@pytest.mark.parametrize("words, ranks", [([], 2), (["--scheme", "sweep"], 0)])
-def test_time_limit_ends_the_steady_start(tmp_path, words, ranks):
-    done = run(*CASE, "--time-limit", "1e-6", *words, cwd=tmp_path, ranks=ranks)
+@pytest.mark.parametrize(
+    "case, ranks", [(CASE, 2), ([*CASE, "--scheme", "sweep"], 0), (BALL, 0)], ids=["ranks", "sweep", "point"]
+)
+def test_time_limit_ends_the_steady_start(tmp_path, case, ranks):
+    done = run(*case, "--time-limit", "1e-6", cwd=tmp_path, ranks=ranks)
     assert done.returncode == 4, done.stderr
     assert done.stderr == ""
     message, last = done.stdout.splitlines()[-2:]

@@ -25,9 +25,9 @@ HEAVY = """
 scipy.fft scipy.interpolate scipy.linalg scipy.ndimage ehlpetsc.__main__ ehlpetsc.case.loading
 ehlpetsc.discretisation.ehl_problem ehlpetsc.effects.heat.step ehlpetsc.results.output_guard
 ehlpetsc.results.reader ehlpetsc.results.restart_file ehlpetsc.results.running_in ehlpetsc.results.writer
-ehlpetsc.run.cli ehlpetsc.run.validity ehlpetsc.run.recorder
+ehlpetsc.run.cli ehlpetsc.run.validity
 ehlpetsc.run.forecast ehlpetsc.run.explain ehlpetsc.run.checkpoint ehlpetsc.stepping.observables
-ehlpetsc.stepping.state ehlpetsc.stepping.state ehlpetsc.stepping.steady_start
+ehlpetsc.stepping.state ehlpetsc.stepping.steady_start
 ehlpetsc.surfaces.body_field ehlpetsc.surfaces.roughness
 """.split()
 

@@ -15,11 +15,12 @@ from support.fuzzing import SEED, draws
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
+from ehlpetsc.case.tables import CASE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.surfaces.roughness import Roughness
 
-DRAWS, PROFILE_DRAWS = draws(400), draws(300) // 2
+DRAWS, PROFILE_DRAWS, KEY_DRAWS = draws(400), draws(300) // 2, draws(320) // 4
 LARGE = 5000  # nodes of a mesh beyond which nothing is worked out on it
 KEYS = """contact.radius | fluid | surface.2.synthetic | series.values | petsc.x | x | . | time.travel | title
 surface.1.file | contact.radius.x | output.fields | contact.youngs_modulus | mesh..inlet |"""
@@ -124,16 +125,44 @@ def test_corrupted_files_raise_case_errors(tmp_path):
     assert refused > 0.7 * DRAWS
 
 
-def test_corrupted_overrides_raise_case_errors():
-    rng = random.Random(SEED)
-    refused = 0
-    for _ in range(DRAWS):
-        words = [
-            rng.choice(KEYS) + rng.choice(("=", "=", "=", "", " = ")) + rng.choice(VALUES)
-            for _ in range(rng.randint(1, 3))
-        ]
-        refused += bool(faults_of(partial(load, CASES / "table1_rough.toml", words), partial(str, words)))
-    assert refused > 0.7 * DRAWS
+def keys_in(table, where=""):
+    """Places and keys of a table of the case and of all tables in it."""
+    for name, key in table.keys.items():
+        yield where + name, key
+        for inner in [key.table] if key.table else (key.variants or {}).values():
+            yield from keys_in(inner, f"{where}{name}.")
+
+
+def allowed_value(key, rng):
+    """A value within the bounds of a key, as TOML, or any other one."""
+    if key.kind not in (int, float, str, bool) or rng.random() < 0.3:
+        return rng.choice(VALUES)
+    if key.choices:
+        one = f'"{rng.choice(list(key.choices))}"'
+    elif key.kind in (str, bool):
+        return rng.choice(("true", "false") if key.kind is bool else ("'x'", "'../x'", "'losses'", "'1 um'"))
+    else:
+        low = next((bound for bound in (key.ge, key.gt) if bound is not None), -1e300)
+        high = next((bound for bound in (key.le, key.lt) if bound is not None), 1e300)
+        share = rng.choice((0.0, 0.01, 0.3, 1.0, rng.random()))
+        ratio = low > 0.0 and rng.random() < 0.7
+        value = low * (high / low) ** share if ratio else (1.0 - share) * low + share * high
+        one = str(round(value)) if key.kind is int else repr(value)
+    return f"[{', '.join([one] * rng.randint(1, 3))}]" if key.many and rng.random() < 0.8 else one
+
+
+@pytest.mark.filterwarnings("error")
+def test_any_key_with_any_value_raises_case_errors_alone():
+    rng, refused = random.Random(SEED), 0
+    cases, keys = sorted(CASES.glob("*.toml")), list(keys_in(CASE))
+    for _ in range(KEY_DRAWS):
+        words = [f"{rng.choice(KEYS)}{rng.choice(('', '=', ' = '))}{rng.choice(VALUES)}"]
+        words = words if rng.random() < 0.2 else []
+        for place, key in rng.choices(keys, k=rng.randint(1, 3)):
+            words.append(f"{place}={allowed_value(key, rng)}")
+        case = rng.choice(cases)
+        refused += bool(faults_of(partial(load, case, words), partial(str, (case.name, words))))
+    assert 0.3 * KEY_DRAWS < refused < 0.95 * KEY_DRAWS
 
 
 WORDS = [*"nan -inf 1e308 1e-320 x 1_0 1,5 1.000,5 1;2 -- é".split(), "", "\0"]

@@ -49,6 +49,11 @@ def test_source_of_a_named_oil_is_printed():
     assert line.endswith("Wingertszahn et al., Lubricants 11 (2023) 369, table A1")
 
 
+@pytest.mark.parametrize(("name", "count"), [("dry_rough.toml", 1), ("dry_hertz.toml", 0), ("ball.toml", 0)])
+def test_ridges_of_a_line_contact_are_named(name, count):
+    assert len(starting(lines(name), "Lay: in a line contact all waves are ridges across the motion")) == count
+
+
 def test_rough_start_is_named():
     begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
     assert begun == ["Start: rough, after a ramp before time 0"]

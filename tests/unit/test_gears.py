@@ -74,6 +74,71 @@ def test_command_takes_units_as_a_run_does(case, capsys):
     assert 'gears.module = "4.5 kg": not a unit' in capsys.readouterr().err
 
 
+TIPS = ("centre_distance", "tip_diameter")
+TEETH, TEETH_BACK = ((16, 24), (82.5e-3, 118.4e-3)), ((24, 16), (118.4e-3, 82.5e-3))
+RING = FZG | {
+    "teeth": [20, 60],
+    "centre_distance": 0.09,
+    "tip_diameter": [99e-3, 261.75e-3],
+    "internal": True,
+}
+
+
+def test_geometry_of_a_ring_is_that_of_khk():
+    """KHK, Gear technical reference, profile-shifted internal gear (its x2 counts outwards)."""
+    shifted = {"profile_shift": (0.0, -0.5), "centre_distance": None, "tip_diameter": None}
+    pair = GearPair(**RING | shifted | {"module": 3e-3, "teeth": (16, 24)})
+    assert math.degrees(pair.working_angle) == pytest.approx(31.0937, abs=1e-4)
+    assert 1e3 * pair.centre_distance == pytest.approx(-13.1683, abs=1e-4)
+    assert np.multiply(pair.root_diameters, 1e3) == pytest.approx([40.5, -82.5])
+
+
+def test_flanks_of_a_ring_roll_and_slide_as_their_circles():
+    path, pair = path_of_contact(RING), GearPair(**RING)
+    (rho_1, rho_2), omega = (path.rho, path.rho - pair.line_of_action), pair.angular_speeds
+    assert path.radius == pytest.approx(1.0 / (1.0 / rho_1 - 1.0 / rho_2))
+    assert path.speed_2 == pytest.approx(abs(omega[1]) * rho_2)
+    assert path.speed_1 - path.speed_2 == pytest.approx((omega[0] + omega[1]) * (rho_1 - pair.points["C"]))
+    for arc, speed in zip(pair.flank_arcs(path.rho), (path.speed_1, path.speed_2), strict=True):
+        assert arc[-1] == pytest.approx(0.5 * (speed[1:] + speed[:-1]) @ np.diff(path.time))
+    # both tips on their circles, about centres 0.09 m apart
+    y, x = (getattr(math, name)(pair.working_angle) for name in ("sin", "cos"))
+    for point, centre, tip in (("A", -0.09, 0.261750), ("E", 0.0, 0.099)):
+        along = path.rho[path.index(point)] - pair.points["C"]
+        pitch = pair.base_radii[0] / x - centre
+        assert 2.0 * math.hypot(pitch + along * y, along * x) == pytest.approx(tip)
+    way = np.linspace(0.0, 1e-3, 50)
+    for end, out in (("A", -way), ("E", way)):
+        gap = corner_gap(pair, pair.points[end] + out)
+        assert gap[0] == 0.0 and (np.diff(gap) > 0.0).all()
+    assert share(pair, path.rho).max() <= 1.0 and path.contact_ratio == pytest.approx(1.832, abs=1e-3)
+
+
+def test_rack_has_the_radius_of_its_pinion_and_a_driving_wheel_mirrors_the_path():
+    rack = GearPair(**FZG | {"teeth": (20, 1_000_000), "profile_shift": (0.1, 0.0)} | dict.fromkeys(TIPS))
+    points = rack.points
+    assert rack.radius(points["E"]) == pytest.approx(points["E"], rel=1e-4)
+    depth = (points["C"] - points["A"]) * math.sin(rack.working_angle)
+    assert depth == pytest.approx(0.9 * rack.module, rel=1e-4)
+    pinion, wheel = (GearPair(**FZG | {"teeth": z, "tip_diameter": d}) for z, d in (TEETH, TEETH_BACK))
+    assert wheel.points["A"] == pytest.approx(pinion.line_of_action - pinion.points["E"])
+    assert wheel.contact_ratio == pytest.approx(pinion.contact_ratio)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"teeth": [20, 20]}, ["gears.teeth", "more of the wheel"]),
+        ({"tip_diameter": [99e-3, 0.261]}, ["tips of the wheel reach below", "above 0.26"]),
+        ({"teeth": [20, 23], "centre_distance": 7.2e-3, "tip_diameter": [97e-3, 99e-3]}, ["cut into those"]),
+    ],
+)
+def test_rings_that_do_not_mesh_are_refused(changes, words):
+    with pytest.raises(CaseError) as error:
+        path_of_contact(RING | changes)
+    assert all(word in str(error.value) for word in words)
+
+
 @pytest.mark.parametrize(
     ("point", "radius", "speed", "sliding"),
     [

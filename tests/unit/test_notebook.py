@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 NOTEBOOK = ROOT / "cases" / "first_steps.ipynb"
-DPI = 50  # of the pictures stored
+DPI = 40  # of the pictures stored
 MOST_BYTES = 180_000
 
 

@@ -1,6 +1,8 @@
 """Tables of operating conditions: what they may hold, and their interpolation, integrals and time levels."""
 
+import math
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,7 @@ import pytest
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.physics import operation_of
+from ehlpetsc.physics.geometry import line_half_width
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import ConditionsTable, VariableOperation
 
@@ -150,7 +153,8 @@ def make(repeat=1, courant=0.5, **columns):
     values = {"load": 1e5, "radius": 0.01, "u1": 1.0, "u2": 1.0} | columns
     values = {name: np.broadcast_to(np.asarray(v, float), time.shape) for name, v in values.items()}
     table = ConditionsTable(time, *values.values(), repeat=repeat)
-    return VariableOperation(table, courant, 1e-6, 227e9)
+    half_width = partial(line_half_width, modulus=227e9, ratio=math.inf)
+    return VariableOperation(table, courant, 1e-6, half_width, 1.0)
 
 
 def test_distances_are_integrals_of_speeds():

@@ -78,10 +78,16 @@ def test_what_points_and_strips_refuse_is_on_its_page():
         assert key in text and re.search("`(.+?)`", words[key])[1] in text
 
 
-def test_rows_across_are_at_least_four_a_half_width():
-    assert "mesh.points_per_half_width = [24, 3]: allowed:" in fault(
-        POINT, mesh__points_per_half_width=[24, 3]
-    )
+@pytest.mark.parametrize(
+    "overrides, message",
+    [
+        ({"mesh.points_per_half_width": [24, 3]}, "mesh.points_per_half_width = [24, 3]: allowed:"),
+        ({"operation": {"time": [0, 1], "load": ["2 N", "3 N/m"]}}, "allowed: one of N in a point contact"),
+        ({"operation": {"time": [0, 1], "load": [2, -3]}}, "row 2: load = -3 N: allowed: above 0"),
+    ],
+)
+def test_refused_values_of_a_point(overrides, message):
+    assert message in fault(POINT, **overrides)
 
 
 def test_xdmf_is_not_of_a_line_contact():

@@ -3,11 +3,11 @@
 import numpy as np
 import petsc4py
 import pytest
-from support.points import point
 
 petsc4py.init([])
 
 from petsc4py import PETSc
+from support.points import point
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.plane.deflection import free_kernel

@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
+from ehlpetsc.discretisation.plane.finite_volumes import cross_mobility
 from ehlpetsc.physics import rheology, tabulated_flow, traction
 
 STEP = 1e-30
@@ -29,6 +31,35 @@ def test_eyring_factor(sigma, zeta, factor):
     law = fluid.eyring_stress, sliding / fluid.eyring_stress
     for side, values in enumerate(rheology.mobilities(h, gradient, 1.0 / eta, 1.0 / eta, *law)):
         assert values[0] * 12.0 * eta / h**3 == pytest.approx(factor, rel=1e-9), side
+
+
+def cross_factor(kind, sigma, zeta, h=1e-7, eta=0.5):
+    """Flow across a sliding film over that of a Newtonian oil without sliding."""
+    stress = OIL.eyring_stress
+    gradient, sliding = 2.0 * stress * sigma / h, zeta * stress * h / eta
+    of_pressure = np.inf if kind == rheology.NEWTON else stress
+    resting = rheology.mobilities(h, gradient, 1.0 / eta, 1.0 / eta, of_pressure, 0.0)[0]
+    return (
+        cross_mobility(h, resting, 1.0 / eta, sliding, rheology.FlowLaw(kind, stress))[0] * 12.0 * eta / h**3
+    )
+
+
+@pytest.mark.parametrize("zeta", [0.1, 10.0, 1e4])
+def test_limits_of_the_cross_flow_of_an_eyring_film(zeta):
+    """Against the profile of both stresses through the film, along x even, across linear."""
+    assert cross_factor(rheology.NEWTON, 5.0, zeta) == pytest.approx(1.0, rel=1e-12)
+    assert cross_factor(rheology.EYRING, 5.0, 0.0) == pytest.approx(7.124316769, rel=1e-9)
+    z = (np.arange(4000) + 0.5) / 4000 - 0.5
+    for sigma, tolerance in ((1e-4, 1e-6), (0.1, 1e-3)):
+        across = 2.0 * sigma * z
+
+        def rate(along, across=across):
+            total = np.hypot(along, across)
+            return np.sinh(total) / total
+
+        along = brentq(lambda tau, rate=rate: (rate(tau) * tau).mean() - zeta, 1e-3, 40.0)
+        exact = 12.0 * (z * z * rate(along)).mean()
+        assert cross_factor(rheology.EYRING, sigma, zeta) == pytest.approx(exact, rel=tolerance)
 
 
 def test_wall_shear():

@@ -52,6 +52,17 @@ def test_peklenik_is_the_ratio_of_waves_along_x_to_those_along_y():
     assert power[q > 1 / 15.8e-6, 0].max() < 1e-20 * power.max()
 
 
+@pytest.mark.parametrize("peklenik", [0.01, 0.2, 3.0])
+def test_a_stretched_surface_keeps_the_spectrum_along_x(peklenik):
+    """Also over a width that is shorter than its waves across."""
+    isotropic, stretched = (
+        mean_power((100, 1000), (1e-6, 1e-6), SPECTRUM._replace(peklenik=lay)).mean(axis=0)
+        for lay in (1.0, peklenik)
+    )
+    bands = [np.add.reduceat(p[2:140], [0, 8, 16, 32, 64]) / p.sum() for p in (isotropic, stretched)]
+    assert bands[1] == pytest.approx(bands[0], rel=0.12)
+
+
 @pytest.mark.parametrize("spacing", [5e-6, 1e-8])
 def test_unresolved_short_cutoff_is_refused_with_its_limits(spacing):
     with pytest.raises(ProfileError, match="short_cutoff = 8e-06 m; allowed: at least two spacings, .* m$"):

@@ -145,11 +145,11 @@ def extend(
             CASE.keys[effect.table.name] = effect.table.key
 
 
-def key_of(name: str) -> Key | None:
-    """Key by its dotted name."""
+def key_of(name: object) -> Key | None:
+    """Key by its dotted name; None: there is none."""
     table: KeyTable | None = CASE
     key = None
-    for part in str(name).split("."):
+    for part in name.split(".") if isinstance(name, str) else ():
         key = table.keys.get(part) if table else None
         table = key.table if key else None
     return key

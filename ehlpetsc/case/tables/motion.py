@@ -30,8 +30,9 @@ MOTION_KEYS = {
 MOTION = KeyTable("motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS)
 
 
-def _column(text: str, unit: str) -> Key:
-    return Key(f"{text}, here instead of in a file", unit, -1e15, 1e15, many="list", min_items=2)
+def _column(text: str, unit: str, point_unit: str = "") -> Key:
+    text = f"{text}, here instead of in a file"
+    return Key(text, unit, -1e15, 1e15, many="list", min_items=2, point_unit=point_unit)
 
 
 def _file_or_columns(operation: Values) -> dict[str, Any]:
@@ -43,12 +44,13 @@ def _file_or_columns(operation: Values) -> dict[str, Any]:
 OPERATION_KEYS = {
     "file": Key(
         "CSV table beside the case file; its first line names columns, with units in brackets: time [s], "
-        "load [N/m], radius [m], speed 1 [m/s], speed 2 [m/s]; other conditions are constant",
+        "load [N/m], radius [m], speed 1 [m/s], speed 2 [m/s]; other conditions are constant; of a point "
+        "contact load [N] and the radius along, that across in the ratio of contact.radius",
         kind=str,
     ),
     "repeat": Key("times that the table is run through", "", 1, 100_000, kind=int, default=1),
     "time": _column("increasing", "s"),
-    "load": _column("above 0", "N/m"),
+    "load": _column("above 0", "N/m", "N"),
     "radius": _column("above 0", "m"),
     "speed_1": _column("of surface 1, signed", "m/s"),
     "speed_2": _column("of surface 2, signed", "m/s"),
@@ -85,7 +87,15 @@ NOT_GEOMETRY = ("load_file", "heat_transfer", "oil_factor")
 PATH_COLUMNS = {"path": ("path", "position"), "load": ("load", "w")}  # of gears.load_file
 GEARS_KEYS = {
     "module": Required("normal module", "m", 1e-5, 1),
-    "teeth": Required("of pinion and wheel", "", 5, 10_000, kind=int, many="two"),
+    "teeth": Required(
+        "of pinion and wheel, the driving and the driven one; 1000000: a rack",
+        *("", 5, 1_000_000),
+        kind=int,
+        many="two",
+    ),
+    "internal": Key(
+        "the wheel is a ring with teeth inside; its shift as in DIN 3960", kind=bool, default=False
+    ),
     "pressure_angle": Key("of the basic rack", "degrees", 5, 40, default=20.0),
     "helix_angle": Key("at the reference circle; the middle slice is solved", "degrees", 0, 45, default=0.0),
     "profile_shift": Key("`x1` and `x2`, of the play-free pair (DIN 3960)", "", -2, 4, many="two"),

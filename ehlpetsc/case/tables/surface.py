@@ -35,7 +35,9 @@ SELF_AFFINE_KEYS = {
     ),
     "roll_off": Required("wavelength above which `C` is constant", *LENGTH),
     "short_cutoff": Required("shortest wavelength", *LENGTH, below="roll_off"),
-    "peklenik": Key("of a map: wavelengths along its rows over those across", "", 0.01, 100, default=1.0),
+    "peklenik": Key(
+        "of a map: waves along its rows, of unchanged spectrum, over those across", "", 0.01, 100, default=1.0
+    ),
     "seed": GROUND_KEYS["seed"],
 }
 WAVE_KEYS = {

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScalar, Values
+from ehlpetsc.base.quantities import AtEnd, Error
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.heat.record import HeatRecord
 
@@ -109,14 +110,9 @@ class Heat(Effect[HeatRecord]):
         "temperature_1_mean": _temperature("temperature of surface 1, mean over the Hertz contact", "last"),
         "temperature_2_max": _temperature("highest temperature of surface 2", "max"),
         "temperature_2_mean": _temperature("temperature of surface 2, mean over the Hertz contact", "last"),
-        "heat": StepScalar(
-            "W", "heat dissipated", integrated=True, over_run="last", summary=".4g", compared=True
-        ),
-        "heat_error": StepScalar(
-            "1",
-            "imbalance of the heat dissipated with that taken by bodies and oil, over the first",
-            over_run="max",
-            summary=".2e",
+        "heat": AtEnd("W", "heat dissipated", integrated=True, compared=True),
+        "heat_error": Error(
+            "imbalance of the heat dissipated with that taken by bodies and oil, over the first"
         ),
     }
 

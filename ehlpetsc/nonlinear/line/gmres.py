@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.base.compiled import ZERO, compiled
+from ehlpetsc.base.compiled import ZERO, call_code, code_of, compiled
 from ehlpetsc.nonlinear.line.distributed_lu import solve
 from ehlpetsc.nonlinear.line.jacobian import jacobian_product
 from ehlpetsc.nonlinear.ranks import exchange
@@ -38,7 +38,12 @@ class FlexibleGMRES:
         lu, limits = operator.factors.lu, (min(max_it, MAX_IT), *tolerances)
         solution = np.zeros(operator.size)
         solution[operator.active] = b.array_r
-        norms = iterations(solution, *operator.linearisation, *operator.halo[1:], *lu.factors, limits)
+        if operator.factors.codes is None:
+            vectors = solution, solution
+            product = code_of(jacobian_product, *operator.linearisation, tuple(operator.halo), *vectors)
+            operator.factors.codes = product, code_of(solve, lu.factors, *vectors)
+        given = *operator.linearisation, *operator.halo[1:], *lu.factors, operator.factors.codes
+        norms = iterations(solution, *given, limits)
         for k, norm in enumerate(norms.tolist()):
             if not np.isfinite(norm):
                 norm, reason = np.inf, PETSc.KSP.ConvergedReason.DIVERGED_NANORINF  # PETSc refuses nan
@@ -65,6 +70,7 @@ def iterations(
     cuts: tuple,
     border: tuple,
     room: tuple,
+    codes: tuple,
     limits: tuple,
 ) -> np.ndarray:
     """Replace the right-hand side b by the solution to PETSc's tolerances; collective.
@@ -73,6 +79,7 @@ def iterations(
     `buffers`, `matrices`, `pressures`: of a `Halo`.
     `place`, `lu`, `cuts`, `border`, `room`: `factors` of a `DistributedLU`; one by one, see
         :func:`.ranks.collective`.
+    `codes`: of the product with the Jacobian and of :func:`.distributed_lu.solve`.
     `limits`: iterations, relative and absolute tolerance, divergence tolerance.
 
     Returns the norms of the residual, from that of the right-hand side on.
@@ -87,8 +94,8 @@ def iterations(
     new = ZERO
     while True:
         if new > 0:
-            solve(factors, v[new - 1], z[new - 1])
-            jacobian_product(state, work, halo, z[new - 1], v[new])
+            call_code(solve, codes[1], (factors, v[new - 1], z[new - 1]))
+            call_code(jacobian_product, codes[0], (state, work, halo, z[new - 1], v[new]))
         norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
         norms[new] = least_residual(numbers, new, norm)
         if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == max_it:

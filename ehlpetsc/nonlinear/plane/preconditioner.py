@@ -77,18 +77,21 @@ class SparseForm:
         self.kind = kind = whole[0][problem.first : problem.last]
         self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
         local, most = problem.local, STENCIL * problem.local
-        pointers, columns = np.zeros(local + 1, dtype=np.int32), np.empty(most, dtype=np.int32)
-        csr = pointers, columns, np.zeros((most, block, block))
-        by_pressure, by_separation = np.zeros((local, STENCIL)), np.zeros((local, STENCIL))
+        csr = (
+            np.zeros(local + 1, dtype=np.int32),
+            np.empty(most, dtype=np.int32),
+            np.zeros((most, block, block)),
+        )
+        self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
+        every_second = self.by_pressure[:, ::2], self.by_separation[:, ::2]
         border = np.zeros((local, block))
         mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic
         scales = problem.deflection.row_scale, *grid.steps
-        count = fill(tuple(whole), derivatives, terms, scales, mesh, csr, by_pressure, by_separation, border)
+        count = fill(tuple(whole), derivatives, terms, scales, mesh, csr, *every_second, border)
         self.border = border.ravel()
-        self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
-        self.by_pressure[:, ::2], self.by_separation[:, ::2] = by_pressure, by_separation
-        sizes, entries = (block * local, block * problem.n), (pointers, columns[:count], csr[2][:count])
+        sizes, entries = (block * local, block * problem.n), (csr[0], csr[1][:count], csr[2][:count])
         self.matrix = PETSc.Mat().createBAIJ((sizes, sizes), block, csr=entries, comm=comm)
+        del csr, entries  # PETSc has a copy
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         self.pc.setOptionsPrefix(PREFIX)
@@ -112,7 +115,7 @@ class SparseForm:
 
 
 class Factors(NamedTuple):
-    """Sparse form and, with oil, coarse correction of one state; the solution for a unit of h00."""
+    """Sparse form and coarse correction (None without oil) of one state; the solution for a unit of h00."""
 
     sparse: SparseForm
     coarse: CoarseCorrection | None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
 TIME_STEP_LIMIT = 1.0  # p0: as `STEP_LIMIT`, which costs asperities half as many iterations again
+
+
+# options of glibc's mallopt, and values: M_MMAP_THRESHOLD, M_MMAP_MAX, M_TRIM_THRESHOLD
+RETURNING = ((-3, 1 << 24), (-4, 1 << 16), (-1, 1 << 26))
 
 
 class PlaneMatrices:
@@ -78,10 +84,21 @@ class PlaneFields(TwoFields):
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
 
+def return_freed_memory() -> None:
+    """Have malloc return freed blocks of 16 MB and more to the system.
+
+    SuperLU_DIST, which Debian's PETSc loads, has it keep them, and factors do not fit the holes of others.
+    """
+    with contextlib.suppress(AttributeError):  # another C library
+        for option in RETURNING:
+            ctypes.CDLL(None).mallopt(*option)
+
+
 def plane_system(
     case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, bound_tolerance: float = ZERO_TOLERANCE
 ) -> TwoFields:
     """System of a point contact or a strip; arguments as of :func:`.line.system.line_system`."""
+    return_freed_memory()
     grid, ranks = scales.grid, comm.tompi4py()
     cuts = first_rows(grid.shape[0], ranks.size)
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)

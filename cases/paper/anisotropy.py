@@ -1,0 +1,162 @@
+"""What the lay of roughness changes: strips with one spectrum along x, from ridges to a longitudinal lay.
+
+``./run_mpi.sh python cases/paper/anisotropy.py TABLE [options]`` prints a line for each lay and pressure or
+speed; TABLE is
+
+- ``film``: lubricated, 1 GPa, FVA 3 at 90 degrees C, slide/roll 0.25, waves below ``--border`` in the layer;
+- ``dry``: the same contact without oil, all waves below ``--border`` left out;
+- ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``.
+
+The lay is Peklenik's number, wavelengths along x over those across. At 1/100 waves are ridges, solved as a
+line contact; 0 is a line contact of smooth bodies with all roughness in the layer.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ehlpetsc.api import solve
+from ehlpetsc.results.means import filled_weights, mean
+from ehlpetsc.surfaces.synthetic import Spectrum, random_heights
+
+HALF_WIDTH, MODULUS = 150e-6, 227.4725e9  # m, E' of steel [Pa]
+SQ, HURST, ROLL_OFF, SHORTEST = 0.28e-6, 0.8, 80e-6, 2.5e-6  # of both surfaces together [m]
+RIDGES = 0.01  # lay
+RIDGE_POINTS, RIDGE_SPACING = 2560, 1.25e-6  # of a profile [m]
+PRESSURES, SPEEDS = (0.1e9, 0.5e9, 1e9), (15.0, 3.3, 0.6)  # Pa, m/s
+MEANS = ("lambda_ratio", "friction_coefficient", "contact_share", "contact_length", "film_central", "p_max")
+FLOW = 5e9  # above which asperities of steel flow [Pa]
+
+
+def sq_down_to(shortest: float) -> float:
+    """Root mean square height [m] of the waves down to `shortest` when all down to `SHORTEST` have `SQ`."""
+
+    def variance(wave: float) -> float:
+        return 0.5 + (1.0 - (wave / ROLL_OFF) ** (2 * HURST)) / (2 * HURST)
+
+    return SQ * float(np.sqrt(variance(shortest) / variance(SHORTEST)))
+
+
+def contact(chosen: argparse.Namespace, lay: float, pressure: float) -> dict[str, Any]:
+    """Case of a dry smooth strip of Hertz pressure `pressure`; of ridges the line contact."""
+    points, mesh = chosen.points, {"inlet": -2.5, "outlet": 1.5 if chosen.table == "film" else 2.5}
+    if lay > RIDGES:
+        across = {"points_per_half_width": [points, max(4, round(points * lay))], "width": chosen.width}
+    else:
+        across = {"points_per_half_width": points}
+    return {
+        "title": f"lay {lay:.3g}",
+        "contact": {
+            "radius": HALF_WIDTH * MODULUS / (4.0 * pressure),
+            "load": 0.5 * np.pi * HALF_WIDTH * pressure,
+            "youngs_modulus": 0.91 * MODULUS,
+            "poisson_ratio": 0.3,
+        },
+        "mesh": mesh | across,
+    }
+
+
+def surface(chosen: argparse.Namespace, lay: float, sq: float, seed: int) -> dict[str, Any]:
+    """One self-affine surface; ridges as a profile, with the spectrum of the isotropic one along x."""
+    waves = {"sq": sq, "hurst": HURST, "roll_off": ROLL_OFF, "short_cutoff": chosen.border}
+    if lay > RIDGES:
+        return {"synthetic": {"kind": "self-affine", "peklenik": lay, "seed": seed, **waves}}
+    spacing = 0.25 * chosen.width * HALF_WIDTH, RIDGE_SPACING
+    z = random_heights((4, RIDGE_POINTS), spacing, Spectrum(*waves.values(), RIDGES), seed)[0]
+    return {"x": RIDGE_SPACING * np.arange(RIDGE_POINTS), "z": z}
+
+
+def statistics(p: np.ndarray, nodes: int) -> str:
+    """Real area over nominal area, pressures of contact [Pa], as a line."""
+    return (
+        f"area {len(p) / nodes:.3f}, mean {p.mean() / 1e9:.2f} GPa, 99th percentile "
+        f"{np.percentile(p, 99) / 1e9:.2f} GPa, load above 5 GPa {p[p > FLOW].sum() / p.sum():.3f}"
+    )
+
+
+def dry(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
+    """Real area over the Hertz area, pressures."""
+    case = contact(chosen, lay, pressure)
+    case["surface"] = {"1": surface(chosen, lay, sq_down_to(chosen.border), chosen.seed)}
+    result = solve(case, progress=False)
+    p = np.ravel(result["pressure"][-1])[result.contacts_at(-1).ravel()]
+    return statistics(p, 2 * chosen.points * (1 if result.y is None else len(result.y)))
+
+
+def flat(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
+    """Real area over the nominal area, pressures; square mesh, spacing a fifth of the shortest wave."""
+    import tamaas
+
+    n, step = chosen.points, chosen.border / 5
+    rows, across = (n, step / lay) if lay > RIDGES else (4, HALF_WIDTH / 4)
+    spectrum = Spectrum(sq_down_to(chosen.border), HURST, ROLL_OFF, chosen.border, lay)
+    z = random_heights((rows, n), (across, step), spectrum, chosen.seed)
+    if lay <= RIDGES:
+        z = np.repeat(z[:1], rows, axis=0)
+    model = tamaas.Model(tamaas.model_type.basic_2d, [rows * across / step, n], [rows, n])
+    model.E, model.nu = 0.5 * MODULUS, 0.0
+    tamaas.PolonskyKeerRey(model, np.ascontiguousarray(z / step), 1e-8).solve(pressure)
+    p = np.array(model.traction).ravel()
+    return statistics(p[p > 0.0], rows * n)
+
+
+def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
+    """Means over the time."""
+    case, sq = contact(chosen, lay, 1e9), sq_down_to(chosen.border) if lay else 0.0
+    layer = float(np.sqrt(SQ**2 - sq**2))
+    stiffness = 2 * np.pi * layer / (chosen.border if lay else ROLL_OFF)
+    case["contact"] |= {"model": "mixed", "asperity_height": layer, "asperity_stiffness": stiffness}
+    case["contact"]["boundary_friction"] = 0.1
+    case["fluid"] = {"oil": "fva3", "temperature": 363.15}
+    case["motion"] = {"entrainment_speed": speed, "slide_roll_ratio": 0.25}
+    if lay:
+        seeds = {"1": 2 * chosen.seed, "2": 2 * chosen.seed + 1}
+        case["surface"] = {side: surface(chosen, lay, sq / 2**0.5, seed) for side, seed in seeds.items()}
+        case["time"] = {"travel": chosen.travel, "courant": chosen.courant, "start": "rough"}
+    case["output"] = {"every": 100000}
+    result = solve(case, progress=False)
+    weights = filled_weights(result)
+    ratio, friction, share, length, thickness, highest = (mean(result, name, weights) for name in MEANS)
+    return (
+        f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, "
+        f"length {length / HALF_WIDTH:.4f} a, film {1e9 * thickness:.0f} nm, "
+        f"highest pressure {highest / 1e9:.2f} GPa, "
+        f"{result.steps('newton').sum()} iterations in {len(weights) - 1} steps"
+    )
+
+
+TABLES: dict[str, tuple[Callable[[argparse.Namespace, float, float], str], tuple[float, ...]]] = {
+    "film": (film, SPEEDS),
+    "dry": (dry, PRESSURES),
+    "flat": (flat, PRESSURES),
+}
+
+
+def main(words: list[str] | None = None) -> None:
+    """Run the command."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("table", choices=TABLES)
+    parser.add_argument("--lays", type=Fraction, nargs="+", default=[Fraction(1, 100), Fraction(1)])
+    parser.add_argument("--at", type=float, nargs="+", help="pressures [Pa] or speeds [m/s]")
+    parser.add_argument("--points", type=int, default=64, help="nodes per half-width; of flat along x")
+    parser.add_argument("--width", type=float, default=1.0, help="of a strip [half-widths]")
+    parser.add_argument("--border", type=float, default=40e-6, help="shortest wave on the mesh [m]")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--travel", type=float, default=4.0, help="of the faster surface [half-widths]")
+    parser.add_argument("--courant", type=float, default=0.5)
+    chosen = parser.parse_args(words)
+    row, values = TABLES[chosen.table]
+    for lay in chosen.lays:
+        for at in chosen.at or values:
+            print(f"lay {lay}, {at:g}: {row(chosen, float(lay), at)}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

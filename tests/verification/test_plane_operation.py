@@ -1,0 +1,155 @@
+"""Points and strips under loads, radii and speeds that change with time."""
+
+import numpy as np
+import pytest
+from support import CASES
+from support.convergence import observed_order
+from support.points import R, point
+
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.hertz import hertz_ellipse
+from ehlpetsc.run.simulation import Simulation
+
+TIGHT = {"snes_atol": 1e-11}
+BOTH_WAYS = {"mesh.inlet": -2.0, "mesh.outlet": 2.0}
+
+
+def ball(changes):
+    """Simulation of a circular contact on a coarse mesh."""
+    return Simulation(load(point(50.0, 5.0, 8), changes), options=TIGHT)
+
+
+S = ball({}).scales
+
+
+def harmonic(travel, depth=0.4):
+    """Load, radii and speeds over the time of a travel in half-widths, those of the scales at both ends."""
+    phase = np.arange(65) / 64
+    factor = 1.0 - depth * np.sin(np.pi * phase) ** 2
+    columns = {"load": S.load, "radius": R, "speed_1": S.u, "speed_2": S.u}
+    return {"operation.time": travel * S.a / S.u * phase} | {
+        f"operation.{name}": value * factor for name, value in columns.items()
+    }
+
+
+def at_three_quarters(changes, steps):
+    """State after three quarters of a table, in equal steps."""
+    simulation = ball(changes)
+    dt = simulation.operation.duration / steps
+    states = [simulation.advance(), *(simulation.advance(dt) for _ in range(3 * steps // 4))]
+    assert not any(state.retries for state in states)
+    assert max(state.load_error for state in states) < 1e-10
+    return states[-1], simulation.operation.at(states[-1].time)
+
+
+def steady_under(conditions, changes):
+    """Steady state on the same mesh, under the conditions of an instant."""
+    columns = {"load": S.load, "radius": R, "speed_1": S.u, "speed_2": S.u}
+    table = {
+        f"operation.{name}": [now, last]
+        for (name, last), now in zip(columns.items(), conditions, strict=True)
+    }
+    return ball(changes | table | {"operation.time": [0.0, 1.0]}).advance()
+
+
+def test_constant_conditions_in_a_table_are_the_plain_case():
+    wave = {"kind": "sine", "amplitude": 20e-9, "wavelength": S.a, "wavelength_across": S.a}
+    plain = {"surface.1.synthetic": wave, "time.travel": 0.5, "motion.slide_roll_ratio": 0.3}
+    expected = list(ball(plain))
+    table = {"time": [0.0, 3.0 * expected[-1].time], "load": [S.load] * 2, "radius": [R] * 2}
+    found = list(ball(plain | {f"operation.{name}": column for name, column in table.items()}))
+    assert len(found) == len(expected) > 7
+    for one, other in zip(found, expected, strict=True):
+        assert one.time == other.time
+        np.testing.assert_array_equal(one.pressure, other.pressure)
+        np.testing.assert_array_equal(one.film_thickness, other.film_thickness)
+
+
+def test_dry_ball_under_a_harmonic_load_is_steady_at_every_instant():
+    changes = harmonic(2.0) | {"fluid": None}
+    state, now = at_three_quarters(changes, 16)
+    steady = steady_under(now, {"fluid": None})
+    np.testing.assert_allclose(state.solution.p, steady.solution.p, rtol=0, atol=1e-8)
+    hertz = hertz_ellipse(now.load, now.radius, now.radius, S.E)
+    assert hertz.a < 0.9 * S.a and state.load == pytest.approx(now.load, rel=1e-10)
+    assert state.p_max == pytest.approx(hertz.p0, rel=2e-2)
+    assert -state.solution.h00 * S.h == pytest.approx(hertz.approach, rel=1e-2)
+
+
+def test_slow_harmonic_conditions_approach_the_steady_film():
+    """The lag behind the steady film is proportional to the rate of change."""
+    lags = []
+    for travel in (32.0, 64.0, 128.0):
+        state, now = at_three_quarters(harmonic(travel), 64)
+        steady = steady_under(now, {})
+        lags.append(abs(state.film_central / steady.film_central - 1.0))
+    assert lags[-1] < 1.5e-2 and observed_order(lags) == pytest.approx(1.0, abs=0.2)
+
+
+def test_second_order_in_time():
+    states = [at_three_quarters(harmonic(4.0), steps)[0] for steps in (32, 64, 128)]
+    inside = S.grid.inside(0.8)
+    for field in ("film_thickness", "pressure"):
+        values = [getattr(state, field).ravel()[inside] for state in states]
+        differences = [np.sqrt(np.mean((a - b) ** 2)) for a, b in zip(values, values[1:], strict=False)]
+        assert observed_order(differences) > 1.8
+
+
+def test_reversed_motion_turns_the_contact_about_its_axis():
+    """A map without symmetry under a ball, sliding, either way: rotation by 180 degrees."""
+    heights = 20e-9 * np.random.default_rng(3).standard_normal((9, 9))
+    rough = {"surface.1": {"z": heights.tolist(), "spacing": S.a / 3.0}, "time.start": "rough"}
+    rough |= BOTH_WAYS | {"time.travel": 0.3, "operation.time": [0.0, 1.0], "motion": None}
+    there, back = (
+        list(ball(rough | {"operation.speed_1": [1.2 * u] * 2, "operation.speed_2": [0.8 * u] * 2}))
+        for u in (S.u, -S.u)
+    )
+    shape = S.grid.shape
+    assert np.abs(there[-1].solution.p - there[-1].solution.p.reshape(shape)[::-1].ravel()).max() > 0.1
+    for one, other in zip(there, back, strict=True):
+        np.testing.assert_allclose(other.solution.p[::-1], one.solution.p, rtol=0, atol=1e-9)
+        np.testing.assert_allclose(np.flip(other.film_thickness), one.film_thickness, rtol=1e-8)
+
+
+@pytest.mark.slow
+def test_half_strokes_of_oscillating_entrainment_mirror_each_other():
+    n, stroke = 16, 4.0
+    half = S.u * np.cos(np.pi * np.arange(n) / n)
+    half[n // 2] = 0.0
+    speed = np.concatenate([half, -half, half[:1]])
+    table = {
+        "operation.time": np.arange(2 * n + 1) / (2 * n) * np.pi * stroke * S.a / S.u,
+        "operation.speed_1": speed,
+        "operation.speed_2": 0.8 * speed,
+        "operation.repeat": 2,
+        "time.courant": 1.0,
+    }
+    simulation = ball(table | BOTH_WAYS)
+    states = list(simulation)
+    steps = (len(states) - 1) // 2
+    assert not any(state.retries for state in states) and steps % 2 == 0
+    assert min(state.film_central for state in states) < 0.7 * states[0].film_central
+    for there, back in zip(states[-steps : -steps // 2], states[-steps // 2 :], strict=True):
+        np.testing.assert_allclose(np.flip(back.film_thickness), there.film_thickness, rtol=1e-3)
+        np.testing.assert_allclose(back.solution.p[::-1], there.solution.p, rtol=0, atol=1e-3)
+    assert max(state.mass_error for state in states) < 1e-5
+
+
+def test_strip_under_a_table_is_the_line():
+    table = {
+        "operation.time": [0.0, 1e-5, 2e-5],
+        "operation.load": [420e3, 527e3, 380e3],
+        "operation.radius": [0.018, 0.0191, 0.017],
+        "operation.speed_1": [5.0, 5.6, 5.2],
+        "operation.speed_2": [4.0, 4.4, 5.2],
+    }
+    mesh = {"mesh.points_per_half_width": 16, "time": None}
+    line, strip = (
+        list(Simulation(load(CASES / "table1_smooth.toml", table | mesh | of), options=TIGHT))
+        for of in ({}, {"mesh.width": 0.25})
+    )
+    assert len(line) > 15
+    for one, other in zip(line, strip, strict=True):
+        expected = np.broadcast_to(one.solution.p, (4, len(one.solution.p)))
+        np.testing.assert_allclose(other.solution.p.reshape(4, -1), expected, rtol=0, atol=1e-9)
+        assert other.time == one.time and other.friction == pytest.approx(one.friction, rel=1e-9)
