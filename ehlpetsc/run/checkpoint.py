@@ -163,4 +163,6 @@ def cures(case: Case, conditions: Conditions, film: float) -> str:
         found.append("a slow entrainment instead of rest at the begin")
     if case.fluid and not case.contact.has_contact_pressure:
         found.append('contact.model = "mixed"')
+    if case.contact.asperity_height and not case.contact.adsorbed_film:
+        found.append("contact.adsorbed_film = 1e-9, without which the film in the layer may vanish")
     return f". Try {' or '.join(found)}"

@@ -33,9 +33,7 @@ from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start,
 
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
-RIGID_FILM = (
-    1000.0  # a^2/R: below a thicker film the viscosity is that of the inlet, and softening it no cure
-)
+RIGID_FILM = 1000.0  # a^2/R: a thicker film is under low pressure, and a softer oil no cure
 LOAD_GROWTH = 1.2  # factor from one load to the next
 MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones

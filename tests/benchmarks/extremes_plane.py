@@ -90,6 +90,7 @@ class Extreme:
                 "poisson_ratio": 0.3,
                 "model": "mixed",
                 "asperity_height": 20e-9,
+                "adsorbed_film": 1e-9,
                 "boundary_friction": 0.1,
             },
             "fluid": {
