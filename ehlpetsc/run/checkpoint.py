@@ -15,7 +15,6 @@ from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
-from ehlpetsc.stepping.steady_start import RIGID_FILM
 
 if TYPE_CHECKING:
     from typing import Any
@@ -32,6 +31,7 @@ EARLIER = "earlier {}"  # prefix of the values of an earlier level
 OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
+RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
 SCALE_TOLERANCE = 1e-12  # relative
 SCALES = ("a", "p0", "h")  # of load, radius and elasticity
 SPEEDS = ("motion", "operation", "gears")  # tables

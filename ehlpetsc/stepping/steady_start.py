@@ -33,7 +33,6 @@ from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start,
 
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
-RIGID_FILM = 1000.0  # a^2/R: a thicker film is under low pressure, and a softer oil no cure
 LOAD_GROWTH = 1.2  # factor from one load to the next
 MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
@@ -142,8 +141,7 @@ class Continuation:
         return self._ramp(state, 0.0, lambda fraction: (1.0, fraction)) if rough else state
 
     def _softened(self, begin: Unknowns) -> tuple[Unknowns, float]:
-        film = self.attempt.solver.problem.film_scale
-        fraction = 0.5 if self.inputs.fluid and film < RIGID_FILM else 0.0  # else no viscosity to reduce
+        fraction = 0.5 if self.inputs.fluid else 0.0  # without oil there is no viscosity to reduce
         while fraction >= MIN_VISCOSITY_FRACTION:
             state = self._try(begin, fraction, 0.0)
             if state is not None:

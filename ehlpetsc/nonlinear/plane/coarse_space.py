@@ -12,8 +12,10 @@ K_c the deflection by a function at the coarse nodes: dense, but of some hundred
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csr_matrix, diags, kron
 
 INTERVALS = 32  # between coarse nodes along the longer side of the mesh
@@ -45,6 +47,10 @@ class CoarseSpace:
         )
         self.functions, self.counts = kron(across, along).tocsr(), (across.shape[1], along.shape[1])
         self.deflections = self._deflections(kernel)
+
+    def reaches(self, mask: np.ndarray) -> bool:
+        """Whether a coarse node is in a mask of nodes."""
+        return bool(mask.reshape(self.shape)[:: self.spacing, :: self.spacing].any())
 
     def matrix(self, stencils: np.ndarray) -> csr_matrix:
         """Matrix of rows of coefficients of the nodes i-2 .. i+1, below and above, (nodes, 6)."""
@@ -88,7 +94,9 @@ class CoarseCorrection:
             self.functions.T @ space.matrix(by[:, ::2]) @ self.functions for by in (flow, transport)
         )
         matrix = by_pressure.toarray() + by_separation @ self.deflections
-        self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
+        with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved
+            warnings.simplefilter("ignore", LinAlgWarning)
+            self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def __call__(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressures that reduce Reynolds rows, and the separations by them."""

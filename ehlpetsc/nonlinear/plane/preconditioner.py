@@ -115,7 +115,7 @@ class SparseForm:
 
 
 class Factors(NamedTuple):
-    """Sparse form and coarse correction (None without oil) of one state; the solution for a unit of h00."""
+    """Sparse form and coarse correction (None: no use) of one state; the solution for a unit of h00."""
 
     sparse: SparseForm
     coarse: CoarseCorrection | None
@@ -176,9 +176,9 @@ class Elimination:
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
         sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
-        if coarse is None and p.fluid is not None:
-            mask = whole[0] == PRESSURE
-            mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
+        mask = whole[0] == PRESSURE
+        mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
+        if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
             flow, transport = self._gathered(sparse.by_pressure), self._gathered(sparse.by_separation)
             coarse = CoarseCorrection(self.coarse_space, flow, transport, mask)
         self.factors = Factors(sparse, coarse)
