@@ -40,8 +40,9 @@ try:
     COMPILED = True
 except ImportError:
     COMPILED = False
+IN_MACHINE_CODE = COMPILED and not numba.config.DISABLE_JIT
 # type of indices that are not negative, with which loops take half the time
-unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
+unsigned = np.uint64 if IN_MACHINE_CODE else int
 ZERO: Any = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
@@ -182,15 +183,22 @@ def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:
     raise NotImplementedError
 
 
+def call_code(function: Callable, address: int, arguments: tuple) -> Any:
+    """Result of a function that is not compiled."""
+    return function(*arguments)
+
+
 def code_of(function: Any, *arguments: Any) -> int:
     """Address, for `call_code`, of a compiled function for arguments of these types."""
+    if not IN_MACHINE_CODE:
+        return 0
     types = tuple(map(numba.typeof, arguments))
     function.compile(types)
     found = function.overloads[types]
     return found.library.get_pointer_to_function(found.fndesc.llvm_func_name)
 
 
-if COMPILED:
+if IN_MACHINE_CODE:
 
     @intrinsic
     def call_code(
@@ -210,6 +218,9 @@ if COMPILED:
             return result
 
         return called.return_type(function, address, arguments), code
+
+
+if COMPILED:
 
     @intrinsic
     def call_at(

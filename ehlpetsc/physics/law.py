@@ -115,7 +115,7 @@ def _or_else(
         def call(k: int, at: tuple, c: tuple[float, ...]) -> Derivatives:
             return here(at, c) if k == kind else other(k, at, c)
 
-    return inlined(call, **PRIVATE)
+    return inlined(call, cache=False, no_cpython_wrapper=kind > 0)  # Python calls the whole alone
 
 
 def padded(constants: tuple[float, ...]) -> tuple[float, ...]:

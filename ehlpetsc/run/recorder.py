@@ -45,7 +45,7 @@ class Progress:
         self._shown: float | None = None
         self._pending: dict[str, float] | None = None
         self._ramp = ProgressLine("roughness put under the film", 1.0, self._stream)
-        simulation.stepper.ramp_shown = self._ramp.reach
+        simulation.stepper.show_ramp(self._ramp.reach)
 
     def write(self, state: AcceptedState) -> None:
         """Show a step, but not the steady start, if it is the first or enough time has passed."""

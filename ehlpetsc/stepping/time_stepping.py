@@ -55,7 +55,6 @@ class TimeStepping:
     computed by :meth:`start`.
 
     `ramp_time`: time before time 0 over which roughness at rest was ramped up [s]; 0 after a steady solution.
-    `ramp_shown`: called with the share of it after each of its steps.
     """
 
     def __init__(
@@ -69,7 +68,7 @@ class TimeStepping:
         self.solver, self.problem, self.film = solver, solver.problem, film
         self.scene, self.scales, self.operation, self.effects = scene, scene.scales, scene.operation, effects
         self.baseline, self.ramp_time, self._is_prepared = baseline, 0.0, False
-        self.ramp_shown: Callable[[float], object] | None = None
+        self._show_ramp: Callable[[float], object] = lambda share: None
         time = scene.case.time
         self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
@@ -156,10 +155,13 @@ class TimeStepping:
         while state.time < -LEVEL_TOLERANCE * dt:
             state = self.advance(state, watch=watch)
             newton += state.newton
-            if self.ramp_shown:
-                self.ramp_shown(1.0 + state.time / self.ramp_time)
+            self._show_ramp(1.0 + state.time / self.ramp_time)
         begun: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
+
+    def show_ramp(self, show: Callable[[float], object]) -> None:
+        """Have a function called with the share of the ramp that each of its steps has reached."""
+        self._show_ramp = show
 
     def _roughness_ramp(self, time: float) -> float:
         """Factor of the roughness: from 0 to 1 before time 0 [s], then 1."""

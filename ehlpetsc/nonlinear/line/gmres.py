@@ -32,17 +32,20 @@ CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences i
 class FlexibleGMRES:
     """Context of PETSc's Python Krylov method."""
 
+    def __init__(self) -> None:
+        self._codes: tuple[int, int] | None = None  # see `iterations`
+
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve from zero."""
         operator, (*tolerances, max_it) = ksp.getOperators()[0].getPythonContext(), ksp.getTolerances()
         lu, limits = operator.factors.lu, (min(max_it, MAX_IT), *tolerances)
         solution = np.zeros(operator.size)
         solution[operator.active] = b.array_r
-        if operator.factors.codes is None:
+        if self._codes is None:
             vectors = solution, solution
             product = code_of(jacobian_product, *operator.linearisation, tuple(operator.halo), *vectors)
-            operator.factors.codes = product, code_of(solve, lu.factors, *vectors)
-        given = *operator.linearisation, *operator.halo[1:], *lu.factors, operator.factors.codes
+            self._codes = product, code_of(solve, lu.factors, *vectors)
+        given = *operator.linearisation, *operator.halo[1:], *lu.factors, self._codes
         norms = iterations(solution, *given, limits)
         for k, norm in enumerate(norms.tolist()):
             if not np.isfinite(norm):

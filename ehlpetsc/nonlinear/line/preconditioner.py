@@ -29,7 +29,6 @@ class Factors:
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm):
         self.lu = DistributedLU(BandedJacobian(problem), -problem.deflection.end_row_coefficient, ranks)
         self.fresh, self._owned = False, problem.owned
-        self.codes: tuple[int, int] | None = None  # see :func:`ehlpetsc.nonlinear.line.gmres.iterations`
 
     def invalidate(self) -> None:
         """Factor the next matrix anew, so that a run continues after a restart as it would have without."""
