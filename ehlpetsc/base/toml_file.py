@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import re
 import tomllib
@@ -70,8 +69,8 @@ def _key(name: str) -> str:
 def _value(value: object) -> str:
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{_key(k)} = {_value(v)}" for k, v in value.items()) + " }"
-    if isinstance(value, list) and set(map(type, value)) == {float} and all(map(math.isfinite, value)):
-        return "[" + ", ".join(map(float.__repr__, value)) + "]"
+    if isinstance(value, float):
+        return float.__repr__(value)  # nan and inf too are numbers of TOML
     if isinstance(value, list):
         return "[" + ", ".join(map(_value, value)) + "]"
     return json.dumps(value, ensure_ascii=False)

@@ -203,7 +203,9 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
     load, radius, u, xi = table.reference()
     kind = "point" if is_point(tables) else "line"
     radii: Any = _radii(contact["radius"], radius) if kind == "point" else radius
-    contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
+    replaced = {"load": load, "radius": radii}
+    wrong = {key: contact[key] for key in replaced if isinstance(contact.get(key), str | bool | dict)}
+    contact, constants = contact | replaced | wrong, _constants(tables)  # what is wrong is reported
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
     if any((speed != constants.get(key)).any() for key, speed in speeds.items()):
         motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}

@@ -28,8 +28,8 @@ TEMPERATURES = {
 HEIGHTS = (1, 1, 1, 1.5)  # of the panels of temperatures, the last one over time
 TEMPERATURE_SIZE, STEADY_SIZE = (8.4, 10.0), (8.4, 6.6)  # inches
 KELVIN = 273.15
+LOADS = {"N/m": ("load [N/mm]", 1e-3), "N": ("load [N]", 1.0)}  # label and factor of its panel by its unit
 COURSES = {  # panels over time: factor from SI units, scalars with their labels and colours
-    "load [N/mm]": (1e-3, {"load_given": ("load", style.SINGLE)}),
     "speed [m/s]": (1.0, {f"speed_{k}": (f"surface {k}", colour) for k, colour in style.SURFACES.items()}),
     "film [µm]": (1e6, {"film_central": ("central", style.SINGLE), "h_min": ("minimum", style.SECOND)}),
     "maximum\npressure [GPa]": (1e-9, {"p_max": ("maximum", style.SINGLE)}),
@@ -111,9 +111,11 @@ def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> 
         raise OutputError(f"{result.path}: is steady; allowed: --over-time of a run over time")
     time = 1e3 * result.steps("time")
     filled = min(1e3 * filled_from(result), time[-1])
+    load, per_unit = LOADS[result.unit("steps/load")]
+    courses = {load: (per_unit, {"load_given": ("load", style.SINGLE)})} | COURSES
     panels = {
         label: (factor, shown)
-        for label, (factor, names) in COURSES.items()
+        for label, (factor, names) in courses.items()
         if (shown := {name: names[name] for name in names if name in result.scalars})
     }
     size = (8.4, 1.0 + COURSE_HEIGHT * len(panels))

@@ -151,8 +151,9 @@ def _variable(case: Case, s: Scales) -> list[str]:
 
     repeats = f", {table.repeat} times" if table.repeat > 1 else ""
     moved = 1e3 * s.a * case.time.travel
+    load, unit = (table.load, "N") if case.kind == "point" else (1e-3 * table.load, "kN/m")
     return [
-        f"Conditions of a {origin}{repeats}: load {range_of(1e-3 * table.load, 'kN/m')}, "
+        f"Conditions of a {origin}{repeats}: load {range_of(load, unit)}, "
         f"radius {range_of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
         f"Motion: mean {range_of(table.entrainment, 'm/s')}; surface 1 {range_of(table.u1, 'm/s')}, "
         f"surface 2 {range_of(table.u2, 'm/s')}",

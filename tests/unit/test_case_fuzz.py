@@ -20,7 +20,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.surfaces.roughness import Roughness
 
-DRAWS, PROFILE_DRAWS, KEY_DRAWS = draws(400), draws(300) // 2, draws(320) // 4
+DRAWS, PROFILE_DRAWS, KEY_DRAWS = draws(400), draws(300) // 2, draws(320) // 12
 LARGE = 5000  # nodes of a mesh beyond which nothing is worked out on it
 KEYS = """contact.radius | fluid | surface.2.synthetic | series.values | petsc.x | x | . | time.travel | title
 surface.1.file | contact.radius.x | output.fields | contact.youngs_modulus | mesh..inlet |"""
@@ -135,7 +135,7 @@ def keys_in(table, where=""):
 
 def allowed_value(key, rng):
     """A value within the bounds of a key, as TOML, or any other one."""
-    if key.kind not in (int, float, str, bool) or rng.random() < 0.3:
+    if key.kind not in (int, float, str, bool) or rng.random() < 0.15:
         return rng.choice(VALUES)
     if key.choices:
         one = f'"{rng.choice(list(key.choices))}"'
@@ -152,17 +152,18 @@ def allowed_value(key, rng):
 
 
 @pytest.mark.filterwarnings("error")
-def test_any_key_with_any_value_raises_case_errors_alone():
-    rng, refused = random.Random(SEED), 0
+@pytest.mark.parametrize("seed", range(SEED, SEED + 3))
+def test_any_key_with_any_value_raises_case_errors_alone(seed):
+    rng, refused = random.Random(seed), 0
     cases, keys = sorted(CASES.glob("*.toml")), list(keys_in(CASE))
     for _ in range(KEY_DRAWS):
         words = [f"{rng.choice(KEYS)}{rng.choice(('', '=', ' = '))}{rng.choice(VALUES)}"]
         words = words if rng.random() < 0.2 else []
-        for place, key in rng.choices(keys, k=rng.randint(1, 3)):
+        for place, key in rng.choices(keys, k=rng.randint(1, 2)):
             words.append(f"{place}={allowed_value(key, rng)}")
         case = rng.choice(cases)
         refused += bool(faults_of(partial(load, case, words), partial(str, (case.name, words))))
-    assert 0.3 * KEY_DRAWS < refused < 0.95 * KEY_DRAWS
+    assert refused > 0.2 * KEY_DRAWS
 
 
 WORDS = [*"nan -inf 1e308 1e-320 x 1_0 1,5 1.000,5 1;2 -- é".split(), "", "\0"]

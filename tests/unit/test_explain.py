@@ -51,7 +51,8 @@ def test_source_of_a_named_oil_is_printed():
 
 @pytest.mark.parametrize(("name", "count"), [("dry_rough.toml", 1), ("dry_hertz.toml", 0), ("ball.toml", 0)])
 def test_ridges_of_a_line_contact_are_named(name, count):
-    assert len(starting(lines(name), "Lay: in a line contact all waves are ridges across the motion")) == count
+    ridges = "Lay: in a line contact all waves are ridges across the motion"
+    assert len(starting(lines(name), ridges)) == count
 
 
 def test_rough_start_is_named():

@@ -111,6 +111,13 @@ def test_explanation_of_a_point():
     assert "Sa 0.02" in text and "memory: about" in text
 
 
+def test_explanation_of_a_point_under_a_table_states_its_loads():
+    text = explain(
+        load(copy.deepcopy(POINT), {"operation": {"time": [0, 1e-3], "load": ["12 N", "0.02 kN"]}})
+    )
+    assert "Conditions of a table: load 12 to 20 N, radius 9.5 mm; above, those of the widest" in text
+
+
 def test_explanation_of_a_strip_states_its_width():
     text = explain(load(copy.deepcopy(STRIP)))
     assert "load 100000 N/m" in text and "Strip: 0.1058 mm of its length, periodic across" in text

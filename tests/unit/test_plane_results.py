@@ -7,6 +7,7 @@ import pytest
 import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.pictures import over_time
 from ehlpetsc.run.recorder import Recorder
 
 BALL = {
@@ -127,6 +128,7 @@ def test_run_stopped_in_mixed_contact_continues_to_the_same_result_bit_for_bit(t
     case = ehlpetsc.load(
         BALL,
         {"surface.1.synthetic": rough, "mesh.points_per_half_width": 12, "fluid.viscosity": 0.01}
+        | {"operation": {"time": [0.0, 1e-3], "load": ["20 N", "18 N"]}}
         | {"time": {"travel": 0.5, "start": "rough", "courant": 1.0}, "output.xdmf": True},
     )
     whole, part = ehlpetsc.solve(case), tmp_path / "ball.h5"
@@ -141,8 +143,10 @@ def test_run_stopped_in_mixed_contact_continues_to_the_same_result_bit_for_bit(t
     assert 3 < state.in_contact.sum() < whole.contact_count.sum()
     result = ehlpetsc.solve(case, output=part)  # the same call
     assert result.attrs["restarts"] == 1 and result.attrs["status"] == "done"
-    assert len(result.time) == len(whole.time) == 7
+    assert len(result.time) == len(whole.time) == 8
     assert {d.max for d in compare.compare(whole, result)} == {0.0}
+    courses = over_time.draw_courses([result], None).axes[0]
+    assert courses.get_ylabel() == "load [N]" and 19.5 < courses.lines[0].get_ydata()[-1] < 20.0
 
 
 def test_restart_on_another_width_is_refused(tmp_path):
