@@ -125,7 +125,11 @@ def signalled(script, tmp_path, ranks, names, *arguments, program=WAITING, wait=
         for number, name in enumerate(names):
             time.sleep(1.0 if number else 0.0)
             job.send_signal(signal.Signals[name])
-        stdout, stderr = job.communicate(timeout=60)
+        try:
+            stdout, stderr = job.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            job.kill()  # or the test would wait for ever
+            raise
     return subprocess.CompletedProcess(command, job.returncode, stdout, stderr)
 
 
