@@ -40,9 +40,8 @@ try:
     COMPILED = True
 except ImportError:
     COMPILED = False
-IN_MACHINE_CODE = COMPILED and not numba.config.DISABLE_JIT
 # type of indices that are not negative, with which loops take half the time
-unsigned = np.uint64 if IN_MACHINE_CODE else int
+unsigned = np.uint64 if COMPILED and not numba.config.DISABLE_JIT else int
 ZERO: Any = np.int64(0)  # argument of compiled functions, which numba would compile again for a literal 0
 
 
@@ -181,43 +180,6 @@ def address_of(law: Callable, count: int, state: int) -> int:
 def call_at(address: int, p: float, T: float, constants: tuple) -> tuple:
     """Results of a law at an address; only compiled loops have it."""
     raise NotImplementedError
-
-
-def call_code(function: Callable, address: int, arguments: tuple) -> Any:
-    """Result of a function that is not compiled."""
-    return function(*arguments)
-
-
-def code_of(function: Any, *arguments: Any) -> int:
-    """Address, for `call_code`, of a compiled function for arguments of these types."""
-    if not IN_MACHINE_CODE:
-        return 0
-    types = tuple(map(numba.typeof, arguments))
-    function.compile(types)
-    found = function.overloads[types]
-    return found.library.get_pointer_to_function(found.fndesc.llvm_func_name)
-
-
-if IN_MACHINE_CODE:
-
-    @intrinsic
-    def call_code(
-        typing: Context, function: Type, address: Type, arguments: Type
-    ) -> tuple[Signature, Callable]:
-        """``function(*arguments)`` at its address, which LLVM does not compile again into the caller."""
-        called = function.get_call_type(typing, tuple(arguments), {})
-
-        def code(context: BaseContext, builder: IRBuilder, signature: Signature, given: list[Value]) -> Value:
-            types, convention = called.args, context.call_conv
-            kind = convention.get_function_type(called.return_type, types)
-            values = cgutils.unpack_tuple(builder, given[2], len(types))
-            callee = builder.inttoptr(given[1], kind.as_pointer())
-            status, result = convention.call_function(builder, callee, called.return_type, types, values)
-            with cgutils.if_unlikely(builder, status.is_error):
-                convention.return_status_propagate(builder, status)
-            return result
-
-        return called.return_type(function, address, arguments), code
 
 
 if COMPILED:

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
-from ehlpetsc.base.compiled import ZERO, call_code, code_of, compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.nonlinear.line.distributed_lu import solve
 from ehlpetsc.nonlinear.line.jacobian import jacobian_product
 from ehlpetsc.nonlinear.ranks import exchange
@@ -32,21 +32,13 @@ CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences i
 class FlexibleGMRES:
     """Context of PETSc's Python Krylov method."""
 
-    def __init__(self) -> None:
-        self._codes: tuple[int, int] | None = None  # see `iterations`
-
     def solve(self, ksp: PETSc.KSP, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve from zero."""
         operator, (*tolerances, max_it) = ksp.getOperators()[0].getPythonContext(), ksp.getTolerances()
         lu, limits = operator.factors.lu, (min(max_it, MAX_IT), *tolerances)
         solution = np.zeros(operator.size)
         solution[operator.active] = b.array_r
-        if self._codes is None:
-            vectors = solution, solution
-            product = code_of(jacobian_product, *operator.linearisation, tuple(operator.halo), *vectors)
-            self._codes = product, code_of(solve, lu.factors, *vectors)
-        given = *operator.linearisation, *operator.halo[1:], *lu.factors, self._codes
-        norms = iterations(solution, *given, limits)
+        norms = iterations(solution, *operator.linearisation, *operator.halo[1:], *lu.factors, limits)
         for k, norm in enumerate(norms.tolist()):
             if not np.isfinite(norm):
                 norm, reason = np.inf, PETSc.KSP.ConvergedReason.DIVERGED_NANORINF  # PETSc refuses nan
@@ -73,7 +65,6 @@ def iterations(
     cuts: tuple,
     border: tuple,
     room: tuple,
-    codes: tuple,
     limits: tuple,
 ) -> np.ndarray:
     """Replace the right-hand side b by the solution to PETSc's tolerances; collective.
@@ -82,7 +73,6 @@ def iterations(
     `buffers`, `matrices`, `pressures`: of a `Halo`.
     `place`, `lu`, `cuts`, `border`, `room`: `factors` of a `DistributedLU`; one by one, see
         :func:`.ranks.collective`.
-    `codes`: of the product with the Jacobian and of :func:`.distributed_lu.solve`.
     `limits`: iterations, relative and absolute tolerance, divergence tolerance.
 
     Returns the norms of the residual, from that of the right-hand side on.
@@ -97,8 +87,8 @@ def iterations(
     new = ZERO
     while True:
         if new > 0:
-            call_code(solve, codes[1], (factors, v[new - 1], z[new - 1]))
-            call_code(jacobian_product, codes[0], (state, work, halo, z[new - 1], v[new]))
+            solve(factors, v[new - 1], z[new - 1])
+            jacobian_product(state, work, halo, z[new - 1], v[new])
         norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
         norms[new] = least_residual(numbers, new, norm)
         if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == max_it:

@@ -11,7 +11,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.base.compiled import ZERO, call_code, code_of, compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import reynolds_product
@@ -50,9 +50,7 @@ class JacobianOperator(Jacobian):
     def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: object):
         super().__init__(problem, halo, ranks)
         self.halo, self.factors = halo, factors
-        pressure = np.empty(problem.local)
-        code = code_of(exchange_unknowns, *halo, (np.empty(self.size), pressure, False))
-        self._work = pressure, np.empty((3, len(halo.buffers[2]))), code
+        self._work = np.empty(problem.local), np.empty((3, len(halo.buffers[2])))
 
     @property
     def linearisation(self) -> tuple[tuple, tuple]:
@@ -142,14 +140,13 @@ def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out:
         Reynolds rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
         :func:`.deflection.deflection_rows`.
     `work`: work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3,
-        window); code of the exchange.
+        window).
     `halo`: a `ranks.Halo` as a plain tuple.
     """
-    (by, derivatives, inactive_nodes, form), (pressure, change, code) = state, work
+    (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
     local = 2 * len(derivatives)
     directional_derivative(by[0], v[:local].reshape(len(pressure), 2), form[0], pressure)
-    given = *halo, (v, pressure, False)
-    nodes, h00, curvature, load = call_code(exchange_unknowns, code, given)
+    nodes, h00, curvature, load = exchange_unknowns(*halo, (v, pressure, False))
     for k in range(3):
         directional_derivative(by[k + 1], nodes, ZERO, change[k])
     deflection_rows(change[2], h00, curvature, load, form, out[0:local:2])
