@@ -14,7 +14,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehlpetsc.physics.hertz import hertz_ellipse, hertz_line
+from ehlpetsc.base.declarations import Values
+from ehlpetsc.physics.geometry import GEOMETRIES, Dry
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.output_guard import replacing
@@ -156,24 +157,21 @@ def speeds_at(result: Result, frame: int) -> tuple[float, float]:
 
 def hertz_at(result: Result, frame: int) -> tuple[float, float]:
     """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame, of a section at its y."""
-    a, p0 = _whole_hertz_at(result, frame)
-    if (place := getattr(result, "place", None)) is None or result.case.kind != "point":
-        return a, p0
-    b = a * float(result.attrs["b"] / result.attrs["a"])
-    share = np.sqrt(max(1.0 - (place / b) ** 2, 1e-12))  # not 0: widths divide
+    a, b, p0 = _whole_hertz_at(result, frame)
+    place = getattr(result, "place", None) or 0.0
+    share = float(np.sqrt(max(1.0 - (place / b) ** 2, 1e-12)))  # not 0: widths divide
     return share * a, share * p0
 
 
-def _whole_hertz_at(result: Result, frame: int) -> tuple[float, float]:
+def _whole_hertz_at(result: Result, frame: int) -> Dry:
     if "load_given" not in result.scalars:
-        return float(result.attrs["a"]), float(result.attrs["p0"])
+        return Dry(*(float(result.attrs.get(name, np.inf)) for name in Dry._fields))
     contact = result.case.contact
     modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
     load, radius = _at(result, "load_given", frame), _at(result, "radius", frame)
-    if result.case.kind == "point":
-        a, _, p0, _ = hertz_ellipse(load, radius, radius * contact.radius_across / contact.radius, modulus)
-        return a, p0
-    return hertz_line(load, radius, modulus)
+    across = contact.radius_across and radius * contact.radius_across / contact.radius
+    given = Values({"load": load, "radius": radius, "radius_across": across})
+    return GEOMETRIES[result.case.kind].dry(given, modulus)
 
 
 def _at(result: Result, name: str, frame: int) -> float:
@@ -200,10 +198,11 @@ def _conditions(result: Result, frame: int | None) -> list[str]:
         texts += [f"u = {u:.4g} m/s", ratio]
     a, p0 = result.attrs["a"], result.attrs["p0"]
     texts.append(f"a = {1e3 * a:.3g} mm")
-    if case.kind == "point" and abs(result.attrs["b"] / a - 1.0) > EQUAL:
-        texts.append(f"b = {1e3 * result.attrs['b']:.3g} mm")
+    b = result.attrs.get("b", np.inf)
+    if np.isfinite(b) and abs(b / a - 1.0) > EQUAL:
+        texts.append(f"b = {1e3 * b:.3g} mm")
     if "load_given" in result.scalars and frame is not None:  # a, of the widest contact, is the unit of x
-        width, p0 = _whole_hertz_at(result, frame)
+        width, _, p0 = _whole_hertz_at(result, frame)
         texts.append(f"half-width {width / a:.3g} a")
     texts.append(f"p0 = {1e-9 * p0:.3g} GPa")
     texts.append(f"oil {1e3 * case.fluid.viscosity:.4g} mPa s" if case.fluid else "dry")
