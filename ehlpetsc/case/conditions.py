@@ -202,7 +202,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
     contact, motion, time = (tables.get(name, {}) for name in named)
     load, radius, u, xi = table.reference()
     kind = "point" if is_point(tables) else "line"
-    radii: Any = _radii(contact["radius"], radius) if kind == "point" else radius
+    radii, ratio = _radii(contact.get("radius"), radius)
     replaced = {"load": load, "radius": radii}
     wrong = {key: contact[key] for key in replaced if isinstance(contact.get(key), str | bool | dict)}
     contact, constants = contact | replaced | wrong, _constants(tables)  # what is wrong is reported
@@ -216,18 +216,22 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         with contextlib.suppress(*FAULTY):
             given = (contact[key] for key in ("youngs_modulus", "poisson_ratio"))
             modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in given))
-            ratio = radii[1] / radii[0] if kind == "point" else math.inf
             half_width = GEOMETRIES[kind].half_width(load, radius, modulus, ratio)
             time["travel"] = float(table.swept_length() / half_width)
     return tables | {"contact": contact, "motion": motion, "time": time}
 
 
-def _radii(given: Any, radius: float) -> Any:
-    """Radii of a point contact with one along [m], in the ratio of those given; without one as given."""
+def _radii(given: Any, radius: float) -> tuple[Any, float]:
+    """Radii of a contact with one along [m], in the ratio of those given, and this ratio.
+
+    A pair that has no ratio is returned as given, with nan; of a line the ratio is infinite.
+    """
+    if not isinstance(given, list | tuple):
+        return radius, math.inf
     with contextlib.suppress(*FAULTY):
         along, across = given
-        return [radius, across * (radius / along)]
-    return given
+        return [radius, across * (radius / along)], across / along
+    return given, math.nan
 
 
 def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
