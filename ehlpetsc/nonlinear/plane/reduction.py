@@ -21,8 +21,8 @@ from ehlpetsc.discretisation.contact.node_state import NodeState
 
 PRESSURE, VOID, CONTACT, BOUND = 0, 1, 2, 3
 STIFF_SLOPE = 1e-3  # p0 per a^2/R: from this slope of the asperities' pressure on it counts in a cavity
-# of r by w where solids yield: with none, as below a rigid film, the film is the unknown, and r stands for it
-LEAST_SLOPE = 1e-8
+# minimum of -dr/dw where solids yield: it vanishes below a rigid film, and r would not depend on the film
+MIN_SLOPE = 1e-8
 
 
 class Reduction(NamedTuple):
@@ -60,7 +60,7 @@ def reduction_of(state: NodeState, inactive: np.ndarray) -> Reduction:
     r_p, r_s, h_p, h_s = r_q * q_p + r_w * w_p, r_q * q_s + r_w * w_s, h_w * w_p, h_w * w_s
     s_p = zeros.copy()
     void = kind == VOID  # r = r_q q + r_w w and s = s_q q + s_w w
-    r_w = np.where(void & (r_q == 0.0), np.minimum(r_w, -LEAST_SLOPE), r_w)
+    r_w = np.where(void & (r_q == 0.0), np.minimum(r_w, -MIN_SLOPE), r_w)
     other = 1.0 / np.where(void, r_q * s_w - r_w * s_q, 1.0)
     back = np.stack([q_p, q_s, w_p, w_s])
     back[:, void] = np.stack([s_w * other, -r_w * other, -s_q * other, r_q * other])[:, void]
