@@ -84,14 +84,14 @@ class CoarseSpace:
 class CoarseCorrection:
     """Correction of Reynolds rows at the nodes of a mask.
 
-    `flow`, `transport`: derivatives of the rows by pressures and by separations of the nodes i-2 .. i+1,
-        below and above, every second column; shape (nodes, 12).
+    `derivatives`: of the rows by pressure and separation of the nodes i-2 .. i+1, below and above, shape
+        (nodes, 12).
     """
 
-    def __init__(self, space: CoarseSpace, flow: np.ndarray, transport: np.ndarray, mask: np.ndarray):
+    def __init__(self, space: CoarseSpace, derivatives: np.ndarray, mask: np.ndarray):
         self.functions, self.deflections = space.chosen(mask)
         by_pressure, by_separation = (
-            self.functions.T @ space.matrix(by[:, ::2]) @ self.functions for by in (flow, transport)
+            self.functions.T @ space.matrix(derivatives[:, k::2]) @ self.functions for k in (0, 1)
         )
         matrix = by_pressure.toarray() + by_separation @ self.deflections
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved

@@ -30,10 +30,11 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
-from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitted_terms
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitted_terms, pattern
 from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
+ROWS = 1024  # nodes whose rows are filled in at a time, in the processor's cache
 MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
 
 
@@ -57,50 +58,57 @@ class EliminatedFilm:
 
 
 class SparseForm:
-    """Assembled sparse form of one state, with PETSc's preconditioner.
+    """Assembled sparse form with PETSc's preconditioner; its pattern is that of the mesh.
+
+    `block`: unknowns of a node.
 
     `kind`: of the local nodes.
-    `by_pressure`, `by_separation`: derivatives of the local Reynolds rows by v and by the separation, as
-        `EHLProblem.reynolds` multiplies by them, shape (local nodes, 12).
-    `border`: of the rows by h00.
+    `by`: derivatives of the local Reynolds rows by v and separation, as `EHLProblem.reynolds` multiplies by
+        them, shape (local nodes, 12).
+    `border`: of the rows by h00, shape (local nodes, unknowns of a node).
     """
 
-    def __init__(
-        self,
-        problem: EHLProblem,
-        whole: list[np.ndarray],
-        derivatives: np.ndarray,
-        terms: tuple,
-        comm: PETSc.Comm,
-    ):
-        grid = problem.grid
-        self.kind = kind = whole[0][problem.first : problem.last]
-        self.block = block = TERMS + 1 + int((whole[0] == CONTACT).any())
-        local, most = problem.local, STENCIL * problem.local
-        csr = (
-            np.zeros(local + 1, dtype=np.int32),
-            np.empty(most, dtype=np.int32),
-            np.zeros((most, block, block)),
+    def __init__(self, problem: EHLProblem, block: int, comm: PETSc.Comm):
+        self.problem, self.block, local = problem, block, problem.local
+        self.mesh = problem.grid.shape[-1], problem.n, problem.grid.periodic
+        self.pointers = np.empty(local + 1, dtype=np.int32)
+        self.places = np.empty((local, STENCIL), dtype=np.int8)
+        columns = np.empty(local * STENCIL, dtype=np.int32)
+        count = pattern(self.mesh, problem.first, problem.last, self.pointers, columns, self.places)
+        self.columns = columns[:count]
+        sizes = block * local, block * problem.n
+        self.matrix = PETSc.Mat().createBAIJ(
+            (sizes, sizes), block, csr=(self.pointers, self.columns), comm=comm
         )
-        self.by_pressure, self.by_separation = np.zeros_like(derivatives), np.zeros_like(derivatives)
-        every_second = self.by_pressure[:, ::2], self.by_separation[:, ::2]
-        border = np.zeros((local, block))
-        mesh = grid.shape[-1], problem.n, problem.first, problem.last, grid.periodic
-        scales = problem.deflection.row_scale, *grid.steps
-        count = fill(tuple(whole), derivatives, terms, scales, mesh, csr, *every_second, border)
-        self.border = border.ravel()
-        sizes, entries = (block * local, block * problem.n), (csr[0], csr[1][:count], csr[2][:count])
-        self.matrix = PETSc.Mat().createBAIJ((sizes, sizes), block, csr=entries, comm=comm)
-        del csr, entries  # PETSc has a copy
+        self.matrix.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         self.pc.setOptionsPrefix(PREFIX)
         self.pc.setType("ilu" if comm.size == 1 else "asm")
         self.pc.setFromOptions()
-        self.pc.setUp()
         self.b, self.u = self.matrix.createVecs()
         self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
-        nodes = block * np.arange(problem.local)
+        self.by, self.border = np.empty((local, 2 * STENCIL)), np.empty((local, block))
+
+    def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray, terms: tuple) -> None:
+        """Assemble and factor for a state; arguments as of :func:`.screened_poisson.fill`."""
+        p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.steps)
+        blocks = np.empty((STENCIL * min(ROWS, p.local), self.block, self.block))
+        for begin in range(p.first, p.last, ROWS):
+            end = min(begin + ROWS, p.last)
+            pointers = self.pointers[begin - p.first : end - p.first + 1]
+            rows, filled = (
+                (p.first, begin, end, self.pointers, self.places),
+                blocks[: pointers[-1] - pointers[0]],
+            )
+            filled[:] = 0.0
+            fill(tuple(whole), derivatives, terms, scales, self.mesh, rows, filled, self.by, self.border)
+            columns, nodes = self.columns[pointers[0] : pointers[-1]], np.arange(begin, end, dtype=np.int32)
+            self.matrix.setValuesBlockedIJV(pointers - pointers[0], columns, filled, rowmap=nodes)
+        self.matrix.assemble()
+        self.pc.setUp()
+        self.kind = kind = whole[0][p.first : p.last]
+        nodes = self.block * np.arange(p.local)
         self.reynolds_rows = nodes + TERMS + (kind == CONTACT)
         self.has_reynolds, self.has_pressure = kind != BOUND, kind != VOID
         self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
@@ -136,6 +144,7 @@ class Elimination:
         self.terms = fitted_terms(problem.deflection.stiffness, problem.grid.steps)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
+        self.form: SparseForm | None = None  # filled in again and again
         self.factors: Factors | None = None
         self.kept: Factors | None = None
 
@@ -147,7 +156,7 @@ class Elimination:
         """Factor for the state of an operator, as the first factors of all later solves."""
         self.applications = MAX_KEPT + 1
         self.prepare(operator)
-        self.kept = self.factors
+        self.kept, self.form = self.factors, None
 
     def prepare(self, operator: PlaneJacobian) -> None:
         """Assemble and factor anew where the kept matrices no longer serve."""
@@ -172,17 +181,20 @@ class Elimination:
     def _build(self, derivatives: np.ndarray, with_coarse: bool) -> None:
         p, self.builds = self.problem, self.builds + 1
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
-        self.factors = None  # frees the last sparse form before the next one
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
-        sparse = SparseForm(p, whole, derivatives, self.terms, self.comm)
+        block = TERMS + 1 + int((whole[0] == CONTACT).any())
+        if self.form is None or self.form.block != block:
+            self.form = self.factors = None  # freed before the next one
+            self.form = SparseForm(p, block, self.comm)
+        sparse = self.form
+        sparse.set_up(whole, derivatives, self.terms)
         mask = whole[0] == PRESSURE
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
-            flow, transport = self._gathered(sparse.by_pressure), self._gathered(sparse.by_separation)
-            coarse = CoarseCorrection(self.coarse_space, flow, transport, mask)
+            coarse = CoarseCorrection(self.coarse_space, self._gathered(sparse.by), mask)
         self.factors = Factors(sparse, coarse)
-        self.factors = Factors(sparse, coarse, self._pressures(-sparse.border))
+        self.factors = Factors(sparse, coarse, self._pressures(-sparse.border.ravel()))
 
     def _pressures(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """Pressures and Reynolds unknowns of the local nodes, and the load."""
@@ -197,12 +209,12 @@ class Elimination:
     def _coarsely(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Local pressures of the coarse correction, and the right-hand side that they leave."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        rows, nothing = sparse.reynolds_rows, np.zeros(p.share.window_size)
+        rows = sparse.reynolds_rows
         reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
         pressure, separation = coarse(self._gathered(reynolds))
         pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
-        for by, change in ((sparse.by_pressure, pressure), (sparse.by_separation, separation)):
-            reynolds = reynolds - p.reynolds.product(by, change[p.window], nothing, p.owned.start)
+        changes = pressure[p.window], separation[p.window]
+        reynolds = reynolds - p.reynolds.product(sparse.by, *changes, p.owned.start)
         left = b.copy()
         left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
         return pressure[p.share.local], left
@@ -216,7 +228,7 @@ class Elimination:
         if self.ranks.size > 1:
             b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
         nothing = np.zeros(p.share.window_size)
-        by_g = p.reynolds.product(sparse.by_separation, exchange.window(b_g), nothing, p.owned.start)
+        by_g = p.reynolds.product(sparse.by, nothing, exchange.window(b_g), p.owned.start)
         b = np.zeros(sparse.block * p.local)
         b[sparse.reynolds_rows[sparse.has_reynolds]] = (full[1:local:2] - by_g)[sparse.has_reynolds]
         b[sparse.deflection_rows] = full[0:local:2][sparse.touching]
