@@ -228,7 +228,7 @@ def _radii(given: Any, radius: float) -> tuple[Any, float]:
     """
     if not isinstance(given, list | tuple):
         return radius, math.inf
-    with contextlib.suppress(*FAULTY):
+    if len(given) == 2 and all(is_number(value) and value > 0.0 for value in given):
         along, across = given
         return [radius, across * (radius / along)], across / along
     return given, math.nan

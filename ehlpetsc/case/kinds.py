@@ -16,16 +16,30 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
 LINE = "line"  # the kind of contact whose surfaces are profiles
+OF_GEARS = {"contact": ("load", "radius"), "motion": ("entrainment_speed", "slide_roll_ratio")}
 MAX_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 
 
-def point_of_gears(data: Tables) -> list[Fault]:
-    """Fault of a point contact of gear teeth."""
-    if "gears" not in data or not is_point(data):
+def given_by_gears(data: Tables) -> list[Fault]:
+    """Faults of keys beside `[gears]`, which gives their values and is of line contacts."""
+    if "gears" not in data:
         return []
-    given = f"contact.radius = {show(data['contact']['radius'])}"
-    text = f"{given}: a point contact has no [gears]; leave the radius out (mesh.width: a strip), or [gears]"
-    return [Fault("contact.radius", text)]
+    if is_point(data):
+        given = f"contact.radius = {show(data['contact']['radius'])}"
+        text = (
+            f"{given}: a point contact has no [gears]; leave the radius out (mesh.width: a strip), or [gears]"
+        )
+        return [Fault("contact.radius", text)]
+    faults = []
+    for table, keys in OF_GEARS.items():
+        values = data.get(table)
+        for key in keys if isinstance(values, dict) else ():
+            if key in values:
+                given = f"{table}.{key} = {show(values[key])}"
+                faults.append(
+                    Fault(f"{table}.{key}", f"{given}: follows from [gears]; leave out one of both")
+                )
+    return faults
 
 
 def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:

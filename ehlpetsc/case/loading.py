@@ -16,7 +16,7 @@ from ehlpetsc.case.checking import Fault, check, in_si, is_number
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
-from ehlpetsc.case.kinds import LINE, faults_of_kind, point_of_gears
+from ehlpetsc.case.kinds import LINE, faults_of_kind, given_by_gears
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
@@ -134,7 +134,7 @@ def _checked(
     if isinstance(heat, dict) and heat.get("bulk_temperature") == "losses":
         return _checked_with_losses(folder, data, known)
     faults, conditions = [], None
-    if wrong := point_of_gears(data):
+    if wrong := given_by_gears(data):
         return None, wrong
     data = with_derived(data)
     try:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError
+from ehlpetsc.gears.faults import faults, notes
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import share, single_stiffness
 
@@ -72,9 +73,9 @@ def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
     (1.443, 22.439)
     """
     pair = gears if isinstance(gears, GearPair) else GearPair(**gears)
-    faults = pair.faults()
-    if faults:
-        raise CaseError(faults)
+    found = faults(pair)
+    if found:
+        raise CaseError(found)
     points = pair.points
     rho = np.linspace(points["A"], points["E"], PATH_INTERVALS + 1)
     rho = np.unique(np.concatenate([rho, list(points.values())]))
@@ -111,7 +112,7 @@ def describe(path: Path) -> list[str]:
         f"a pinion tooth meets {pair.partners} of {abs(pair.teeth[1])} wheel teeth; "
         f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
     ]
-    lines += [f"warning: {note}" for note in pair.notes()]
+    lines += [f"warning: {note}" for note in notes(pair)]
     if pair.tip_relief > 0.0:
         kappa = single_stiffness(pair) * pair.tip_relief / pair.normal_load
         lines.append(f"tip relief {1e6 * pair.tip_relief:.1f} µm, c' C_a/w' = {kappa:.2f}")

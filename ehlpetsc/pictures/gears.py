@@ -12,6 +12,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 
 from ehlpetsc.analysis.gear_run import FLANKS, SCALARS, GearRun
+from ehlpetsc.gears.faults import faults
 from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES, share
 from ehlpetsc.gears.path import Path as ContactPath
@@ -71,7 +72,7 @@ def _sharings(path: ContactPath) -> dict[str, np.ndarray]:
     curves = {path.pair.rule: 1e-3 * path.load}
     for rule in RULES if path.pair.load is None else ():
         other = replace(path.pair, load_sharing=rule)
-        if rule not in curves and not other.faults():
+        if rule not in curves and not faults(other):
             curves[rule] = 1e-3 * share(other, path.rho) * other.normal_load
     return curves
 

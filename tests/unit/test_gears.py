@@ -16,6 +16,7 @@ from ehlpetsc.case.derived import rating_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.command import main
+from ehlpetsc.gears.faults import faults, notes
 from ehlpetsc.gears.load_sharing import corner_gap, edge_contact, pair_loads, share, single_stiffness
 from ehlpetsc.gears.path import describe, gear_loss_factor, hertz, loss, mean_friction
 from ehlpetsc.gears.standards import bulk_temperatures, loss_factor, values_of
@@ -33,8 +34,6 @@ FZG |= {"tip_diameter": [82.5e-3, 118.4e-3], "face_width": 14e-3, "torque": 302.
 STEEL = reduced_modulus((206e9, 206e9), (0.3, 0.3))
 CONTACT = """
 [contact]
-radius = 0.01
-load = 1e5
 youngs_modulus = [206e9, 206e9]
 poisson_ratio = [0.3, 0.3]
 [mesh]
@@ -210,7 +209,7 @@ RULES |= {
 @pytest.mark.parametrize("rule", RULES)
 def test_loads_of_all_pairs_are_the_total_at_every_position(rule):
     pair = GearPair(**(FZG | RULES[rule]))
-    assert pair.faults() == []
+    assert faults(pair) == []
     rho = np.linspace(pair.points["A"] - 3e-3, pair.points["E"] + 3e-3, 5001)
     total = sum(share(pair, rho + k * pair.base_pitch) for k in range(-3, 4))
     np.testing.assert_allclose(total, 1.0, atol=1e-12)
@@ -286,7 +285,7 @@ def test_profile_shift_gives_the_play_free_pair():
     assert pair.tip_diameter == pytest.approx([d - 2.0 * shortening for d in expected], rel=1e-12)
     clearance = pair.centre_distance - 0.5 * (pair.tip_diameter[0] + pair.root_diameters[1])
     assert clearance == pytest.approx(0.25 * 3e-3, rel=1e-9)
-    assert pair.faults() == []
+    assert faults(pair) == []
     unshifted = GearPair(**OWN, profile_shift=(0.2, -0.2))
     assert unshifted.centre_distance == pytest.approx(90e-3, rel=1e-12)
     assert unshifted.tip_diameter == pytest.approx((82.8e-3, 115.2e-3), rel=1e-12)
@@ -300,7 +299,7 @@ def test_helical_slice():
     rho = np.linspace(spur.points["A"], spur.points["E"], 301)
     np.testing.assert_allclose(share(narrow, rho), share(spur, rho), atol=1e-4)
     pair = GearPair(**OWN, profile_shift=(0.0, 0.0), helix_angle=20.0)
-    assert pair.rule == "stiffness" and pair.faults() == []
+    assert pair.rule == "stiffness" and faults(pair) == []
     np.testing.assert_allclose(pair_loads(pair, rho)[0].sum(axis=1), 1.0, atol=1e-12)
     assert pair.centre_distance == pytest.approx(90e-3 / math.cos(math.radians(20.0)), rel=1e-12)
     assert pair.overlap_ratio == pytest.approx(
@@ -422,6 +421,12 @@ POINTED = {"module": 3e-3, "teeth": [10, 60], "profile_shift": [1.0, 0]}
 POINTED |= {"centre_distance": None, "tip_diameter": None}
 
 
+@pytest.mark.parametrize("key", ["contact.load", "contact.radius", "motion.entrainment_speed"])
+def test_values_that_follow_from_gears_are_refused(case, key):
+    with pytest.raises(CaseError, match=rf"{key} = 1.0: follows from \[gears\]"):
+        load(case(), {key: 1.0})
+
+
 @pytest.mark.parametrize(
     ("change", "parts"),
     [
@@ -465,10 +470,10 @@ def test_impossible_geometry_is_refused_in_one_line(change, parts, case, capsys)
 )
 def test_thin_tips_undercut_and_loads_that_hardly_fit_are_warned_of(change, parts, case):
     pair = load(case(**change)).gears.pair
-    (note,) = pair.notes()
+    (note,) = notes(pair)
     assert all(part in note for part in parts), note
     assert f"warning: {note}" in describe(path_of_contact(pair))
-    assert GearPair(**FZG).notes() == []
+    assert notes(GearPair(**FZG)) == []
 
 
 def test_one_modulus_for_both_flanks_gives_the_whole_path(case):

@@ -77,9 +77,10 @@ def _check_geometry(gears: Gears) -> dict[str, Any]:
         max(gears.load) <= 0.0 or any(later <= sooner for sooner, later in pairwise(gears.path))
     ):
         raise Refused("allowed: a path that increases and a load above 0 somewhere", "path")
-    faults = gears.pair.faults()
-    if faults:
-        raise Refused("; ".join(fault.removeprefix("gears.") for fault in faults))
+    from ehlpetsc.gears.faults import faults
+
+    if found := faults(gears.pair):
+        raise Refused("; ".join(fault.removeprefix("gears.") for fault in found))
     return {}
 
 
