@@ -15,7 +15,7 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, extrapolated, fill_mass
 from ehlpetsc.physics.laws import density_law, ln_viscosity, viscosity_law
 from ehlpetsc.physics.operation import Conditions
-from ehlpetsc.physics.rheology import NEWTON, flow_law, stress_pressure
+from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import flow_table
 
@@ -164,6 +164,17 @@ class StepInputs:
         """Table `[fluid]` of the case; None: dry."""
         return self.oil.fluid if self.oil else None
 
+    @cached_property
+    def flow(self) -> FlowLaw:
+        """Shear law of the oil."""
+        return flow_law(self.fluid)
+
+    @property
+    def flow_table(self) -> np.ndarray:
+        """Table of the pressure flow, empty where the shear law has a closed form."""
+        kind, _, *constants = self.flow
+        return flow_table(kind, *constants)
+
     def begin(self) -> StepInputs:
         """Inputs of one solve, see :meth:`.step_inputs.Oil.begin`."""
         return replace(self, oil=self.oil and self.oil.begin())
@@ -171,16 +182,10 @@ class StepInputs:
 
 def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, float, float]:
     """Constants of :func:`.finite_volumes.flux_through` from its third on: of shear law and speeds."""
-    flow, now = flow_law(inputs.fluid), inputs.conditions
+    flow, now = inputs.flow, inputs.conditions
     stress = np.inf if flow.kind == NEWTON else flow.stress
     rise = scales.p0 * stress_pressure(inputs.fluid)
     return stress, stress * rise if rise else 0.0, abs(now.sliding), now.entrainment / scales.u
-
-
-def flow_table_of(inputs: StepInputs) -> np.ndarray:
-    """Table of the pressure flow, empty where the shear law has a closed form."""
-    kind, _, *constants = flow_law(inputs.fluid)
-    return flow_table(kind, *constants)
 
 
 def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndarray, ...]:

@@ -124,9 +124,7 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
             f"Hertz' {1e-9 * scales.p0:.3g} GPa: the solids yield as a whole, beyond half-space theory"
         )
     if case.gears:
-        from ehlpetsc.gears.faults import notes
-
-        yield from notes(case.gears.pair)
+        yield from case.gears.notes
     rough = [f"surface.{name}" for name in ("1", "2") if case.surface.side(name)]
     if rough and case.time is None and case.motion is not None:
         yield (

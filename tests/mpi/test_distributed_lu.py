@@ -15,7 +15,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.line.banded_jacobian import GROUP, BandedJacobian, exponentials
 from ehlpetsc.nonlinear.line.distributed_lu import DistributedLU, solve
 from ehlpetsc.nonlinear.line.jacobian import PIVOT_REGULARISATION
-from ehlpetsc.nonlinear.line.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.node_pairs import node_pairs
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -84,8 +84,7 @@ def test_distributed_lu_solves_its_matrix(model):
     mine = inactive_nodes[(inactive_nodes >= first) & (inactive_nodes < last)] - first
     nodes = part.model.state(at[0][part.window], at[1][part.window])
     derivatives = whole.evaluate(Unknowns(*at), whole.inputs()).reynolds_derivatives[first:last]
-    pairs = NodePairs(nodes, part.model.compliance)
-    entries = pairs.entries(derivatives, lu.band.stencil)
+    entries, unknowns = node_pairs(nodes, part.model.compliance, derivatives, lu.band.stencil)
     other = entries._replace(
         p_first=np.zeros_like(entries.p_first),
         separation_second=np.zeros_like(entries.p_first),
@@ -95,7 +94,7 @@ def test_distributed_lu_solves_its_matrix(model):
     lu.factor(entries, mine)
     has_load = int(last == n)
     found = np.empty(2 * (last - first) + has_load)
-    lu.units[:] = pairs.unknowns(part.owned)
+    lu.units[:] = unknowns[:, part.owned]
     solve(lu.factors, right[2 * first : 2 * last + has_load], found)
     found, approach = found[: 2 * (last - first)], ranks.bcast(found[-1], root=ranks.size - 1)
     expected = np.linalg.solve(dense(whole, at, inactive_nodes), right)

@@ -15,7 +15,7 @@ from ehlpetsc.discretisation.contact.yielding import (
     limit_yield_switch,
 )
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
-from ehlpetsc.nonlinear.line.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.node_pairs import node_pairs
 from ehlpetsc.physics.asperities import LayerLaw
 
 
@@ -90,10 +90,10 @@ def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
     model, rng, owned = model(), np.random.default_rng(5), slice(0, len(q))
     state = model.linearised(model.state(np.array(q), np.array(w)), owned, lambda sums: sums)
     rows, stencil = rng.standard_normal((len(q), 8)), np.arange(len(q))[:, None] - np.arange(4)
-    of_nodes = NodePairs(state, model.compliance)
-    (p_first, separation_first, separation_second, by_pairs) = of_nodes.entries(rows, stencil)
+    entries, unknowns = node_pairs(state, model.compliance, rows, stencil)
+    p_first, separation_first, separation_second, by_pairs = entries
     pairs = rng.standard_normal((len(q), 2))
-    changes = np.einsum("kni,nk->ni", of_nodes.unknowns(owned), pairs)
+    changes = np.einsum("kni,nk->ni", unknowns[:, owned], pairs)
     pressure, oil, film, separation = (state.derivatives() * changes.T).sum(axis=1)
     (first, second), places = pairs.T, (q_columns, w_columns)
     np.testing.assert_allclose(p_first * first, pressure, rtol=1e-12, atol=1e-12)

@@ -67,6 +67,13 @@ class Gears(Values):
     def pair(self) -> GearPair:
         return GearPair(**{key: value for key, value in self.as_dict().items() if key not in NOT_GEOMETRY})
 
+    @property
+    def notes(self) -> list[str]:
+        """Warnings of the pair."""
+        from ehlpetsc.gears.faults import notes
+
+        return notes(self.pair)
+
 
 def _check_geometry(gears: Gears) -> dict[str, Any]:
     if (gears.path is None) != (gears.load is None):

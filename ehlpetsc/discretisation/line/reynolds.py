@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.discretisation.finite_volumes import M, balance
-from ehlpetsc.discretisation.step_inputs import StepInputs, flow_table_of, inlet, shear_constants
+from ehlpetsc.discretisation.step_inputs import StepInputs, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.scales import Scales
@@ -85,10 +85,6 @@ class Reynolds:
         s = self.scales
         return s.p0 / (s.a * self.dx), s.h, *shear_constants(inputs, s), self.layer
 
-    def flow_table(self, inputs: StepInputs) -> np.ndarray:
-        """Table of the pressure flow, empty where the shear law has a closed form."""
-        return flow_table_of(inputs)
-
     def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows and its derivatives.
 
@@ -105,7 +101,7 @@ class Reynolds:
         residual = np.empty(self.local.stop - self.local.start)
         derivatives, own = np.zeros((len(residual), n_dofs(self.stencil))), self.own
         inner = slice(int(self.has_inlet), None)
-        balance(at, first, law, self.flow_table(inputs), storage, (residual[inner], derivatives[inner]))
+        balance(at, first, law, inputs.flow_table, storage, (residual[inner], derivatives[inner]))
         if self.has_outlet:
             derivatives[-1, own + 1] += derivatives[-1, own + 3]
             derivatives[-1, own + 2 :] = 0.0

@@ -23,10 +23,9 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
 from ehlpetsc.discretisation.finite_volumes import DP, FLUIDITY, LN_ETA_P, RHO, RHO_P, P
 from ehlpetsc.discretisation.plane.deflection import Deflection, Transposition
 from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
-from ehlpetsc.discretisation.step_inputs import Oil, StepInputs, flow_table_of, inlet, shear_constants
+from ehlpetsc.discretisation.step_inputs import Oil, StepInputs, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.physics.laws import density
-from ehlpetsc.physics.rheology import flow_law
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
@@ -99,8 +98,7 @@ class Reynolds:
             storage = history.m[self.rows], history.extrapolated[self.rows], history.k, rate
         residual, derivatives = np.zeros(n_y * n_x), np.zeros((n_y * n_x, n_dofs(STENCIL)))
         weights, rows = (self.dy, self.dx), (residual, derivatives)
-        flow = flow_law(inputs.fluid)
-        balance(at, self.shape, laws, flow, flow_table_of(inputs), storage, weights, rows)
+        balance(at, self.shape, laws, inputs.flow, inputs.flow_table, storage, weights, rows)
         self._beyond_edges(derivatives.reshape(n_y, n_x, -1))
         residual *= 1.0 / self.film_scale
         derivatives *= 1.0 / self.film_scale

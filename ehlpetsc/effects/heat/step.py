@@ -12,7 +12,6 @@ from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.step_inputs import (
     IsothermalOil,
     StepInputs,
-    flow_table_of,
     mirrored,
     shear_constants,
 )
@@ -24,7 +23,6 @@ from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken_in_rows, transport_in_rows
 from ehlpetsc.physics.flash_temperature import Solid
-from ehlpetsc.physics.rheology import flow_law
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
@@ -154,12 +152,12 @@ class HeatStep:
         filled, at = inputs.oil.begin(), np.empty((inputs.oil.rows, len(q) + self.rows))
         filled.fill(q, h, slice(0, len(q)), at)
         solved = filled.guess if isinstance(filled, FilmHeat) else guess
-        s, table, max_flow = self.scales.grid, flow_table_of(inputs), self._max_flow(h, oil, inputs)
+        s, table, max_flow = self.scales.grid, inputs.flow_table, self._max_flow(h, oil, inputs)
         along, *across = (self._face_law(inputs, spacing) for spacing in reversed(s.steps))
         of_faces = faces_in_rows(self.rows, at, along, table, oil, max_flow)
         couette, pressure_heat, spread, gradient = of_faces
         for law in across:
-            laws = law, flow_law(inputs.fluid), table
+            laws = law, inputs.flow, table
             pressure_heat += cross_flow_heat(at, s.shape, s.periodic, laws, oil, max_flow)
         if backward:
             solved, couette, pressure_heat, spread, gradient = map(

@@ -36,38 +36,34 @@ class BandEntries(NamedTuple):
     reynolds_derivatives: np.ndarray
 
 
-class NodePairs:
-    """Pairs of the nodes at a state.
+def node_pairs(
+    state: NodeState, compliance: float, derivatives: np.ndarray, stencil: np.ndarray
+) -> tuple[BandEntries, np.ndarray]:
+    """Derivatives of a state by the pairs of its nodes; q and w by both unknowns, shape (2, nodes, 2).
 
     `compliance`: depth over the excess of yielding solids.
+    `derivatives`: of the local Reynolds rows by their unknown and the film, as in `ehl_problem.Evaluation`.
+    `stencil`: nodes of each row, by their index in the window, shape (local nodes, 4).
     """
+    zeros, plastic = np.zeros(len(state.film)), state.plastic
+    depth: tuple = (zeros > 0.0, zeros, zeros, 0.0)
+    if plastic is not None:
+        depth = plastic.yielding, plastic.depth_q, plastic.reynolds_w, plastic.hardening
+    *entries, unknowns = by_pairs((state.p_q, state.p_w, state.h_w), depth, compliance, derivatives, stencil)
+    return BandEntries(*entries), unknowns
 
-    def __init__(self, state: NodeState, compliance: float):
-        n, plastic = len(state.film), state.plastic
-        zeros = np.zeros(n)
-        self._deflection, self._unknowns = np.empty((3, n)), np.empty((2, n, 2))
-        self._has_film, self._rows = np.empty(n, dtype=bool), np.empty((3, n))
-        depth: tuple = (zeros > 0.0, zeros, zeros, 0.0)
-        if plastic is not None:
-            depth = plastic.yielding, plastic.depth_q, plastic.reynolds_w, plastic.hardening
-        found = self._deflection, self._unknowns, self._has_film, self._rows
-        choose_pairs((state.p_q, state.p_w, state.h_w), depth, compliance, found)
 
-    def entries(self, derivatives: np.ndarray, stencil: np.ndarray) -> BandEntries:
-        """Derivatives of the state by the pairs.
-
-        `derivatives`: of the local Reynolds rows by their unknown and the film, as in
-            `ehl_problem.Evaluation`.
-        `stencil`: nodes of each row, by their index in the window, shape (local nodes, 4).
-        """
-        by_pairs = np.empty_like(derivatives)
-        reynolds_by_pairs(derivatives, stencil, self._has_film, self._rows, by_pairs)
-        p_first, separation_first, separation_second = self._deflection
-        return BandEntries(p_first, separation_first, separation_second, by_pairs)
-
-    def unknowns(self, owned: slice) -> np.ndarray:
-        """q and w by both unknowns of the pairs of local nodes, shape (2, nodes, 2)."""
-        return self._unknowns[:, owned]
+@compiled
+def by_pairs(
+    state: tuple, depth: tuple, compliance: float, derivatives: np.ndarray, stencil: np.ndarray
+) -> tuple:
+    """As :func:`node_pairs`; arguments of :func:`choose_pairs`."""
+    n = len(state[0])
+    deflection, unknowns = np.empty((3, n)), np.empty((2, n, 2))
+    has_film, rows, out = np.empty(n, dtype=np.bool_), np.empty((3, n)), np.empty_like(derivatives)
+    choose_pairs(state, depth, compliance, (deflection, unknowns, has_film, rows))
+    reynolds_by_pairs(derivatives, stencil, has_film, rows, out)
+    return deflection[0], deflection[1], deflection[2], out, unknowns
 
 
 @compiled

@@ -17,7 +17,7 @@ from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.line.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.line.distributed_lu import DistributedLU, solve
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator
-from ehlpetsc.nonlinear.line.node_pairs import NodePairs
+from ehlpetsc.nonlinear.line.node_pairs import node_pairs
 
 
 class Factors:
@@ -36,11 +36,11 @@ class Factors:
 
     def factor(self, operator: JacobianOperator) -> None:
         """Factor for the state of a :mod:`ehlpetsc.nonlinear.two_fields`."""
-        pairs = NodePairs(operator.state, operator.model.compliance)
-        entries = pairs.entries(operator.reynolds_derivatives, self.lu.band.stencil)
+        state, derivatives = operator.state, operator.reynolds_derivatives
+        entries, unknowns = node_pairs(state, operator.model.compliance, derivatives, self.lu.band.stencil)
         self.lu.factor(entries, operator.inactive_nodes, anew=not self.fresh)
         self.fresh = True
-        self.lu.units[:] = pairs.unknowns(self._owned)
+        self.lu.units[:] = unknowns[:, self._owned]
 
 
 class FarFieldBand:
