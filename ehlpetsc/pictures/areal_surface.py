@@ -15,7 +15,9 @@ from ehlpetsc.surfaces.parameters import (
     ArealParameters,
     CoreParameters,
     autocorrelation,
+    binned,
     core_parameters,
+    power_spectrum,
 )
 from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.topography import Topography
@@ -25,10 +27,11 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.roughness import MovingTopography
 
 
-SIZE = (10.0, 4.2)  # inches
+SIZE = (13.0, 4.2)  # inches
 MAX_PIXELS = 1500  # of the picture, along either side
 EXTREME_SHARE = 0.001  # of the heights, beyond the ends of the colours
 COLOURS = "viridis"
+SHOWN_DENSITY = 1e-12  # over the highest: below it is the rounding of synthetic waves
 CORRELATION_LENGTHS = 5  # of the slowest decay that the picture shows
 
 
@@ -63,9 +66,9 @@ def rows(found: ArealParameters, core: CoreParameters) -> list[str]:
 
 
 def draw(name: str, surface: Topography) -> Figure:
-    """Map of the heights, and autocorrelation along and across its rows."""
+    """Map of the heights, autocorrelation and power spectral density along and across its rows."""
     found = surface.parameters
-    figure, (heights, correlation) = style.new_figure(1, 2, SIZE, width_ratios=(1.6, 1.0))
+    figure, (heights, correlation, spectrum) = style.new_figure(1, 3, SIZE, width_ratios=(1.6, 1.0, 1.0))
     style.set_title(
         figure,
         name,
@@ -74,7 +77,33 @@ def draw(name: str, surface: Topography) -> Figure:
     )
     _draw_heights(figure, heights, surface)
     _draw_correlation(correlation, surface)
+    draw_spectra(spectrum, spectra(surface))
+    spectrum.legend(frameon=False, **style.SMALL)
     return figure
+
+
+def spectra(surface: Topography) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Power spectral densities [m^3] over the wavenumber [rad/m] along and across the rows."""
+    z = surface.z - surface.z.mean()
+    return {"along": power_spectrum(z, surface.dx), "across": power_spectrum(z.T, surface.dy)}
+
+
+def draw_spectra(axes: Axes, spectra: dict[str, tuple[np.ndarray, np.ndarray]]) -> None:
+    """Draw power spectral densities by direction, with their means in bins."""
+    for (direction, spectrum), colour in zip(spectra.items(), (style.SINGLE, style.SECOND), strict=False):
+        axes.loglog(*spectrum, color=style.FAINT, lw=0.4)
+        axes.loglog(*binned(*spectrum), color=colour, lw=1.4, label=direction)
+    highest = max(density.max() for _, density in spectra.values())
+    axes.set(xlabel="wavenumber [rad/m]", ylabel="power spectral density [m³]")
+    axes.set_ylim(max(axes.get_ylim()[0], SHOWN_DENSITY * highest))
+    above = axes.secondary_xaxis("top", functions=(_wavelength, _wavelength))
+    above.tick_params(labelsize="small")
+    above.set_xlabel("wavelength [µm]", fontsize="small")
+
+
+def _wavelength(q: np.ndarray) -> np.ndarray:
+    """Wavelength [um] of a wavenumber [rad/m], and the reverse."""
+    return 2e6 * np.pi / np.maximum(q, 1e-300)
 
 
 def _draw_heights(figure: Figure, axes: Axes, surface: Topography) -> None:

@@ -2,8 +2,8 @@
 
 FILE is a profile or map as in ``[surface.1]``, whose keys ``--set unit=um``, ``--set cutoff=0.8e-3`` and so
 on set. The least-squares line or plane is subtracted, except with ``--set level=false``. Without a cutoff the
-parameters are those of the primary profile. ``--csv FILE.csv`` writes the power spectral density of a
-profile.
+parameters are those of the primary profile. ``--csv FILE.csv`` writes the power spectral density, of a map
+those along and across its rows.
 """
 
 from __future__ import annotations
@@ -29,7 +29,6 @@ from ehlpetsc.surfaces.parameters import (
     MIN_POINTS,
     CoreParameters,
     ProfileParameters,
-    binned,
     equally_spaced,
     power_spectrum,
 )
@@ -80,7 +79,7 @@ def run(chosen: argparse.Namespace) -> None:
     notes = [*profile.notes, *(["interpolated at equal spacing"] if is_interpolated else [])]
     print("\n".join([_size(chosen.file, profile), *notes, *rows(parameters)]))
     if chosen.csv is not None:
-        atomic_write(chosen.csv, csv(*spectrum).encode())
+        atomic_write(chosen.csv, csv({"": spectrum}).encode())
         print(chosen.csv)
     if target is not None:
         style.save(draw(path.name, profile, parameters, spectrum), target)
@@ -88,9 +87,10 @@ def run(chosen: argparse.Namespace) -> None:
 
 
 def _run_map(chosen: argparse.Namespace, surface: Topography, target: Path | None) -> None:
-    if chosen.csv is not None:
-        raise ProfileError("--csv: of a profile, not of a map; leave it out")
     print("\n".join(areal_surface.lines(chosen.file, surface)))
+    if chosen.csv is not None:
+        atomic_write(chosen.csv, csv(areal_surface.spectra(surface)).encode())
+        print(chosen.csv)
     if target is not None:
         style.save(areal_surface.draw(Path(chosen.file).name, surface), target)
         print(target)
@@ -137,10 +137,15 @@ def rows(parameters: ProfileParameters) -> list[str]:
     return [f"{name:3s} {value:10.4f} {unit:2s}  {text}" for name, value, unit, text in table]
 
 
-def csv(q: np.ndarray, density: np.ndarray) -> str:
-    """Power spectral density as CSV, one line a wavenumber [rad/m]."""
-    lines = (f"{2 * np.pi / k:.8e},{k:.8e},{c:.8e}" for k, c in zip(q, density, strict=True))
-    return "\n".join([HEADING, *lines]) + "\n"
+def csv(spectra: dict[str, tuple[np.ndarray, np.ndarray]]) -> str:
+    """Power spectral densities by direction, "" of a profile, as CSV, one line a wavenumber [rad/m]."""
+    table = {f",{direction}" if direction else "": spectrum for direction, spectrum in spectra.items()}
+    lines = [
+        f"{2 * np.pi / k:.8e},{k:.8e},{c:.8e}{direction}"
+        for direction, spectrum in table.items()
+        for k, c in zip(*spectrum, strict=True)
+    ]
+    return "\n".join([HEADING if "" in table else f"{HEADING},direction", *lines]) + "\n"
 
 
 def draw(
@@ -157,23 +162,9 @@ def draw(
     )
     axes["profile"].plot(1e3 * profile.X, 1e6 * profile.z, color=style.SINGLE, lw=0.7)
     axes["profile"].set(xlabel="X [mm]", ylabel="height [µm]", xlim=1e3 * profile.X[[0, -1]])
-    _draw_spectrum(axes["spectrum"], *spectrum)
+    areal_surface.draw_spectra(axes["spectrum"], {"": spectrum})
     _draw_material_ratio(axes["material"], profile.z, parameters.core)
     return figure
-
-
-def _draw_spectrum(axes: Axes, q: np.ndarray, density: np.ndarray) -> None:
-    axes.loglog(q, density, color=style.FAINT, lw=0.4)
-    axes.loglog(*binned(q, density), color=style.SINGLE, lw=1.4)
-    axes.set(xlabel="wavenumber [rad/m]", ylabel="power spectral density [m³]")
-    above = axes.secondary_xaxis("top", functions=(_wavelength, _wavelength))
-    above.tick_params(labelsize="small")
-    above.set_xlabel("wavelength [µm]", fontsize="small")
-
-
-def _wavelength(q: np.ndarray) -> np.ndarray:
-    """Wavelength [um] of a wavenumber [rad/m], and the reverse."""
-    return 2e6 * np.pi / np.maximum(q, 1e-300)
 
 
 def _draw_material_ratio(axes: Axes, z: np.ndarray, core: CoreParameters) -> None:

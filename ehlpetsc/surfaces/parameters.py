@@ -126,17 +126,18 @@ def correlation_length(z: np.ndarray, dx: float) -> float:
 
 
 def power_spectrum(z: np.ndarray, dx: float) -> tuple[np.ndarray, np.ndarray]:
-    r"""Power spectral density C of heights of mean 0, with a Hann window.
+    r"""Power spectral density C of heights of mean 0 along the last axis, with a Hann window.
 
     Normalised by :math:`R_q^2=\frac1\pi\int_0^\infty C\,dq` (Jacobs, Junge and Pastewka, Surf. Topogr.:
     Metrol. Prop. 5 (2017) 013001).
 
-    Returns q [rad/m] above 0 and C [m^3].
+    Returns q [rad/m] above 0 and C [m^3], the mean over other axes.
     """
-    window = np.hanning(z.size + 1)[:-1]
-    amplitude = np.fft.rfft(z * window)[1:]
-    q = 2.0 * np.pi * np.fft.rfftfreq(z.size, dx)[1:]
-    return q, dx * np.abs(amplitude) ** 2 / np.sum(window**2)
+    n = z.shape[-1]
+    window = np.hanning(n + 1)[:-1]
+    amplitude = np.fft.rfft(z * window).reshape(-1, n // 2 + 1)[:, 1:]
+    q = 2.0 * np.pi * np.fft.rfftfreq(n, dx)[1:]
+    return q, dx * np.mean(np.abs(amplitude) ** 2, axis=0) / np.sum(window**2)
 
 
 def binned(q: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

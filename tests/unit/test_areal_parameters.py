@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from support import refused
 
 from ehlpetsc.pictures.surface import main
 from ehlpetsc.surfaces.parameters import ArealParameters, autocorrelation, correlation_lengths
@@ -94,7 +93,13 @@ def test_form_of_a_map_replaces_its_plane(tmp_path, capsys):
     assert heights[1] == pytest.approx(1e6 * AMPLITUDE / 2, rel=0.02)
 
 
-def test_the_spectrum_of_a_map_is_refused(tmp_path, capsys):
-    np.save(tmp_path / "map.npy", waves()[:64, :64])
-    words = [tmp_path / "map.npy", "--set", "spacing=1e-6", "--no-picture", "--csv", tmp_path / "a.csv"]
-    assert "--csv: of a profile, not of a map; leave it out" in refused(capsys, main, *words)
+def test_spectra_of_a_map_have_its_variance_in_both_directions(tmp_path):
+    np.save(tmp_path / "map.npy", waves())
+    words = [tmp_path / "map.npy", "--set", f"spacing={STEP!r}", "--no-picture", "--csv", tmp_path / "a.csv"]
+    assert main([str(word) for word in words]) == 0
+    heading, *lines = (tmp_path / "a.csv").read_text().splitlines()
+    assert heading.endswith("power spectral density [m^3],direction")
+    for direction in ("along", "across"):
+        cells = [line.split(",") for line in lines if line.endswith(direction)]
+        q, density = np.array([cell[1:3] for cell in cells], dtype=float).T
+        assert np.sum(density) * q[0] / np.pi == pytest.approx(np.var(waves()), rel=0.02)
