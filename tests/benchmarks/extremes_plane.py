@@ -3,7 +3,8 @@
 A Latin hypercube: Hertz pressure 0.1 to 3 GPa, U 1e-13 to 1e-9, L to 25, Eyring stress 1 to 30 MPa, ratio of
 the radii 1/8 to 8, roughness 0 to 1 um, slide/roll ratio 0 to 2. Steel in mixed contact with a compliant
 layer. Each case is a steady start, a ramp of the roughness over a half-width and the travel that follows.
-Inlet, sides and outlet lie where the gap is some films wide, so that they flood the contact.
+Inlet, sides and outlet lie where the gap is some films wide, so that they flood the contact, and some rms
+heights, so that no asperity touches there.
 
 One row each: Newton iterations of the start, those a step, halved steps, central film, share of the solids,
 maximum pressure over that of Hertz, or the reason why there is no solution.
@@ -40,6 +41,7 @@ MODULUS, RADIUS, VISCOSITY = 2.2e11, 0.0125, 0.04  # E' [Pa], R along x [m], eta
 MAX_COEFFICIENT = 40e-9  # pressure-viscosity coefficient [1/Pa], which limits L at low speed
 FLOODED = 20.0  # gap at the inlet in central films
 BESIDE, BEHIND = 10.0, 4.0  # the same at the sides and the outlet
+ABOVE = 5.0  # the same in rms heights
 MAX_DISTANCE = 24.0  # half-widths: a film beyond is far thicker than the deformation, and the mesh starves it
 NODES = 128  # along and across, about, of a large domain
 MAX_OPENING = 2.5  # films by which the gap opens from one node to the next beside the contact
@@ -109,8 +111,9 @@ class Extreme:
         }
         scales = Scales.of(load(tables))
         film, across = expected_film(load(tables), scales), scales.b / scales.a
+        highest = ABOVE * self.sq * RADIUS / scales.a**2
         inlet, beside, outlet = (
-            min(max(least, math.sqrt(1.0 + 2.0 * gap * film)), MAX_DISTANCE)
+            min(max(least, math.sqrt(1.0 + 2.0 * max(gap * film, highest))), MAX_DISTANCE)
             for least, gap in ((2.5, FLOODED), (2.0 * across / math.sqrt(self.ratio), BESIDE), (1.5, BEHIND))
         )
         side = beside * math.sqrt(self.ratio) / across
