@@ -6,13 +6,12 @@ case and draws it.
 
 from importlib import import_module
 
-from ehlpetsc.gears.geometry import GearPair
-
 __all__ = ["GearPair", "Path", "path_of_contact"]
 
 
 def __getattr__(name: str) -> object:
-    """Names of the path of contact, which a case without gears does not load."""
-    if name in ("Path", "path_of_contact"):
-        return getattr(import_module("ehlpetsc.gears.path"), name)
+    """Public names; a case without gears loads none."""
+    if name in __all__:
+        module = "geometry" if name == "GearPair" else "path"
+        return getattr(import_module(f"ehlpetsc.gears.{module}"), name)
     raise AttributeError(f"module 'ehlpetsc.gears' has no attribute {name!r}")

@@ -21,10 +21,12 @@ which is the pair of the path; all slices approach by the same :math:`\delta`.
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.gears.geometry import GearPair
+if TYPE_CHECKING:
+    from ehlpetsc.gears.geometry import GearPair
 
 # compliance q' of ISO 6336-1, method B: 1, 1/z1, 1/z2, x1, x1/z1, x2, x2/z2, x1^2, x2^2 [mm um/N]
 COMPLIANCE = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)

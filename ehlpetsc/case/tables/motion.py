@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.gears.geometry import GearPair
 from ehlpetsc.gears.load_sharing import RULES
+
+if TYPE_CHECKING:
+    from ehlpetsc.gears.geometry import GearPair
 
 CONDITIONS = ("[gears]", "[operation]")
 MAX_NODES = 200_000  # with more a time step would take hours; more likely a typing error
@@ -65,6 +67,9 @@ class Gears(Values):
 
     @property
     def pair(self) -> GearPair:
+        """Geometry of the pair."""
+        from ehlpetsc.gears.geometry import GearPair
+
         return GearPair(**{key: value for key, value in self.as_dict().items() if key not in NOT_GEOMETRY})
 
     @property
