@@ -27,7 +27,7 @@ TIME_STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities ha
 
 
 # options of glibc's mallopt, and values: M_MMAP_THRESHOLD, M_MMAP_MAX, M_TRIM_THRESHOLD
-RETURNING = ((-3, 1 << 24), (-4, 1 << 16), (-1, 1 << 26))
+RETURNING = ((-3, 1 << 22), (-4, 1 << 16), (-1, 1 << 26))
 
 
 class PlaneMatrices:
@@ -84,7 +84,7 @@ class PlaneFields(TwoFields):
 
 
 def return_freed_memory() -> None:
-    """Have malloc return freed blocks of 16 MB and more to the system.
+    """Have malloc return freed blocks of 4 MB and more to the system.
 
     SuperLU_DIST, which Debian's PETSc loads, has it keep them, and factors do not fit the holes of others.
     """
