@@ -24,10 +24,10 @@ SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 # of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
-PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.15, 0.3, 0.5
+PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.1, 0.15, 0.4
 # its growth with the nodes, and what does not grow [s]; steady start in steps
-GROWTH, STEP_SECONDS, PLANE_START = 1.15, 0.03, 10
-PLANE_MEMORY, NODE_MEMORY = 240e6, 9e3  # at the start and for each node [bytes]
+GROWTH, STEP_SECONDS, PLANE_START = 1.0, 0.03, 10
+PLANE_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 COMPRESSED = 0.6  # of the size of the fields
 # keys of the waves of a surface
 WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
