@@ -26,7 +26,7 @@ STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 # of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
 PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.1, 0.15, 0.4
 # its growth with the nodes, and what does not grow [s]; steady start in steps
-GROWTH, STEP_SECONDS, PLANE_START = 1.0, 0.03, 10
+GROWTH, STEP_SECONDS, PLANE_START = 1.0, 0.015, 10
 PLANE_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 COMPRESSED = 0.6  # of the size of the fields
 # keys of the waves of a surface
