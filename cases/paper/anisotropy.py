@@ -16,6 +16,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -118,8 +119,9 @@ def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
         seeds = {"1": 2 * chosen.seed, "2": 2 * chosen.seed + 1}
         case["surface"] = {side: surface(chosen, lay, sq / 2**0.5, seed) for side, seed in seeds.items()}
         case["time"] = {"travel": chosen.travel, "courant": chosen.courant, "start": "rough"}
-    case["output"] = {"every": 100000}
-    result = solve(case, progress=False)
+    case["output"] = {"every": 1 if chosen.output else 100000}
+    output = chosen.output and chosen.output / f"lay{lay:.2g}_{speed:g}.h5"
+    result = solve(case, output, progress=False)
     weights = filled_weights(result)
     ratio, friction, share, length, thickness, highest = (mean(result, name, weights) for name in MEANS)
     return (
@@ -151,6 +153,7 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--travel", type=float, default=4.0, help="of the faster surface [half-widths]")
     parser.add_argument("--courant", type=float, default=0.5)
+    parser.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="of film: results with all steps")
     chosen = parser.parse_args(words)
     row, values = TABLES[chosen.table]
     for lay in chosen.lays:
