@@ -9,7 +9,7 @@ from support.points import R, lowest, moes_film, point
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.finite_volumes import flux_through
 from ehlpetsc.discretisation.plane.finite_volumes import flux_across
-from ehlpetsc.discretisation.step_inputs import flow_table_of, shear_constants
+from ehlpetsc.discretisation.step_inputs import shear_constants
 from ehlpetsc.physics.hertz import hertz_ellipse
 from ehlpetsc.physics.rheology import flow_law
 from ehlpetsc.run.simulation import Simulation
@@ -137,7 +137,7 @@ def fluxes(simulation):
     (n_y, n_x), (dy, dx), inputs = s.grid.shape, s.grid.steps, solution.inputs
     reynolds = simulation.stepper.problem.reynolds
     at = reynolds.properties(solution.nodes.reynolds_unknown, solution.nodes.film, inputs.oil)
-    constants, table = (s.h, *shear_constants(inputs, s), reynolds.layer), flow_table_of(inputs)
+    constants, table = (s.h, *shear_constants(inputs, s), reynolds.layer), inputs.flow_table
     along, across = ((s.p0 / (s.a * step), *constants) for step in (dx, dy))
     x, y = np.zeros((n_y, n_x)), np.zeros((n_y + 1, n_x))
     for row in range(n_y + 1):
