@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import tomllib
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.command_line import CommandParser, duration, exit_status, put
 from ehlpetsc.case.combinations import combinations, keys_of
-from ehlpetsc.case.kinds import LINE
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
@@ -32,13 +32,59 @@ from ehlpetsc.surfaces.roughness import Roughness
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.case.tables.contact import Contact
-    from ehlpetsc.surfaces.roughness import Roughness
 
 RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
     "(mesh.width), touch on 0.7 of the dry area and carry more of the load in mixed lubrication"
 )
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
+
+
+class Words(NamedTuple):
+    """What the summary says of a kind of contact."""
+
+    dry: Callable[[Scales, str], list[str]]  # of the load in words
+    film_formulas: str
+    load: tuple[float, str]  # of a table over time: factor and unit
+    across: Callable[[Scales], str]  # extent of the mesh, from the middle
+    lay: list[str]  # of rough surfaces
+
+
+def _dry_line(s: Scales, load: str) -> list[str]:
+    return [
+        f"Contact: radius {s.R:g} m, {load}",
+        f"Hertz: half-width a = {s.a * 1e3:.6f} mm, {_p0(s)}",
+    ]
+
+
+def _dry_strip(s: Scales, load: str) -> list[str]:
+    width = 1e3 * s.grid.breadth * s.a
+    return [*_dry_line(s, load), f"Strip: {width:.4g} mm of its length, periodic across"]
+
+
+def _dry_point(s: Scales, load: str) -> list[str]:
+    return [
+        f"Contact: a point, radii {s.R:g} m along, {s.R * s.radius_ratio:g} m across, {load}",
+        f"Hertz: half-widths a = {s.a * 1e3:.6f} mm along, b = {s.b * 1e3:.6f} mm across, {_p0(s)}",
+    ]
+
+
+def _p0(s: Scales) -> str:
+    return f"maximum pressure p0 = {s.p0 / 1e9:.6f} GPa"
+
+
+def _across(edge: float, unit: str) -> str:
+    return f" along, {-edge:g} to {edge:g} {unit} across"
+
+
+PER_LENGTH = 1e-3, "kN/m"
+KINDS = {
+    "line": Words(_dry_line, "Moes", PER_LENGTH, lambda s: "", [RIDGES]),
+    "strip": Words(_dry_strip, "Moes", PER_LENGTH, lambda s: _across(0.5 * s.grid.breadth, "a"), []),
+    "point": Words(
+        _dry_point, POINT_FORMULAS, (1.0, "N"), lambda s: _across(s.grid.axes[0][-1] * s.a / s.b, "b"), []
+    ),
+}
 
 
 def main(words: list[str]) -> int:
@@ -65,7 +111,7 @@ def explain(case: Case) -> str:
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
-        [RIDGES] * (bool(rough) and case.kind == LINE),
+        KINDS[case.kind].lay * bool(rough),
         _size(case, scales, rough),
         [f"Warning: {line}" for line in warnings(case, scales)],
         [f"Refused: {line}" for line in domain_faults(case, scales)],
@@ -76,16 +122,7 @@ def explain(case: Case) -> str:
 def _dry(case: Case, s: Scales) -> list[str]:
     """Radii, load and the dry contact."""
     load = f"load {s.load:g} {load_unit(case)}, reduced modulus {s.E / 1e9:.4f} GPa"
-    p0 = f"maximum pressure p0 = {s.p0 / 1e9:.6f} GPa"
-    if case.kind == "point":
-        return [
-            f"Contact: a point, radii {s.R:g} m along, {s.R * s.radius_ratio:g} m across, {load}",
-            f"Hertz: half-widths a = {s.a * 1e3:.6f} mm along, b = {s.b * 1e3:.6f} mm across, {p0}",
-        ]
-    width = 1e3 * s.grid.breadth * s.a
-    strip = [f"Strip: {width:.4g} mm of its length, periodic across"] if case.kind == "strip" else []
-    contact = f"Contact: radius {s.R:g} m, {load}"
-    return [contact, f"Hertz: half-width a = {s.a * 1e3:.6f} mm, {p0}", *strip]
+    return KINDS[case.kind].dry(s, load)
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:
@@ -112,7 +149,7 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
-    formulas = POINT_FORMULAS if case.kind == "point" else "Moes"
+    formulas = KINDS[case.kind].film_formulas
     oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
         *oil,
@@ -151,9 +188,9 @@ def _variable(case: Case, s: Scales) -> list[str]:
 
     repeats = f", {table.repeat} times" if table.repeat > 1 else ""
     moved = 1e3 * s.a * case.time.travel
-    load, unit = (table.load, "N") if case.kind == "point" else (1e-3 * table.load, "kN/m")
+    factor, unit = KINDS[case.kind].load
     return [
-        f"Conditions of a {origin}{repeats}: load {range_of(load, unit)}, "
+        f"Conditions of a {origin}{repeats}: load {range_of(factor * table.load, unit)}, "
         f"radius {range_of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
         f"Motion: mean {range_of(table.entrainment, 'm/s')}; surface 1 {range_of(table.u1, 'm/s')}, "
         f"surface 2 {range_of(table.u2, 'm/s')}",
@@ -168,12 +205,7 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     nodes, spacing = (
         " x ".join(f(v) for v in vs[::-1]) for f, vs in ((str, s.grid.shape), (_um, s.grid.spacings))
     )
-    across = ""
-    if case.kind != "line":
-        edge, unit = 0.5 * s.grid.breadth, "a"  # of a strip, half of its period
-        if case.kind == "point":
-            edge, unit = s.grid.axes[0][-1] * s.a / s.b, "b"
-        across = f" along, {-edge:g} to {edge:g} {unit} across"
+    across = KINDS[case.kind].across(s)
     return [
         f"Mesh: {nodes} nodes from {s.x[0]:g} to {s.x[-1]:g} a{across}, spacing {spacing} um; "
         f"{2 * s.grid.n + 1} unknowns",
