@@ -31,9 +31,10 @@ from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
-CHUNK_BYTES = 65536  # large enough to write fast, small enough that a steady result stays small
+CHUNK_BYTES = 16384  # large enough to write fast; a compressed chunk leaves a hole when rows are added to it
 CHUNK_STEPS = 512
 FLUSH_SECONDS = 2.0  # between two flushes: a kill can lose the steps of this time and the current one
+COMPRESSION: dict[str, Any] = {"compression": "gzip", "compression_opts": 1}  # which every reader knows
 BLOCK_BYTES = 2**23  # copied at once
 
 
@@ -83,7 +84,7 @@ class Layout:
             if name in self.fields:
                 dtype = np.dtype("u1" if FIELDS[name].dtype == "u1" else self.precision)
                 rows = frames_of_chunk(self.shape, dtype.itemsize)
-                options = _growing(rows, *self.shape) | self._compression(dtype)
+                options = _growing(rows, *self.shape) | COMPRESSION | {"shuffle": dtype != "u1"}
                 self._add(file, name, FIELDS[name], dtype=dtype, **options)
         self._add(file, "step", OTHERS["step"], **_growing(CHUNK_STEPS))
         self._add(file, "contact_count", OTHERS["contact_count"], np.zeros(self.shape))
@@ -96,15 +97,6 @@ class Layout:
             for name in surface.depths:
                 self._add(file, f"{group}/{name}", OTHERS[f"surface/{name}"], np.zeros(surface.z.shape))
             file[group].attrs.update({"speed": surface.speed} | surface.statistics)
-
-    def _compression(self, dtype: np.dtype) -> dict[str, object]:
-        """Filters of a field: flags, rare ones, and all of the large frames of a plane are compressed.
-
-        A frame of a plane takes two thirds of its size, and a tenth of the time of its step to write.
-        """
-        if dtype != "u1" and self.y is None:
-            return {}
-        return {"compression": "gzip", "compression_opts": 1, "shuffle": dtype != "u1"}
 
     def _add(
         self,
@@ -130,11 +122,8 @@ class Layout:
 
 
 def frames_of_chunk(shape: tuple[int, ...], itemsize: int) -> int:
-    """Frames in a chunk of a field.
-
-    Of a plane one: compressed chunks that grow frame by frame leave holes in the file, twice its size.
-    """
-    return 1 if len(shape) > 1 else max(1, CHUNK_BYTES // (math.prod(shape) * itemsize))
+    """Frames in a chunk of a field."""
+    return max(1, CHUNK_BYTES // (math.prod(shape) * itemsize))
 
 
 def _growing(rows: int, *width: int) -> dict[str, tuple]:

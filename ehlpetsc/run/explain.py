@@ -205,14 +205,13 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     nodes, spacing = (
         " x ".join(f(v) for v in vs[::-1]) for f, vs in ((str, s.grid.shape), (_um, s.grid.spacings))
     )
-    across = KINDS[case.kind].across(s)
+    extent = f"from {s.x[0]:g} to {s.x[-1]:g} a{KINDS[case.kind].across(s)}"
     return [
-        f"Mesh: {nodes} nodes from {s.x[0]:g} to {s.x[-1]:g} a{across}, spacing {spacing} um; "
-        f"{2 * s.grid.n + 1} unknowns",
+        f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
         *wave_lines(case, s),
         f"Expected run time on one rank: about {duration(seconds)}; "
-        f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}"
-        f"{f'; memory: about {1e-6 * memory(s):.0f} MB' if across else ''}",
+        f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}; "
+        f"memory: about {1e-6 * memory(s):.0f} MB",
     ]
 
 

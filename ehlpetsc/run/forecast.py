@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ehlpetsc import __version__
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.case.kinds import LINE
 from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
 
-# wall clock time [s] of a run's start, of a Newton iteration and of each node in it, on one core of a server
-START_SECONDS, ITERATION_SECONDS, NODE_SECONDS = 1.6, 2.4e-3, 1.5e-6
+START_SECONDS = 1.6  # wall clock time of a run's start on one core of a server
+# of a Newton iteration of a line contact, and of each node in it [s]
+ITERATION_SECONDS, NODE_SECONDS = 2.4e-3, 1.5e-6
 # Newton iterations a step: before roughness enters, with roughness in full film, in mixed lubrication
 SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
@@ -27,7 +28,7 @@ STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
 PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.1, 0.15, 0.4
 # its growth with the nodes, and what does not grow [s]; steady start in steps
 GROWTH, STEP_SECONDS, PLANE_START = 1.0, 0.015, 10
-PLANE_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
+START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 COMPRESSED = 0.6  # of the size of the fields
 # keys of the waves of a surface
 WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
@@ -40,9 +41,12 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 
 
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Wall clock time of the iterations [s]."""
-    if case.kind != LINE:
-        return _plane_time(case, s, rough)
+    """Wall clock time of the steps [s]."""
+    return WORK_TIMES[case.kind](case, s, rough)
+
+
+def _line_time(case: Case, s: Scales, rough: Roughness | None) -> float:
+    """Wall clock time of the steps of a line contact [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
     each = ITERATION_SECONDS + NODE_SECONDS * s.grid.n
     return passes * (iterations(case, s, rough) + solves) * each
@@ -57,9 +61,16 @@ def _plane_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     return count * (STEP_SECONDS + each * (s.grid.n / PLANE_NODES) ** GROWTH)
 
 
+WORK_TIMES: dict[str, Callable[[Case, Scales, Roughness | None], float]] = {
+    "line": _line_time,
+    "strip": _plane_time,
+    "point": _plane_time,
+}
+
+
 def memory(s: Scales) -> float:
-    """Expected memory of a run of a plane on one rank [bytes]."""
-    return PLANE_MEMORY + NODE_MEMORY * s.grid.n
+    """Expected memory of a run on one rank [bytes]."""
+    return START_MEMORY + NODE_MEMORY * s.grid.n
 
 
 def _is_mixed(case: Case, s: Scales, rough: Roughness | None) -> bool:
@@ -90,18 +101,14 @@ def steps(s: Scales) -> int:
 
 
 def file_size(case: Case, s: Scales) -> float:
-    """Expected size of the result file of a pass [bytes], in whole chunks; contact flags are compressed.
-
-    Fields of a plane are compressed too.
-    """
+    """Expected size of the result file of a pass [bytes], in whole chunks; contact flags take nothing."""
     value = 8 if case.output.precision == "float64" else 4
     count = steps(s) if case.time else 0
     frames, rows = count // case.output.every + 1, frames_of_chunk(s.grid.shape, value)
     stored = set(case.output.fields) & set(of_case(FIELDS, case))
     fields = sum(FIELDS[name].dtype == "f8" for name in stored)
     scalars = len(of_case(STEP_SCALARS, case)) * 8 * CHUNK_STEPS * math.ceil((count + 1) / CHUNK_STEPS)
-    share = 1.0 if case.kind == LINE else COMPRESSED
-    return share * fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
+    return COMPRESSED * fields * value * s.grid.n * rows * math.ceil(frames / rows) + scalars
 
 
 def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
@@ -112,10 +119,8 @@ def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
 
 
 def wave_lines(case: Case, s: Scales) -> list[str]:
-    """Nodes on the waves that a case prescribes for its surfaces, on a plane; a line for each surface."""
-    if case.kind == LINE:
-        return []
-    (dy, dx), lines = s.grid.spacings, []
+    """Nodes on the waves that a case prescribes for its surfaces, a line for each surface."""
+    dy, dx, lines = s.grid.spacings[0], s.grid.spacings[-1], []
     for side in ("1", "2"):
         spec = case.surface.side(side)
         table = spec and (spec.synthetic or spec)
