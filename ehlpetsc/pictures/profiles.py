@@ -18,7 +18,7 @@ from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
-from ehlpetsc.results.running_in import heights, pass_summary
+from ehlpetsc.results.running_in import MEAN_HEIGHT, heights, pass_summary
 from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.roughness import Profile, Roughness
 
@@ -29,8 +29,8 @@ CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
 LENGTH, AREA, VOLUME = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
-# of contact and of its depths by kind of contact; name of the mean deviation of the heights
-MEASURES = {"line": (LENGTH, AREA, "Ra"), "strip": (LENGTH, AREA, "Sa"), "point": (AREA, VOLUME, "Sa")}
+# of contact and of its depths by kind of contact
+MEASURES = {"line": (LENGTH, AREA), "strip": (LENGTH, AREA), "point": (AREA, VOLUME)}
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 
@@ -158,7 +158,7 @@ def draw_pressure(axes: Axes, results: list[Result]) -> None:
 
 def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the area or volume set plastically by the end of each pass, and Ra or Sa of both surfaces."""
-    _, (factor, word, unit), name = MEASURES[result.case.kind]
+    (factor, word, unit), name = MEASURES[result.case.kind][1], MEAN_HEIGHT[result.case.kind]
     values = factor * np.array([row["set_volume"] for row in rows])
     axes.plot(*_over_passes(axes, values), ".-", color=LAST, label=f"plastic {word}")
     axes.set(ylabel=f"plastic {word} of both surfaces [{unit}]", ylim=(0.0, 1.1 * values.max() or 1.0))
@@ -174,7 +174,7 @@ def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> No
 
 def draw_contact(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the means of the load fraction of the solids and of the contact length or area."""
-    (factor, word, unit), *_ = MEASURES[result.case.kind]
+    factor, word, unit = MEASURES[result.case.kind][0]
     share, length = (
         np.array([row.get(name) for row in rows], float) for name in ("contact_share", "contact_length")
     )

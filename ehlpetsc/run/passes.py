@@ -14,7 +14,13 @@ from ehlpetsc.base.quantities import STEP_SCALARS, unit_in
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
-from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
+from ehlpetsc.results.running_in import (
+    MEAN_HEIGHT,
+    RUN_IN,
+    SHIFTED_IN_A_ROW,
+    pass_summary,
+    passes_to_run_in,
+)
 from ehlpetsc.run.checkpoint import pass_of
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
@@ -91,7 +97,7 @@ class Passes:
         row["added"] = row.get("set_volume", 0.0) - before
         self.index.rows.append(row)
         self.index.write()
-        self._print(line(row, unit, "Ra" if self.case.kind == "line" else "Sa"))
+        self._print(line(row, unit, MEAN_HEIGHT[self.case.kind]))
 
     def _print_end(self) -> None:
         rows, shift = self.index.rows, self.case.time.pass_shift
