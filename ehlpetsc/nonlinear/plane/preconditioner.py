@@ -29,7 +29,15 @@ from ehlpetsc.discretisation.unknowns import n_dofs
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, VOID, Reduction, reduction_of
+from ehlpetsc.nonlinear.plane.reduction import (
+    BOUND,
+    CONTACT,
+    PRESSURE,
+    STIFF,
+    VOID,
+    Reduction,
+    reduction_of,
+)
 from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitted_terms, pattern
 from ehlpetsc.nonlinear.two_fields import owned
 
@@ -62,10 +70,9 @@ class SparseForm:
 
     `block`: unknowns of a node.
 
-    `kind`: of the local nodes.
+    `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
     `by`: derivatives of the local Reynolds rows by v and separation, as `EHLProblem.reynolds` multiplies by
         them, shape (local nodes, 12).
-    `border`: of the rows by h00, shape (local nodes, unknowns of a node).
     """
 
     def __init__(self, problem: EHLProblem, block: int, comm: PETSc.Comm):
@@ -88,11 +95,12 @@ class SparseForm:
         self.pc.setFromOptions()
         self.b, self.u = self.matrix.createVecs()
         self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
-        self.by, self.border = np.empty((local, 2 * STENCIL)), np.empty((local, block))
+        self.by = np.empty((local, 2 * STENCIL))
 
     def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray, terms: tuple) -> None:
         """Assemble and factor for a state; arguments as of :func:`.screened_poisson.fill`."""
         p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.steps)
+        self.c = terms[0]
         blocks = np.empty((STENCIL * min(ROWS, p.local), self.block, self.block))
         for begin in range(p.first, p.last, ROWS):
             end = min(begin + ROWS, p.last)
@@ -102,24 +110,38 @@ class SparseForm:
                 blocks[: pointers[-1] - pointers[0]],
             )
             filled[:] = 0.0
-            fill(tuple(whole), derivatives, terms, scales, self.mesh, rows, filled, self.by, self.border)
+            fill(tuple(whole), derivatives, terms, scales, self.mesh, rows, filled, self.by)
             columns, nodes = self.columns[pointers[0] : pointers[-1]], np.arange(begin, end, dtype=np.int32)
             self.matrix.setValuesBlockedIJV(pointers - pointers[0], columns, filled, rowmap=nodes)
         self.matrix.assemble()
         self.pc.setUp()
-        self.kind = kind = whole[0][p.first : p.last]
-        nodes = self.block * np.arange(p.local)
+        self.kind, self.p_s = whole[0][p.first : p.last], whole[5][p.first : p.last]
+        kind, nodes = self.kind, self.block * np.arange(p.local)
         self.reynolds_rows = nodes + TERMS + (kind == CONTACT)
-        self.has_reynolds, self.has_pressure = kind != BOUND, kind != VOID
+        self.has_reynolds, self.has_pressure = kind != BOUND, (kind != VOID) & (kind != STIFF)
         self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
         self.deflection_rows = nodes[self.touching] + TERMS
 
-    def solve(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressures and Reynolds unknowns of the local nodes."""
-        self.b.array[:] = b
+    def solve(self, reynolds: np.ndarray, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressures and Reynolds unknowns of the local nodes.
+
+        Parameters
+        ----------
+        reynolds
+            Right-hand side of the Reynolds rows.
+        separation
+            Change of the separation besides the deflection.
+        """
+        block, deflection, b = self.block, self.problem.deflection, self.b.array
+        b[:] = 0.0
+        for j in range(TERMS):
+            b[j::block] = deflection.cell * self.p_s * separation
+        b[self.reynolds_rows[self.has_reynolds]] = reynolds[self.has_reynolds]
+        b[self.deflection_rows] = deflection.row_scale * separation[self.touching]
         self.pc.apply(self.b, self.u)
         u = self.u.array_r
-        return np.where(self.has_pressure, u[TERMS :: self.block], 0.0), u[self.reynolds_rows]
+        of_asperities = self.p_s * (separation + sum(self.c[j] * u[j::block] for j in range(TERMS)))
+        return np.where(self.has_pressure, u[TERMS::block], of_asperities), u[self.reynolds_rows]
 
 
 class Factors(NamedTuple):
@@ -167,7 +189,7 @@ class Elimination:
         slow = self._any(self.applications > MAX_KEPT)
         if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
             with events.FACTOR:
-                self._build(operator.reynolds_derivatives, slow or self.factors is self.kept)
+                self._build(operator, slow or self.factors is self.kept)
         self.applications = 0
 
     def _any(self, condition: bool) -> bool:
@@ -178,7 +200,7 @@ class Elimination:
         """Values of all nodes from those of the local ones, first axis."""
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def _build(self, derivatives: np.ndarray, with_coarse: bool) -> None:
+    def _build(self, operator: PlaneJacobian, with_coarse: bool) -> None:
         p, self.builds = self.problem, self.builds + 1
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
         parts: Reduction = self.reduction._replace(back=None)
@@ -188,36 +210,41 @@ class Elimination:
             self.form = self.factors = None  # freed before the next one
             self.form = SparseForm(p, block, self.comm)
         sparse = self.form
-        sparse.set_up(whole, derivatives, self.terms)
+        sparse.set_up(whole, operator.reynolds_derivatives, self.terms)
         mask = whole[0] == PRESSURE
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
             coarse = CoarseCorrection(self.coarse_space, self._gathered(sparse.by), mask)
         self.factors = Factors(sparse, coarse)
-        self.factors = Factors(sparse, coarse, self._pressures(-sparse.border.ravel()))
+        of_h00 = self._pressures(operator, np.zeros(p.local), np.ones(p.local))
+        self.factors = Factors(sparse, coarse, of_h00)
 
-    def _pressures(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Pressures and Reynolds unknowns of the local nodes, and the load."""
+    def _pressures(
+        self, operator: PlaneJacobian, reynolds: np.ndarray, separation: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, float]:
+        """Pressures and Reynolds unknowns of the local nodes, and the load; see :meth:`SparseForm.solve`."""
         p, (sparse, coarse, _) = self.problem, self.factors
+        nothing = np.zeros(p.share.window_size)
+        given = operator.exchange.window(separation)
+        reynolds = reynolds - p.reynolds.product(sparse.by, nothing, given, p.owned.start)
         with events.BACK_SOLVE:
-            coarsely, left = self._coarsely(b) if coarse else (0.0, b)
-            pressure, r = sparse.solve(left)
+            coarsely = 0.0
+            if coarse:
+                coarsely, change, reynolds = self._coarsely(reynolds)
+                separation = separation + change
+            pressure, r = sparse.solve(reynolds, separation)
         pressure = pressure + coarsely
         load = p.deflection.cell * pressure.sum()
         return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
 
-    def _coarsely(self, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Local pressures of the coarse correction, and the right-hand side that they leave."""
+    def _coarsely(self, reynolds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        rows = sparse.reynolds_rows
-        reynolds = np.where(sparse.has_reynolds, b[rows], 0.0)
-        pressure, separation = coarse(self._gathered(reynolds))
+        pressure, separation = coarse(self._gathered(np.where(sparse.has_reynolds, reynolds, 0.0)))
         pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
         changes = pressure[p.window], separation[p.window]
-        reynolds = reynolds - p.reynolds.product(sparse.by, *changes, p.owned.start)
-        left = b.copy()
-        left[rows[sparse.has_reynolds]] = reynolds[sparse.has_reynolds]
-        return pressure[p.share.local], left
+        left = reynolds - p.reynolds.product(sparse.by, *changes, p.owned.start)
+        return pressure[p.share.local], separation[p.share.local], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
@@ -227,18 +254,16 @@ class Elimination:
         b_g, b_load = full[0:local:2] / scale, full[-1] if operator.size > local else 0.0
         if self.ranks.size > 1:
             b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
-        nothing = np.zeros(p.share.window_size)
-        by_g = p.reynolds.product(sparse.by, nothing, exchange.window(b_g), p.owned.start)
-        b = np.zeros(sparse.block * p.local)
-        b[sparse.reynolds_rows[sparse.has_reynolds]] = (full[1:local:2] - by_g)[sparse.has_reynolds]
-        b[sparse.deflection_rows] = full[0:local:2][sparse.touching]
-        pressure, r, load = self._pressures(b)
+        pressure, r, load = self._pressures(operator, full[1:local:2], b_g)
         approach = (b_load - load) / of_h00[2]
         pressure, r = pressure + approach * of_h00[0], r + approach * of_h00[1]
         sums = exchange.sums(pressure)
         separation = sums.deflection + approach + b_g
         kind, back = sparse.kind, self.reduction.back[:, p.owned]
-        first, second = np.where(kind == VOID, r, pressure), np.where(kind == CONTACT, r, separation)
+        first, second = (
+            np.where(kind == VOID, r, pressure),
+            np.where((kind == STIFF) | (kind == CONTACT), r, separation),
+        )
         out = np.empty(operator.size)
         out[0:local:2] = back[0] * first + back[1] * second
         out[1:local:2] = back[2] * first + back[3] * second

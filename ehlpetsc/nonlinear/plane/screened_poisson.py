@@ -10,7 +10,8 @@ zero beyond the mesh). The weights are positive. Longer waves than 1/s_1 are tho
 without it three terms were needed.
 
 Unknowns of a node, in this order: u_1, u_2, v, and r where solids touch anywhere. v is the pressure, in
-a cavity the unknown of the Reynolds equation.
+a cavity the unknown of the Reynolds equation; the pressure of asperities in it, :math:`p=p_s\,\delta s`, is
+one of u_1 and u_2.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, VOID
+from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, STIFF, VOID
 
 TERMS = 2
 SMALLEST, LARGEST = 4.0, 0.3  # s_j, in 1/a and in the largest wave number of the mesh
@@ -90,11 +91,10 @@ def fill(
     rows: tuple,
     blocks: np.ndarray,
     by: np.ndarray,
-    border: np.ndarray,
 ) -> None:
     """Fill in the blocks of some rows.
 
-    `reduction`: kind, r_p, r_s, h_p, h_s, s_p of all nodes.
+    `reduction`: kind, r_p, r_s, h_p, h_s, p_s of all nodes.
     `derivatives`: of the local Reynolds rows, (local nodes, 12).
     `terms`: c_j, squares of s_j.
     `scales`: of the deflection rows; dy; dx.
@@ -103,16 +103,14 @@ def fill(
     `blocks`: of these rows, each by columns as PETSc stores it; zeros.
     `by`: derivatives of the local Reynolds rows by v and separation at the nodes of their stencil, (local
         nodes, 12).
-    `border`: of the local rows by h00, (local nodes, unknowns of a node).
     """
-    (kind, r_p, r_s, h_p, h_s, s_p), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales
+    (kind, r_p, r_s, h_p, h_s, p_s), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales
     first, begin, end, pointers, places = rows
     unknowns = blocks.shape[1]
     for i in range(begin, end):
         row = i - first
         touches = kind[i] == CONTACT or kind[i] == BOUND
         r = TERMS + int(touches)
-        border[row, :] = 0.0
         for k in range(STENCIL):
             by[row, 2 * k], by[row, 2 * k + 1] = 0.0, 0.0
             if places[row, k] < 0:
@@ -125,12 +123,11 @@ def fill(
             if k == OWN:
                 for j in range(TERMS):
                     block[j, j] += 2.0 * dy / dx + 2.0 * dx / dy + s_2[j] * dx * dy
-                    block[TERMS, j] -= 0.0 if kind[i] == VOID else dx * dy
+                    block[TERMS, j] -= 0.0 if kind[i] == VOID or kind[i] == STIFF else dx * dy
                     if touches:  # the row of the deflection is that of v
                         block[j, TERMS] -= row_scale * c[j]
-                if touches:
-                    block[TERMS, TERMS] += row_scale * s_p[i]
-                    border[row, TERMS] = -row_scale
+                    for m in range(TERMS):
+                        block[m, j] -= dx * dy * p_s[i] * c[m]
                 if kind[i] != CONTACT and unknowns > TERMS + 1:
                     block[TERMS + 1, TERMS + 1] += 1.0
             else:
@@ -140,9 +137,8 @@ def fill(
                 continue
             by_r, by_h, by_v, gamma = derivatives[row, 2 * k], derivatives[row, 2 * k + 1], 0.0, 0.0
             if kind[near] == CONTACT:
-                by_v = by_h * h_p[near]
                 block[TERMS + 1, r] += by_r
-            elif kind[near] == VOID:
+            elif kind[near] == VOID or kind[near] == STIFF:
                 by_v, gamma = by_r + by_h * h_p[near], by_h * h_s[near]
             else:
                 by_v, gamma = by_r * r_p[near] + by_h * h_p[near], by_r * r_s[near] + by_h * h_s[near]
@@ -150,4 +146,3 @@ def fill(
             for j in range(TERMS):
                 block[j, r] += gamma * c[j]
             by[row, 2 * k], by[row, 2 * k + 1] = by_v, gamma
-            border[row, r] += gamma
