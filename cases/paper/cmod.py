@@ -1,15 +1,16 @@
 """Friction of FZG gears of type C-mod over the speed beside measurements: table on two meshes and picture.
 
 ``./run_mpi.sh python cases/paper/cmod.py [-o PICTURE]`` computes `cases/cmod.toml` with all roughness of both
-flanks in the compliant layer, on a/20 and a/40, prints friction and the share of the solids beside `MEASURED`
-and draws them over the speed. Results are files `cmod_SPEED_POINTS.h5`; those that exist are used.
+flanks in the compliant layer, and as a strip of isotropic roughness; prints friction and the share of the
+solids beside `MEASURED` and draws them over the speed. Results are files `cmod_MODEL_SPEED_POINTS.h5`; those
+that exist are used.
 """
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,13 +22,41 @@ from ehlpetsc.gears.path import mean_friction
 from ehlpetsc.pictures import style
 
 CASE = Path(__file__).parents[1] / "cmod.toml"
-MESHES = (20, 40)  # nodes per half-width
 BOUNDARY = 0.065  # friction of the solids
-LAYER = {  # rms of two flanks of Ra 0.2 um, waves below 80 um
-    "contact.model": "mixed",
-    "contact.asperity_height": 0.354e-6,
-    "contact.asperity_stiffness": 0.0278,
+# of a flank of Ra 0.2 um, waves of 40 um and longer; those from 2.5 um on have 0.25 um
+WAVES = {"kind": "self-affine", "sq": 0.226e-6, "hurst": 0.8, "roll_off": 80e-6, "short_cutoff": 40e-6}
+
+
+class Model(NamedTuple):
+    """Roughness of a model in words, nodes per half-width, keys."""
+
+    words: str
+    meshes: tuple[int, int]
+    keys: dict[str, Any]
+
+
+MODELS = {
+    "layer": Model(
+        "all roughness in the layer",  # rms of both flanks, waves below 80 um
+        (20, 40),
+        {"contact.asperity_height": 0.354e-6, "contact.asperity_stiffness": 0.0278},
+    ),
+    "strip": Model(
+        "strip of isotropic roughness",
+        (16, 32),
+        {
+            "contact.asperity_height": 0.151e-6,  # rms of both flanks, waves below 40 um
+            "mesh.width": 0.5,
+            "mesh.inlet": -2.5,
+            "time.courant": 1.0,
+            "surface.1": {"synthetic": WAVES | {"seed": 2}},
+            "surface.2": {"synthetic": WAVES | {"seed": 3}},
+        },
+    ),
 }
+
+
+COLOURS = {"layer": style.SINGLE, "strip": style.SECOND}
 
 
 class Point(NamedTuple):
@@ -57,11 +86,12 @@ class Found(NamedTuple):
     share: float
 
 
-def found(rotation: float, points: int, folder: Path = Path()) -> Found:
+def found(model: str, rotation: float, points: int, folder: Path = Path()) -> Found:
     """Computed values at a speed of the pinion [1/min], on a mesh of so many nodes per half-width."""
-    file = folder / f"cmod_{rotation:g}_{points}.h5"
+    file = folder / f"cmod_{model}_{rotation:g}_{points}.h5"
     if not file.exists():
-        case = load(CASE, LAYER | {"gears.speed": rotation, "mesh.points_per_half_width": points})
+        keys = {"contact.model": "mixed", "gears.speed": rotation, "mesh.points_per_half_width": points}
+        case = load(CASE, keys | MODELS[model].keys)
         solve(case, file, progress=False).close()
     run = GearRun(file)
     share = np.interp(run.path.rho, run.rho, run.scalars["contact_share"])
@@ -69,26 +99,27 @@ def found(rotation: float, points: int, folder: Path = Path()) -> Found:
     return Found(mean_friction(run.path, run.friction_on_path()), solids, run.mean("contact_share"))
 
 
-def draw(computed: list[Found]) -> Figure:
+def draw(computed: dict[str, list[Found]]) -> Figure:
     """Friction with its parts, and the share of the solids, over the speed."""
     figure, panels = style.new_figure(1, 2, (9.0, 4.2))
     speeds = [point.speed for point in MEASURED]
-    friction, solids, share = np.array(computed).T
-    dark, middle, light = style.shades(3)
-    panels[0].plot(speeds, friction, color=dark, label="computed")
-    panels[0].plot(speeds, solids, "--", color=middle, label="of the solids")
-    panels[0].plot(speeds, friction - solids, ":", color=light, label="of the oil")
-    panels[0].plot(speeds, [point.friction for point in MEASURED], "o", color=dark, label="measured")
-    panels[1].plot(speeds, share, color=dark, label="computed")
-    panels[1].plot(speeds, [point.share for point in MEASURED], "o", color=dark, label="by resistance")
+    for model, values in computed.items():
+        colour, parts = COLOURS[model], ("of the solids", "of the oil") if model == "layer" else ("", "")
+        friction, solids, share = np.array(values).T
+        panels[0].plot(speeds, friction, color=colour, label=MODELS[model].words)
+        panels[0].plot(speeds, solids, "--", color=colour, lw=1.0, label=parts[0])
+        panels[0].plot(speeds, friction - solids, ":", color=colour, lw=1.0, label=parts[1])
+        panels[1].plot(speeds, share, color=colour, label=MODELS[model].words)
+    panels[0].plot(speeds, [point.friction for point in MEASURED], "ko", label="measured")
+    panels[1].plot(speeds, [point.share for point in MEASURED], "ko", label="by resistance")
     labels = "mean friction coefficient", "share of load on the solids"
     for panel, label in zip(panels, labels, strict=True):
         panel.set(xscale="log", xlabel="speed at the pitch circle [m/s]", ylabel=label)
         panel.set_ylim(bottom=0.0)
         panel.xaxis.set_major_formatter("{x:g}")
         panel.grid(lw=0.3)
-        panel.legend(loc="center left", **style.SMALL)
-    style.set_title(figure, "FZG type C-mod, 183.4 N m, FVA 3, 90 °C, all roughness in the layer")
+        panel.legend(loc="lower left", **style.SMALL)
+    style.set_title(figure, "FZG type C-mod, 183.4 N m, FVA 3, 90 °C")
     return figure
 
 
@@ -99,20 +130,19 @@ def main(words: list[str] | None = None) -> None:
     )
     parser.add_argument("-o", "--output", default="cmod_friction.png", help="picture [cmod_friction.png]")
     chosen = parser.parse_args(words)
-    print(
-        "speed [m/s]: measured, share; computed on " + ", ".join(f"a/{n}" for n in MESHES) + ", share, ratio"
-    )
-    computed = []
-    for point in MEASURED:
-        meshes = [found(point.rotation, points) for points in MESHES]
-        of = ", ".join(f"{mesh.friction:.4f}" for mesh in meshes)
-        last = meshes[-1]
-        print(
-            f"{point.speed:g}: {point.friction:.3f}, {point.share:.2f}; {of}, {last.share:.2f}, "
-            f"{last.friction / point.friction:.2f}",
-            flush=True,
-        )
-        computed.append(last)
+    computed: dict[str, list[Found]] = {}
+    for model, (what, points, _) in MODELS.items():
+        print(f"{what}\nspeed [m/s]: measured, share; computed on a/{points[0]}, a/{points[1]}, share, ratio")
+        computed[model] = []
+        for point in MEASURED:
+            meshes = [found(model, point.rotation, number) for number in points]
+            of, last = ", ".join(f"{mesh.friction:.4f}" for mesh in meshes), meshes[-1]
+            print(
+                f"{point.speed:g}: {point.friction:.3f}, {point.share:.2f}; {of}, {last.share:.2f}, "
+                f"{last.friction / point.friction:.2f}",
+                flush=True,
+            )
+            computed[model].append(last)
     style.save(draw(computed), chosen.output)
     print(chosen.output)
 

@@ -65,7 +65,7 @@ def test_friction_of_smooth_gears(tmp_path):
 @pytest.mark.parametrize("point, friction", zip(cmod.MEASURED, CMOD_LAYER, strict=True))
 def test_friction_of_gears_with_all_roughness_in_the_layer(point, friction, tmp_path):
     """C-mod on a/20: the published value, within 10 % of the measured one, 15 % at 20 m/s."""
-    found = cmod.found(point.rotation, 20, tmp_path)
+    found = cmod.found("layer", point.rotation, 20, tmp_path)
     assert found.friction == pytest.approx(friction, abs=6e-5)
     assert found.friction == pytest.approx(point.friction, rel=0.15 if point.speed == 20.0 else 0.1)
     assert found.solids < found.friction and found.share > point.share
