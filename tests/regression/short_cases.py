@@ -56,6 +56,7 @@ SHORT = {
         *(*QUICK, "series.values=[5.0, 0.05]", "contact.asperity_height=10e-9"),
         *("surface.1.short_cutoff=8e-6", "surface.2.short_cutoff=8e-6"),
     ),
+    "superfinished": QUICK,
     "table1_damage": QUICK,
     "table1_heat": QUICK,
     "table1_mixed": QUICK,

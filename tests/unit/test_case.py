@@ -60,6 +60,7 @@ def test_every_case_loads_and_has_a_description(path):
         "cmod",
         "discs",
         "optical",
+        "superfinished",
     ):  # the project's own
         assert "Holmes" in head[1] and "2005" in head[1]
 
