@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ehlpetsc.base.declarations import Values
@@ -44,14 +45,18 @@ def given_by_gears(data: Tables) -> list[Fault]:
 
 def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
     """Faults of keys that a line contact, or a plane, does not have; `surfaces` by side."""
-    if case.kind == LINE:
-        reason = "of maps, and a line contact has profiles; leave it out"
-        keys = [
-            f"surface.{side}.{key}" for side, spec in surfaces.items() if spec for key in areal_keys(spec)
-        ]
-        faults = [Fault("", f"{key}: {reason}") for key in keys]
-        file = "output.xdmf = true: of points and strips, and a line contact has no plane; leave it out"
-        return faults + [Fault("output.xdmf", file)] * case.output.xdmf
+    return FAULTS[case.kind](case, data, surfaces)
+
+
+def _line_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+    reason = "of maps, and a line contact has profiles; leave it out"
+    keys = [f"surface.{side}.{key}" for side, spec in surfaces.items() if spec for key in areal_keys(spec)]
+    faults = [Fault("", f"{key}: {reason}") for key in keys]
+    file = "output.xdmf = true: of points and strips, and a line contact has no plane; leave it out"
+    return faults + [Fault("output.xdmf", file)] * case.output.xdmf
+
+
+def _plane_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
     faults = []
     if "near_field" in data["mesh"]:
         text = (
@@ -61,6 +66,13 @@ def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None])
     if case.life:
         faults.append(Fault("life", f"[life]: of line contacts, not of a {case.kind}; leave it out"))
     return faults + _size_faults(case)
+
+
+FAULTS: dict[str, Callable[[Case, Tables, dict[str, Values | None]], list[Fault]]] = {
+    LINE: _line_faults,
+    "strip": _plane_faults,
+    "point": _plane_faults,
+}
 
 
 def _size_faults(case: Case) -> list[Fault]:

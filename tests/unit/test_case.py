@@ -294,5 +294,6 @@ def test_written_toml_and_stored_text_give_the_same_case(path):
     load = {"gears.torque": "200 N m"} if "gears" in tables else load
     sets = load | {"petsc.snes_atol": 1e-9, "output.every": 3, "title": 'a "b" \u00b5'}
     wave = {"kind": "sine", "amplitude": 2e-7, "wavelength": 1e-4}
-    changed = case.load(path, sets | {"surface.2": {"synthetic": wave}})
+    is_varied = "surface.2" in str(tables.get("series"))
+    changed = case.load(path, sets if is_varied else sets | {"surface.2": {"synthetic": wave}})
     assert case.stored_case(changed.text) == changed
