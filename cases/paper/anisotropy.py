@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ehlpetsc.api import solve
+from ehlpetsc.api import Result, solve
 from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.surfaces.synthetic import Spectrum, random_heights
 
@@ -31,6 +31,7 @@ RIDGES = 0.01  # lay
 RIDGE_POINTS, RIDGE_SPACING = 2560, 1.25e-6  # of a profile [m]
 PRESSURES, SPEEDS = (0.1e9, 0.5e9, 1e9), (15.0, 3.3, 0.6)  # Pa, m/s
 MEANS = ("lambda_ratio", "friction_coefficient", "contact_share", "contact_length", "film_central", "p_max")
+CLOSED = 0.5  # of the layer's rms height: of a film that lets 0.16 of the pressure flow pass
 FLOW = 5e9  # above which asperities of steel flow [Pa]
 
 
@@ -106,6 +107,20 @@ def flat(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
     return statistics(p[p > 0.0], rows * n)
 
 
+def enclosed(result: Result, closed: float) -> float:
+    """Share of the oil in the contact that films below `closed` [m] enclose, mean over stored frames."""
+    from scipy.ndimage import label
+
+    inside, shares = np.abs(result.x) < result.attrs["a"], []
+    for index in range(len(result.time)):
+        h = np.atleast_2d(result.frame("film_thickness", index))
+        regions, _ = label(np.vstack([h > closed] * 3))  # periodic across
+        middle = regions[len(h) : 2 * len(h)]
+        trapped = (middle > 0) & ~np.isin(middle, regions[:, [0, -1]])
+        shares.append((trapped * h)[:, inside].sum() / h[:, inside].sum())
+    return float(np.mean(shares))
+
+
 def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
     """Means over the time."""
     case, sq = contact(chosen, lay, 1e9), sq_down_to(chosen.border) if lay else 0.0
@@ -119,7 +134,7 @@ def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
         seeds = {"1": 2 * chosen.seed, "2": 2 * chosen.seed + 1}
         case["surface"] = {side: surface(chosen, lay, sq / 2**0.5, seed) for side, seed in seeds.items()}
         case["time"] = {"travel": chosen.travel, "courant": chosen.courant, "start": "rough"}
-    case["output"] = {"every": 1 if chosen.output else 100000}
+    case["output"] = {"every": 1 if chosen.output else 4}
     output = chosen.output and chosen.output / f"lay{lay:.2g}_{speed:g}.h5"
     result = solve(case, output, progress=False)
     weights = filled_weights(result)
@@ -127,7 +142,7 @@ def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
     return (
         f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, "
         f"length {length / HALF_WIDTH:.4f} a, film {1e9 * thickness:.0f} nm, "
-        f"highest pressure {highest / 1e9:.2f} GPa, "
+        f"highest pressure {highest / 1e9:.2f} GPa, enclosed {enclosed(result, CLOSED * layer):.3f}, "
         f"{result.steps('newton').sum()} iterations in {len(weights) - 1} steps"
     )
 
