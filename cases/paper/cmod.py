@@ -106,19 +106,19 @@ def draw(computed: dict[str, list[Found]]) -> Figure:
     for model, values in computed.items():
         colour, parts = COLOURS[model], ("of the solids", "of the oil") if model == "layer" else ("", "")
         friction, solids, share = np.array(values).T
-        panels[0].plot(speeds, friction, color=colour, label=MODELS[model].words)
+        panels[0].plot(speeds, friction, color=colour, label=model)
         panels[0].plot(speeds, solids, "--", color=colour, lw=1.0, label=parts[0])
         panels[0].plot(speeds, friction - solids, ":", color=colour, lw=1.0, label=parts[1])
-        panels[1].plot(speeds, share, color=colour, label=MODELS[model].words)
+        panels[1].plot(speeds, share, color=colour, label=model)
     panels[0].plot(speeds, [point.friction for point in MEASURED], "ko", label="measured")
     panels[1].plot(speeds, [point.share for point in MEASURED], "ko", label="by resistance")
     labels = "mean friction coefficient", "share of load on the solids"
     for panel, label in zip(panels, labels, strict=True):
         panel.set(xscale="log", xlabel="speed at the pitch circle [m/s]", ylabel=label)
-        panel.set_ylim(bottom=0.0)
+        panel.set_ylim(0.0, 1.25 * panel.get_ylim()[1])
         panel.xaxis.set_major_formatter("{x:g}")
         panel.grid(lw=0.3)
-        panel.legend(loc="lower left", **style.SMALL)
+        panel.legend(loc="upper right", ncols=2, **style.SMALL)
     style.set_title(figure, "FZG type C-mod, 183.4 N m, FVA 3, 90 °C")
     return figure
 
