@@ -123,6 +123,7 @@ function pressureMap(x, time, pressure, contact, along) {
   const contacts = {
     ...about, z: rows(i => (contact[i] ? 1 : null)), colorscale: [[0, CONTACT], [1, CONTACT]], showscale: false,
     hovertemplate: about.hovertemplate + ": in contact<extra></extra>", hoverongaps: false,
+    opacity: 0.35, // a compliant layer is in contact nearly everywhere
   };
   return chart("over-time", 440, [field, contacts], {
     xaxis: { title: { text: along } }, yaxis: { title: { text: "time [µs]" } },
