@@ -47,14 +47,22 @@ def without_no_data(z: np.ndarray, unit: float) -> tuple[np.ndarray, str]:
     `z`: of a profile or a map, whose rows are read to and fro, so that neighbours stay neighbours.
     `unit`: of the heights in the file [m].
     """
-    z, words = np.array(np.ma.filled(np.ma.asarray(z, float), np.nan)), ""
+    z, counts = np.array(np.ma.filled(np.ma.asarray(z, float), np.nan)), {}
     while True:
         path = np.atleast_2d(z).copy()
         path[1::2] = path[1::2, ::-1]
         if (value := no_data_value(path.ravel())) is None:
-            return z, words
-        words += f", {np.count_nonzero(z == value)} of them the value {value / unit:.6g} far from all others"
+            return z, _words({value / unit: count for value, count in counts.items()})
+        counts[value] = np.count_nonzero(z == value)
         z[z == value] = np.nan
+
+
+def _words(counts: dict[float, int]) -> str:
+    """Words on no-data values, in the unit of the file, and on their numbers."""
+    if len(counts) > 2:
+        some = f"{sum(counts.values())} of them of {len(counts)} values"
+        return f", {some}, {min(counts):.6g} to {max(counts):.6g}, far from all others"
+    return "".join(f", {n} of them the value {value:.6g} far from all others" for value, n in counts.items())
 
 
 def spikes(z: np.ndarray) -> np.ndarray:

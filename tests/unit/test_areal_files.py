@@ -162,6 +162,11 @@ def test_a_value_far_from_all_others_is_no_height(tmp_path):
         read_map(tmp_path / "map.npy", SPACED)
     found = read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=9e-6))
     np.testing.assert_allclose(found.z, Z, rtol=0, atol=0.05e-7)
+    z[10, 20:24], z[11, 20:24] = 9.998e-3, 9.997e-3
+    np.save(tmp_path / "map.npy", z)
+    several = r"^13 heights missing, 13 of them of 3 values, 0\.009997 to 0\.009999, far from all others"
+    with pytest.raises(ProfileError, match=several):
+        read_map(tmp_path / "map.npy", SPACED)
 
 
 def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
