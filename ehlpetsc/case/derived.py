@@ -119,7 +119,7 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
 
     .. math:: \sigma^2=\sum_{surfaces}\overline{(z-z_S)^2},
 
-    z_S the profile after the S-filter (`short_cutoff`), both with the scale of the case.
+    z_S the profile or map after the S-filter (`short_cutoff`), both with the scale of the case.
     """
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
@@ -129,22 +129,30 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
         varied = [*keys_of(data["series"])]
     if any(isinstance(name, str) and name.startswith("surface.") for name in varied):
         return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
-    from ehlpetsc.surfaces.samples import samples
-
     surface = data["surface"] if isinstance(data.get("surface"), dict) else {}
     tables = [table for table in surface.values() if isinstance(table, dict) and "short_cutoff" in table]
     if not tables:
         return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
     try:
         profiles = [values_of(PROFILE, table) for table in tables]
-        before = [samples(folder, profile.copy({"short_cutoff": None})).z for profile in profiles]
-        after = [samples(folder, profile).z for profile in profiles]
+        before = [_heights(folder, profile.copy({"short_cutoff": None})) for profile in profiles]
+        after = [_heights(folder, profile) for profile in profiles]
     except (ProfileError, CaseError):  # reported by the checks of the profiles
         contact[MEASURED_KEY] = None
         return []
     removed = [float((z - z_s).std()) for z, z_s in zip(before, after, strict=True)]
     contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
     return []
+
+
+def _heights(folder: Path, surface: Values) -> np.ndarray:
+    """Heights of a profile or of a map as used [m]."""
+    from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
+    from ehlpetsc.surfaces.samples import samples
+
+    if surface.synthetic is None and holds_map(folder, surface):
+        return areal_samples(folder, surface, math.inf, is_strip=False).z
+    return samples(folder, surface).z
 
 
 def with_layer_stiffness(case: Case) -> Case:

@@ -47,13 +47,14 @@ def without_no_data(z: np.ndarray, unit: float) -> tuple[np.ndarray, str]:
     `z`: of a profile or a map, whose rows are read to and fro, so that neighbours stay neighbours.
     `unit`: of the heights in the file [m].
     """
-    z, counts = np.array(np.ma.filled(np.ma.asarray(z, float), np.nan)), {}
+    z = np.array(np.ma.filled(np.ma.asarray(z, float), np.nan))
+    counts: dict[float, int] = {}
     while True:
         path = np.atleast_2d(z).copy()
         path[1::2] = path[1::2, ::-1]
         if (value := no_data_value(path.ravel())) is None:
             return z, _words({value / unit: count for value, count in counts.items()})
-        counts[value] = np.count_nonzero(z == value)
+        counts[value] = int(np.count_nonzero(z == value))
         z[z == value] = np.nan
 
 

@@ -78,6 +78,15 @@ def test_what_points_and_strips_refuse_is_on_its_page():
         assert key in text and re.search("`(.+?)`", words[key])[1] in text
 
 
+def test_a_measured_layer_has_the_height_that_the_filter_of_a_map_removes():
+    x = 2e-6 * np.arange(200)
+    wave = 1e-7 * np.sin(2 * np.pi * x / 5e-6) * np.ones((80, 1))
+    surface = {"z": (wave + 1e-7 * np.cos(x / 5e-5)).tolist(), "spacing": 2e-6, "short_cutoff": 20e-6}
+    given = {"surface.1": surface, "contact.model": "mixed", "contact.asperity_height": "measured"}
+    case = load(copy.deepcopy(STRIP), given | {"contact.boundary_friction": 0.1})
+    assert case.contact.asperity_height == pytest.approx(wave.std(), rel=0.05)
+
+
 @pytest.mark.parametrize(
     "overrides, message",
     [
