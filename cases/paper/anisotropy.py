@@ -7,6 +7,9 @@ speed; TABLE is
 - ``dry``: the same contact without oil, all waves below ``--border`` left out;
 - ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``.
 
+With ``--map FILE``, ``film`` takes surface 1 from a measured map, and surface 2 is smooth; a line takes the
+row ``--seed`` of the map.
+
 The lay is Peklenik's number, wavelengths along x over those across. At 1/100 waves are ridges, solved as a
 line contact; 0 is a line contact of smooth bodies with all roughness in the layer.
 """
@@ -23,6 +26,9 @@ import numpy as np
 
 from ehlpetsc.api import Result, solve
 from ehlpetsc.results.means import filled_weights, mean
+from ehlpetsc.surfaces.areal_files import read_map
+from ehlpetsc.surfaces.filters import without_form
+from ehlpetsc.surfaces.profile_files import Layout
 from ehlpetsc.surfaces.synthetic import Spectrum, random_heights
 
 HALF_WIDTH, MODULUS = 150e-6, 227.4725e9  # m, E' of steel [Pa]
@@ -71,6 +77,17 @@ def surface(chosen: argparse.Namespace, lay: float, sq: float, seed: int) -> dic
     spacing = 0.25 * chosen.width * HALF_WIDTH, RIDGE_SPACING
     z = random_heights((4, RIDGE_POINTS), spacing, Spectrum(*waves.values(), RIDGES), seed)[0]
     return {"x": RIDGE_SPACING * np.arange(RIDGE_POINTS), "z": z}
+
+
+def of_map(chosen: argparse.Namespace, lay: float) -> dict[str, Any]:
+    """Surface of the map, or the profile of one of its rows, scaled to `SQ`."""
+    z, dx, dy, _ = read_map(chosen.map, Layout())
+    z = without_form((dy * np.arange(z.shape[0]), dx * np.arange(z.shape[1])), z, 1)
+    z = SQ / z.std() * z
+    common = {"short_cutoff": chosen.border, "level": True}
+    if lay > RIDGES:
+        return {"z": z.tolist(), "spacing": dx, "spacing_across": dy} | common
+    return {"x": dx * np.arange(z.shape[1]), "z": z[chosen.seed]} | common
 
 
 def statistics(p: np.ndarray, nodes: int) -> str:
@@ -130,14 +147,19 @@ def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
     case["contact"]["boundary_friction"] = 0.1
     case["fluid"] = {"oil": "fva3", "temperature": 363.15}
     case["motion"] = {"entrainment_speed": speed, "slide_roll_ratio": 0.25}
-    if lay:
+    if chosen.map:
+        case["surface"] = {"1": of_map(chosen, lay)}
+        case["contact"]["asperity_height"] = "measured"
+        del case["contact"]["asperity_stiffness"]
+    elif lay:
         seeds = {"1": 2 * chosen.seed, "2": 2 * chosen.seed + 1}
         case["surface"] = {side: surface(chosen, lay, sq / 2**0.5, seed) for side, seed in seeds.items()}
+    if lay:
         case["time"] = {"travel": chosen.travel, "courant": chosen.courant, "start": "rough"}
     case["output"] = {"every": 1 if chosen.output else 4}
     output = chosen.output and chosen.output / f"lay{lay:.2g}_{speed:g}.h5"
     result = solve(case, output, progress=False)
-    weights = filled_weights(result)
+    layer, weights = result.case.contact.asperity_height, filled_weights(result)
     ratio, friction, share, length, thickness, highest = (mean(result, name, weights) for name in MEANS)
     return (
         f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, "
@@ -166,6 +188,7 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("--width", type=float, default=1.0, help="of a strip [half-widths]")
     parser.add_argument("--border", type=float, default=40e-6, help="shortest wave on the mesh [m]")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--map", type=Path, help="file of a measured map")
     parser.add_argument("--travel", type=float, default=4.0, help="of the faster surface [half-widths]")
     parser.add_argument("--courant", type=float, default=0.5)
     parser.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="of film: results with all steps")
