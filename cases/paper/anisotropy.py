@@ -188,7 +188,7 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("--width", type=float, default=1.0, help="of a strip [half-widths]")
     parser.add_argument("--border", type=float, default=40e-6, help="shortest wave on the mesh [m]")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--map", type=Path, help="file of a measured map")
+    parser.add_argument("--map", type=Path, help="of film: file of a measured map")
     parser.add_argument("--travel", type=float, default=4.0, help="of the faster surface [half-widths]")
     parser.add_argument("--courant", type=float, default=0.5)
     parser.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="of film: results with all steps")

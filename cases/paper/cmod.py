@@ -28,9 +28,9 @@ WAVES = {"kind": "self-affine", "sq": 0.226e-6, "hurst": 0.8, "roll_off": 80e-6,
 
 
 class Model(NamedTuple):
-    """Roughness of a model in words, nodes per half-width, keys."""
+    """Model of the flanks' roughness: description, nodes per half-width on two meshes, keys of the case."""
 
-    words: str
+    description: str
     meshes: tuple[int, int]
     keys: dict[str, Any]
 
@@ -54,8 +54,6 @@ MODELS = {
         },
     ),
 }
-
-
 COLOURS = {"layer": style.SINGLE, "strip": style.SECOND}
 
 
@@ -131,12 +129,13 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("-o", "--output", default="cmod_friction.png", help="picture [cmod_friction.png]")
     chosen = parser.parse_args(words)
     computed: dict[str, list[Found]] = {}
-    for model, (what, points, _) in MODELS.items():
-        print(f"{what}\nspeed [m/s]: measured, share; computed on a/{points[0]}, a/{points[1]}, share, ratio")
+    for model, (description, points, _) in MODELS.items():
+        meshes = ", ".join(f"a/{number}" for number in points)
+        print(f"{description}\nspeed [m/s]: measured, share; computed on {meshes}, share, ratio")
         computed[model] = []
         for point in MEASURED:
-            meshes = [found(model, point.rotation, number) for number in points]
-            of, last = ", ".join(f"{mesh.friction:.4f}" for mesh in meshes), meshes[-1]
+            both = [found(model, point.rotation, number) for number in points]
+            of, last = ", ".join(f"{one.friction:.4f}" for one in both), both[-1]
             print(
                 f"{point.speed:g}: {point.friction:.3f}, {point.share:.2f}; {of}, {last.share:.2f}, "
                 f"{last.friction / point.friction:.2f}",

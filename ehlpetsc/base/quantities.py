@@ -236,6 +236,10 @@ def of_every_case(table: Mapping[str, Field]) -> list[str]:
     return [name for name, field in table.items() if not field.only]
 
 
+MEAN_HEIGHT = {"line": "Ra", "strip": "Sa", "point": "Sa"}
+"""Name of the mean deviation of the heights of a surface by the kind of contact."""
+
+
 def unit_in(quantity: Field, contact: str = "line") -> str:
     """Unit of a quantity of a "line", "strip" or "point" contact: only of the last one that of the whole."""
     return PER_METRE[quantity.units] if quantity.integrated and contact != "point" else quantity.units

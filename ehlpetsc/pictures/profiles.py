@@ -12,13 +12,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.quantities import MEAN_HEIGHT
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
-from ehlpetsc.results.running_in import MEAN_HEIGHT, heights, pass_summary
+from ehlpetsc.results.running_in import heights, pass_summary
 from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.roughness import Profile, Roughness
 

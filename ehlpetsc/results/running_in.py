@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 SHIFTED_IN_A_ROW = 10  # consecutive run-in passes required with shifted surfaces
 RUN_IN = 0.01  # of the volume added by the first pass: surfaces are run in if a pass adds less
-MEAN_HEIGHT = {"line": "Ra", "strip": "Sa", "point": "Sa"}  # name of `ra` by the kind of contact
 MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
 
 

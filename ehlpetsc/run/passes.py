@@ -10,17 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.base.quantities import STEP_SCALARS, unit_in
+from ehlpetsc.base.quantities import MEAN_HEIGHT, STEP_SCALARS, unit_in
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
-from ehlpetsc.results.running_in import (
-    MEAN_HEIGHT,
-    RUN_IN,
-    SHIFTED_IN_A_ROW,
-    pass_summary,
-    passes_to_run_in,
-)
+from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
 from ehlpetsc.run.checkpoint import pass_of
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation

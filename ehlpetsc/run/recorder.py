@@ -15,7 +15,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
+from ehlpetsc.base.quantities import FIELDS, MEAN_HEIGHT, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
@@ -274,6 +274,7 @@ def stored_surfaces(simulation: Simulation) -> dict[str, StoredSurface]:
             ends = scales.x[[0, -1]] * scales.a
             s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.dx)
             smooth = np.zeros((*scales.grid.shape[:-1], len(s)))
-            flat = dict.fromkeys(("ra", "rq", "rsk") if smooth.ndim == 1 else ("sa", "sq", "ssk"), 0.0)
+            letter = MEAN_HEIGHT[simulation.case.kind][0].lower()
+            flat = dict.fromkeys((f"{letter}a", f"{letter}q", f"{letter}sk"), 0.0)
             surfaces[side] = StoredSurface(s, smooth, speed, flat, depths)
     return surfaces

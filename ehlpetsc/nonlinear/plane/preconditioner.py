@@ -8,12 +8,11 @@ For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equati
    (:mod:`.screened_poisson`) by PETSc's preconditioner of the user's options, ``-pc_type``, by default
    incomplete LU. The load is an additional row and column.
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
-   exact.
+   exact but where pressure and separation depend on each other.
 
 Every time step begins with the matrices of the smooth contact (:meth:`Elimination.keep`), on which it depends
 neither before nor after a restart. They are assembled anew, for the rest of the step, when GMRES takes more
-than
-`MAX_KEPT` iterations, the sparse one also where a node changes its kind.
+than `MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 """
 
 from __future__ import annotations
@@ -69,14 +68,15 @@ class SparseForm:
     """Assembled sparse form with PETSc's preconditioner; its pattern is that of the mesh.
 
     `block`: unknowns of a node.
+    `terms`: of the deflection, see :func:`.screened_poisson.fitted_terms`.
 
     `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
     `by`: derivatives of the local Reynolds rows by v and separation, as `EHLProblem.reynolds` multiplies by
         them, shape (local nodes, 12).
     """
 
-    def __init__(self, problem: EHLProblem, block: int, comm: PETSc.Comm):
-        self.problem, self.block, local = problem, block, problem.local
+    def __init__(self, problem: EHLProblem, block: int, terms: tuple, comm: PETSc.Comm):
+        self.problem, self.block, self.terms, local = problem, block, terms, problem.local
         self.mesh = problem.grid.shape[-1], problem.n, problem.grid.periodic
         self.pointers = np.empty(local + 1, dtype=np.int32)
         self.places = np.empty((local, STENCIL), dtype=np.int8)
@@ -97,10 +97,9 @@ class SparseForm:
         self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
         self.by = np.empty((local, 2 * STENCIL))
 
-    def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray, terms: tuple) -> None:
+    def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray) -> None:
         """Assemble and factor for a state; arguments as of :func:`.screened_poisson.fill`."""
         p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.steps)
-        self.c = terms[0]
         blocks = np.empty((STENCIL * min(ROWS, p.local), self.block, self.block))
         for begin in range(p.first, p.last, ROWS):
             end = min(begin + ROWS, p.last)
@@ -110,7 +109,7 @@ class SparseForm:
                 blocks[: pointers[-1] - pointers[0]],
             )
             filled[:] = 0.0
-            fill(tuple(whole), derivatives, terms, scales, self.mesh, rows, filled, self.by)
+            fill(tuple(whole), derivatives, self.terms, scales, self.mesh, rows, filled, self.by)
             columns, nodes = self.columns[pointers[0] : pointers[-1]], np.arange(begin, end, dtype=np.int32)
             self.matrix.setValuesBlockedIJV(pointers - pointers[0], columns, filled, rowmap=nodes)
         self.matrix.assemble()
@@ -140,7 +139,8 @@ class SparseForm:
         b[self.deflection_rows] = deflection.row_scale * separation[self.touching]
         self.pc.apply(self.b, self.u)
         u = self.u.array_r
-        of_asperities = self.p_s * (separation + sum(self.c[j] * u[j::block] for j in range(TERMS)))
+        deflected = sum(c * u[j::block] for j, c in enumerate(self.terms[0]))
+        of_asperities = self.p_s * (separation + deflected)
         return np.where(self.has_pressure, u[TERMS::block], of_asperities), u[self.reynolds_rows]
 
 
@@ -208,9 +208,9 @@ class Elimination:
         block = TERMS + 1 + int((whole[0] == CONTACT).any())
         if self.form is None or self.form.block != block:
             self.form = self.factors = None  # freed before the next one
-            self.form = SparseForm(p, block, self.comm)
+            self.form = SparseForm(p, block, self.terms, self.comm)
         sparse = self.form
-        sparse.set_up(whole, operator.reynolds_derivatives, self.terms)
+        sparse.set_up(whole, operator.reynolds_derivatives)
         mask = whole[0] == PRESSURE
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):

@@ -10,8 +10,8 @@ zero beyond the mesh). The weights are positive. Longer waves than 1/s_1 are tho
 without it three terms were needed.
 
 Unknowns of a node, in this order: u_1, u_2, v, and r where solids touch anywhere. v is the pressure, in
-a cavity the unknown of the Reynolds equation; the pressure of asperities in it, :math:`p=p_s\,\delta s`, is
-one of u_1 and u_2.
+a cavity the unknown of the Reynolds equation; the pressure of asperities in it, :math:`p=p_s\,\delta s`,
+follows from u_1 and u_2.
 """
 
 from __future__ import annotations
