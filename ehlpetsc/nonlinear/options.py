@@ -60,13 +60,15 @@ PETSC_FACTORISATION = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_t
 READ_BY_FINALIZE = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
 TABLE_LOCK = threading.RLock()  # the table is global: threads would get each other's options
+ENTERED: list[RunOptions] = []  # whose options the table has is the last one
 
 
 class RunOptions:
     """Context manager that sets the options of a run in PETSc's table and restores the table on exit.
 
     Precedence: defaults < `of_case` < options already in the table < `given`. Reentrant; threads enter one
-    after the other.
+    after the other. Inside of the options of another run, such as the one that needs this run's solution for
+    its start, those leave the table.
 
     `law`: contact model.
     `of_case`, `given`: `[petsc]` of the case; options of a call from Python.
@@ -112,7 +114,10 @@ class RunOptions:
         TABLE_LOCK.acquire()
         try:
             if self._depth == 0:
+                if ENTERED:
+                    ENTERED[-1]._leave(PETSc.Options())
                 self._enter(PETSc.Options())
+                ENTERED.append(self)
         except BaseException:
             TABLE_LOCK.release()
             raise
@@ -123,7 +128,10 @@ class RunOptions:
         self._depth -= 1
         try:
             if self._depth == 0:
+                ENTERED.pop()
                 self._leave(PETSc.Options())
+                if ENTERED:
+                    ENTERED[-1]._enter(PETSc.Options())
         finally:
             TABLE_LOCK.release()
 

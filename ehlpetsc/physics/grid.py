@@ -101,10 +101,12 @@ class Grid:
         return self.distance <= max(radius, self.distance.min())
 
     def interpolated(self, values: np.ndarray, onto: Grid) -> np.ndarray:
-        """A flat field at the nodes of another grid, linear along each axis."""
+        """A flat field at the nodes of another grid, by monotone cubics along each axis."""
+        from scipy.interpolate import PchipInterpolator  # few runs need it
+
         field = values.reshape(self.shape)
         for k, (axis, nodes) in enumerate(zip(self.axes, onto.axes, strict=True)):
-            field = np.apply_along_axis(lambda v, x=axis, at=nodes: np.interp(at, x, v), k, field)
+            field = PchipInterpolator(axis, field, axis=k)(np.clip(nodes, axis[0], axis[-1]))
         return field.ravel()
 
     def edges(self) -> dict[str, np.ndarray]:

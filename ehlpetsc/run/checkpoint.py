@@ -135,11 +135,14 @@ def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -
     return None
 
 
-def coarser(case: Case, points: int) -> Case:
-    """Case with fewer nodes per half-width, likewise across."""
-    across = case.mesh.points_across
-    change = {"points_per_half_width": points, "points_across": across and max(across // 2, 1)}
-    return case.copy({"mesh": case.mesh.copy(change)})
+def coarser(case: Case) -> Case:
+    """Steady case with half as many nodes per half-width, likewise across; smooth if its steady start is."""
+    along, across = case.mesh.points_per_half_width, case.mesh.points_across
+    change = {"points_per_half_width": along // 2, "points_across": across and max(across // 2, 1)}
+    tables = {"mesh": case.mesh.copy(change)}
+    if case.time is not None and case.time.start == "rough":
+        tables |= {"time": None, "surface": case.surface.copy({"body_1": None, "body_2": None})}
+    return case.copy(tables)
 
 
 def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:

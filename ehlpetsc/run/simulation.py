@@ -15,6 +15,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.nonlinear import events
@@ -33,7 +34,8 @@ from ehlpetsc.stepping.time_stepping import TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
-MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one
+MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one that fails without
+MANY_NODES = 20_000  # from here on a start on a coarser mesh costs less than it saves
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
@@ -267,22 +269,29 @@ class Simulation:
         return state
 
     def _started(self, watch: Watch) -> State:
-        """Steady state, from the solution on a coarser mesh if need be."""
+        """Steady state; from the solution on a coarser mesh where there are many nodes, or else if need be."""
+        nested = self.scales.grid.n > MANY_NODES
         try:
-            return self.stepper.start(self._records, watch)
+            return self.stepper.start(self._records, watch, self._coarse_guess(watch) if nested else None)
         except NotConverged as failure:
-            points = self.case.mesh.points_per_half_width // 2
-            if not isinstance(failure.__cause__, NoSteadyStart) or points < MIN_COARSE_POINTS:
+            few = self.case.mesh.points_per_half_width < 2 * MIN_COARSE_POINTS
+            if not isinstance(failure.__cause__, NoSteadyStart) or (few and not nested):
                 raise
-            from ehlpetsc.run.checkpoint import coarser, guess_of
-
-            try:
-                coarse = Simulation(coarser(self.case, points), self.comm, self._options)
-                coarse.advance(watch=watch)
-            except (CaseError, NotConverged, UsageError):
-                raise failure from failure.__cause__
-            guess = guess_of(coarse.solution, coarse.stepper.problem, self.stepper.problem)
+            guess = None if nested else self._coarse_guess(watch)
+            if guess is None and not nested:
+                raise
             return self.stepper.start(self._records, watch, guess)
+
+    def _coarse_guess(self, watch: Watch) -> Unknowns | None:
+        """Steady solution on a mesh with half as many nodes per half-width; None: there is none."""
+        from ehlpetsc.run.checkpoint import coarser, guess_of
+
+        try:
+            coarse = Simulation(coarser(self.case), self.comm, self._options)
+            coarse.advance(watch=watch)
+        except (CaseError, NotConverged, UsageError):
+            return None
+        return guess_of(coarse.solution, coarse.stepper.problem, self.stepper.problem)
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")

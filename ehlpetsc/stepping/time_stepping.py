@@ -80,7 +80,7 @@ class TimeStepping:
         By time steps if roughness at rest prevents convergence, or if the case starts rough.
         """
         if self._starts_rough:  # its baseline for the predictor is the smooth state before the ramp
-            return self._start_by_time_stepping(records, watch)
+            return self._start_by_time_stepping(records, watch, guess)
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
             state = self._steady(inputs, records, watch, guess)
@@ -134,7 +134,9 @@ class TimeStepping:
             unknowns, residual = mirrored(unknowns), mirrored(self.solver.residual().reynolds)
         return self.problem.solution(unknowns, residual, inputs), iterations
 
-    def _start_by_time_stepping(self, records: dict, watch: Watch) -> State:
+    def _start_by_time_stepping(
+        self, records: dict, watch: Watch, guess: Unknowns | None = None
+    ) -> State:
         """State at time 0 after time steps during which roughness at rest is ramped up.
 
         Roughness at rest is under the film from the start, where Newton's method may not converge; the
@@ -144,7 +146,7 @@ class TimeStepping:
         try:
             end = self._step_end()
             inputs = self._with_effects(self._inputs_of(end), records, end)
-            state = self._steady(replace(inputs, phi=np.zeros(self.problem.n)), records, watch)
+            state = self._steady(replace(inputs, phi=np.zeros(self.problem.n)), records, watch, guess)
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
