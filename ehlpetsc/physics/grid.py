@@ -106,7 +106,8 @@ class Grid:
 
         field = values.reshape(self.shape)
         for k, (axis, nodes) in enumerate(zip(self.axes, onto.axes, strict=True)):
-            field = PchipInterpolator(axis, field, axis=k)(np.clip(nodes, axis[0], axis[-1]))
+            with np.errstate(over="ignore"):  # slopes that vanish
+                field = PchipInterpolator(axis, field, axis=k)(np.clip(nodes, axis[0], axis[-1]))
         return field.ravel()
 
     def edges(self) -> dict[str, np.ndarray]:

@@ -269,8 +269,9 @@ class Simulation:
         return state
 
     def _started(self, watch: Watch) -> State:
-        """Steady state; from the solution on a coarser mesh where there are many nodes, or else if need be."""
-        nested = self.scales.grid.n > MANY_NODES
+        """Steady state; from the solution on a coarser mesh where there are many nodes, else if need be."""
+        guessed = self.case.fluid is None and self.roughness is None  # by Hertz
+        nested = self.scales.grid.n > MANY_NODES and not guessed
         try:
             return self.stepper.start(self._records, watch, self._coarse_guess(watch) if nested else None)
         except NotConverged as failure:

@@ -134,9 +134,7 @@ class TimeStepping:
             unknowns, residual = mirrored(unknowns), mirrored(self.solver.residual().reynolds)
         return self.problem.solution(unknowns, residual, inputs), iterations
 
-    def _start_by_time_stepping(
-        self, records: dict, watch: Watch, guess: Unknowns | None = None
-    ) -> State:
+    def _start_by_time_stepping(self, records: dict, watch: Watch, guess: Unknowns | None = None) -> State:
         """State at time 0 after time steps during which roughness at rest is ramped up.
 
         Roughness at rest is under the film from the start, where Newton's method may not converge; the
