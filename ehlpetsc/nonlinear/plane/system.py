@@ -23,6 +23,7 @@ from ehlpetsc.physics.scales import Scales
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
+OF_HIGHEST = 0.3  # largest real change of pressure over the highest pressure, where this is more than
 REAL_LIMIT = 1.0  # p0: largest real change of pressure; 0.3 costs asperities half as many iterations again
 
 
@@ -77,8 +78,9 @@ class PlaneFields(TwoFields):
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local).copy()
         of_oil = np.maximum(now[:, 0] - step[:, 0], 0.0) - np.maximum(now[:, 0], 0.0)
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
-        change = self.contact.pressure(*(now - step).T) - self.contact.pressure(*now.T)
-        excess = np.abs(change).max() / REAL_LIMIT
+        pressure, new = self.contact.pressure(*now.T), self.contact.pressure(*(now - step).T)
+        highest = global_max(self.ranks, pressure.max())
+        excess = np.abs(new - pressure).max() / max(REAL_LIMIT, OF_HIGHEST * highest)
         if self.inputs.history is None and self.problem.fluid is not None:
             excess = max(excess, np.abs(of_oil).max() / STEP_LIMIT)
         excess = global_max(self.ranks, excess)
