@@ -5,7 +5,9 @@ speed; TABLE is
 
 - ``film``: lubricated, 1 GPa, FVA 3 at 90 degrees C, slide/roll 0.25, waves below ``--border`` in the layer;
 - ``dry``: the same contact without oil, all waves below ``--border`` left out;
-- ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``.
+- ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``;
+- ``layer``: the same of the waves below ``--border`` alone: mean separation, and factor of the flow,
+  beside those of the laws of the layer.
 
 With ``--map FILE``, ``film`` takes surface 1 from a measured map, and surface 2 is smooth; a line takes the
 row ``--seed`` of the map.
@@ -25,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from ehlpetsc.api import Result, solve
+from ehlpetsc.physics.asperities import GAMMA, asperity_separation, flow_factor
 from ehlpetsc.results.means import filled_weights, mean
 from ehlpetsc.surfaces.areal_files import read_map
 from ehlpetsc.surfaces.filters import without_form
@@ -109,19 +112,66 @@ def dry(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
 
 def flat(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
     """Real area over the nominal area, pressures; square mesh, spacing a fifth of the shortest wave."""
-    import tamaas
-
     n, step = chosen.points, chosen.border / 5
     rows, across = (n, step / lay) if lay > RIDGES else (4, HALF_WIDTH / 4)
     spectrum = Spectrum(sq_down_to(chosen.border), HURST, ROLL_OFF, chosen.border, lay)
     z = random_heights((rows, n), (across, step), spectrum, chosen.seed)
     if lay <= RIDGES:
         z = np.repeat(z[:1], rows, axis=0)
+    p = pressed(z, (across, step), pressure)[0].ravel()
+    return statistics(p[p > 0.0], rows * n)
+
+
+def pressed(z: np.ndarray, spacing: tuple[float, float], pressure: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure [Pa] and gap [m] of nominally flat heights, both periodic."""
+    import tamaas
+
+    (rows, n), (across, step) = z.shape, spacing
     model = tamaas.Model(tamaas.model_type.basic_2d, [rows * across / step, n], [rows, n])
     model.E, model.nu = 0.5 * MODULUS, 0.0
     tamaas.PolonskyKeerRey(model, np.ascontiguousarray(z / step), 1e-8).solve(pressure)
-    p = np.array(model.traction).ravel()
-    return statistics(p[p > 0.0], rows * n)
+    gap = step * np.array(model.displacement).reshape(z.shape) - z
+    return np.array(model.traction).reshape(z.shape), gap - gap.min()
+
+
+def flow(gap: np.ndarray) -> float:
+    """Flow through a periodic gap of square cells over that through its mean, by finite volumes."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.linalg import spsolve
+
+    node = np.arange(gap.size).reshape(gap.shape)
+    cubes = np.maximum(gap / gap.mean(), 1e-6) ** 3
+    across, along = (
+        (2.0 * cubes * other / (cubes + other)).ravel()
+        for other in (np.roll(cubes, -1, axis) for axis in (0, 1))
+    )
+    above, ahead = (np.roll(node, -1, axis).ravel() for axis in (0, 1))
+    here, count = node.ravel(), gap.size
+    faces = [(here, above, across), (here, ahead, along)]
+    matrix = sum(
+        coo_matrix((np.r_[c, c, -c, -c], (np.r_[i, j, i, j], np.r_[i, j, j, i])), (count, count)).tocsc()
+        for i, j, c in faces
+    )
+    source = along - along[np.roll(node, 1, 1).ravel()]
+    p = np.append(spsolve(matrix[:-1, :-1], source[:-1]), 0.0)
+    return float(np.mean(along * (1.0 + p[ahead] - p[here])))
+
+
+def layer(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
+    """Separation and flow of the roughness of the layer, isotropic, and by its laws."""
+    n, step = chosen.points, SHORTEST / 5
+    z = random_heights((n, n), (step, step), Spectrum(SQ, HURST, ROLL_OFF, SHORTEST, lay), chosen.seed)
+    k = np.hypot(np.fft.fftfreq(n, step)[:, None], np.fft.rfftfreq(n, step))
+    z = np.fft.irfft2(np.where(k < 1.0 / chosen.border, 0.0, np.fft.rfft2(z)), (n, n))
+    sigma = float(np.sqrt(SQ**2 - sq_down_to(chosen.border) ** 2))
+    gap = pressed(sigma / z.std() * z, (step, step), pressure)[1]
+    prefactor = np.pi * sigma / chosen.border * MODULUS
+    law = asperity_separation(pressure, GAMMA * sigma, prefactor, 0.0, 0.0)
+    passing = flow_factor(float(gap.mean()), sigma)[0]
+    return (
+        f"separation {gap.mean() / sigma:.2f} sigma, by the law {law / sigma:.2f}; "
+        f"flow {flow(gap):.3f}, by the law {passing:.3f}"
+    )
 
 
 def enclosed(result: Result, closed: float) -> float:
@@ -173,6 +223,7 @@ TABLES: dict[str, tuple[Callable[[argparse.Namespace, float, float], str], tuple
     "film": (film, SPEEDS),
     "dry": (dry, PRESSURES),
     "flat": (flat, PRESSURES),
+    "layer": (layer, (30e6, 0.1e9, 0.3e9, 1e9)),
 }
 
 

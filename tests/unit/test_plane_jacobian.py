@@ -125,3 +125,14 @@ def test_coarse_functions_around_an_isolated_node_are_independent():
     functions, deflections = space.chosen(mask.ravel())
     assert functions.shape[1] == len(deflections) == 10
     assert np.linalg.matrix_rank(functions.toarray()) == functions.shape[1]
+
+
+def test_options_of_a_run_inside_of_another_one_are_its_own():
+    table = PETSc.Options()
+    with RunOptions("mixed", {"snes_max_it": "7"}, kind="point") as outer:
+        before = table.getAll()
+        with RunOptions("direct", kind="line"):
+            assert (table.getInt("snes_max_it"), table.hasName("pressure_pc_factor_levels")) == (30, False)
+        assert table.getAll() == before
+        assert outer.given == {"snes_max_it": "7"}
+    assert not table.getAll()

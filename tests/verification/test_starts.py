@@ -9,11 +9,13 @@ import numpy as np
 import petsc4py
 import pytest
 from support import CASES
+from support.points import point
 
 petsc4py.init([])
 
 from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.case.loading import load
+from ehlpetsc.run import simulation
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import steady_start, time_stepping
 from ehlpetsc.stepping.first_guess import MAX_DIRECT_REACH, smoothed
@@ -183,3 +185,17 @@ def test_start_that_fails_on_a_fine_mesh_begins_from_a_coarser_one(monkeypatch):
     monkeypatch.setattr(time_stepping, "steady", lambda *_: only_coarse(*_[:3]))
     with pytest.raises(NotConverged, match="^steady start: too fine. Try a finer mesh or contact.model"):
         Simulation(load(CASES / "table1_smooth.toml", keys)).advance()
+
+
+@pytest.mark.parametrize("start", ["smooth", "rough"])
+def test_many_nodes_start_from_a_coarser_mesh_and_end_in_the_same_state(monkeypatch, start):
+    waves = {"kind": "sine", "amplitude": 20e-9, "wavelength": 1e-4, "wavelength_across": 1e-4}
+    rough = {"surface": {"1": {"synthetic": waves}}, "time": {"travel": 0.1, "start": "rough"}}
+    case = load(point(200.0, 10.0, 16) | (rough if start == "rough" else {}))
+    states = []
+    for many in (1e9, 2000):  # nodes; the mesh has 4225, a coarser one 1089
+        monkeypatch.setattr(simulation, "MANY_NODES", many)
+        states.append(Simulation(case).advance())
+    direct, from_coarse = states
+    assert np.abs(from_coarse.pressure - direct.pressure).max() < 1e-6 * direct.p_max
+    assert from_coarse.newton < direct.newton
