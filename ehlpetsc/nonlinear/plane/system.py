@@ -17,14 +17,14 @@ from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, 
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination
 from ehlpetsc.nonlinear.ranks import global_max
-from ehlpetsc.nonlinear.two_fields import FILM_AFTER_RELEASE, STEP_LIMIT, ZERO_TOLERANCE, TwoFields
+from ehlpetsc.nonlinear.two_fields import FILM_AFTER_RELEASE, ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
-OF_HIGHEST = 0.3  # largest real change of pressure over the highest pressure, where this is more than
-REAL_LIMIT = 1.0  # p0: largest real change of pressure; 0.3 costs asperities half as many iterations again
+STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities half as many iterations again
+OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more
 
 
 # options of glibc's mallopt, and values: M_MMAP_THRESHOLD, M_MMAP_MAX, M_TRIM_THRESHOLD
@@ -80,7 +80,7 @@ class PlaneFields(TwoFields):
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
         pressure, new = self.contact.pressure(*now.T), self.contact.pressure(*(now - step).T)
         highest = global_max(self.ranks, pressure.max())
-        excess = np.abs(new - pressure).max() / max(REAL_LIMIT, OF_HIGHEST * highest)
+        excess = np.abs(new - pressure).max() / max(STEP_LIMIT, OF_HIGHEST * highest)
         if self.inputs.history is None and self.problem.fluid is not None:
             excess = max(excess, np.abs(of_oil).max() / STEP_LIMIT)
         excess = global_max(self.ranks, excess)
