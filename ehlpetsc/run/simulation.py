@@ -251,7 +251,6 @@ class Simulation:
             raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")
 
     def _start(self, watch: Watch) -> State:
-        self._print_heading("steady start")
         with events.START:
             try:
                 state = self._started(watch)
@@ -272,8 +271,10 @@ class Simulation:
         """Steady state; from the solution on a coarser mesh where there are many nodes, else if need be."""
         guessed = self.case.fluid is None and self.roughness is None  # by Hertz
         nested = self.scales.grid.n > MANY_NODES and not guessed
+        guess = self._coarse_guess(watch) if nested else None
+        self._print_heading(f"steady start on {self.scales.grid.n} nodes")
         try:
-            return self.stepper.start(self._records, watch, self._coarse_guess(watch) if nested else None)
+            return self.stepper.start(self._records, watch, guess)
         except NotConverged as failure:
             few = self.case.mesh.points_per_half_width < 2 * MIN_COARSE_POINTS
             if not isinstance(failure.__cause__, NoSteadyStart) or (few and not nested):
