@@ -6,8 +6,8 @@ speed; TABLE is
 - ``film``: lubricated, 1 GPa, FVA 3 at 90 degrees C, slide/roll 0.25, waves below ``--border`` in the layer;
 - ``dry``: the same contact without oil, all waves below ``--border`` left out;
 - ``flat``: dry, nominally flat, by boundary elements periodic in both directions, of the package ``tamaas``;
-- ``layer``: the same of the waves below ``--border`` alone: mean separation, and factor of the flow,
-  beside those of the laws of the layer.
+- ``layer``: the same, isotropic (``--lays 1``), of the waves below ``--border`` alone: mean separation and
+  factor of the flow, beside those of the laws of the layer.
 
 With ``--map FILE``, ``film`` takes surface 1 from a measured map, and surface 2 is smooth; a line takes the
 row ``--seed`` of the map.
@@ -157,7 +157,7 @@ def flow(gap: np.ndarray) -> float:
     return float(np.mean(along * (1.0 + p[ahead] - p[here])))
 
 
-def layer(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
+def beside_laws(chosen: argparse.Namespace, lay: float, pressure: float) -> str:
     """Separation and flow of the roughness of the layer, isotropic, and by its laws."""
     n, step = chosen.points, SHORTEST / 5
     z = random_heights((n, n), (step, step), Spectrum(SQ, HURST, ROLL_OFF, SHORTEST, lay), chosen.seed)
@@ -223,7 +223,7 @@ TABLES: dict[str, tuple[Callable[[argparse.Namespace, float, float], str], tuple
     "film": (film, SPEEDS),
     "dry": (dry, PRESSURES),
     "flat": (flat, PRESSURES),
-    "layer": (layer, (30e6, 0.1e9, 0.3e9, 1e9)),
+    "layer": (beside_laws, (30e6, 0.1e9, 0.3e9, 1e9)),
 }
 
 

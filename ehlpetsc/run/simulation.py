@@ -277,7 +277,7 @@ class Simulation:
             return self.stepper.start(self._records, watch, guess)
         except NotConverged as failure:
             few = self.case.mesh.points_per_half_width < 2 * MIN_COARSE_POINTS
-            if not isinstance(failure.__cause__, NoSteadyStart) or (few and not nested):
+            if not isinstance(failure.__cause__, NoSteadyStart) or (guess is None and (nested or few)):
                 raise
             guess = None if nested else self._coarse_guess(watch)
             if guess is None and not nested:
