@@ -95,7 +95,7 @@ def run_pass(
     if status is ExitStatus.STOPPED:
         raise Stopped
     damage, figures = on_root(simulation.comm, _evaluated, file, recorder.restart)
-    records, offsets = simulation.solution.records, simulation.scene.mesh_on_bodies.offsets
+    records, offsets = simulation.dimensionless.records, simulation.scene.mesh_on_bodies.offsets
     bodies = tuple(
         OfBody(s + offset, z, d, depth)
         for (s, z, d), offset, depth in zip(damage, offsets, _depths(before, records, "wear"), strict=True)

@@ -57,7 +57,7 @@ def axes_of(scales: Scales) -> dict[str, np.ndarray]:
 
 def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
     """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
-    case, scales, state = simulation.case, simulation.scales, simulation.solution
+    case, scales, state = simulation.case, simulation.scales, simulation.dimensionless
     smooth_q, smooth_w = simulation.stepper.baseline
     values: dict[str, Any] = {"contact_count": contact_count}
     values |= {name: nodes * scales.a for name, nodes in axes_of(scales).items()}

@@ -40,7 +40,7 @@ class Progress:
     def __init__(self, simulation: Simulation, stream: TextIO | None = None) -> None:
         self._simulation, self._stream = simulation, stream or sys.stdout
         self._in_place = on_terminal(self._stream) or in_notebook()
-        self._begun = simulation.solution is not None
+        self._begun = simulation.dimensionless is not None
         self._samples: list[tuple[float, float]] = []  # wall clock, time of the run, since the first step
         self._shown: float | None = None
         self._pending: dict[str, float] | None = None
@@ -165,7 +165,7 @@ class Recorder:
         with events.OUTPUT:
             on_root(self.comm, self._append, state)
         self.totals.add(state.scalars)
-        solved = self.simulation.solution and self.simulation.solution.solution
+        solved = self.simulation.dimensionless and self.simulation.dimensionless.solution
         if solved:
             friction = float(np.max(solved.inputs.boundary_friction))
             self._boundary_friction = max(self._boundary_friction, friction)
@@ -233,7 +233,8 @@ class Recorder:
         simulation, surfaces = self.simulation, self._surfaces
         points = tuple(surfaces[side].s if side in surfaces else None for side in ("1", "2"))
         for effect in simulation.stepper.effects:
-            for name, pair in effect.on_surfaces(simulation.solution.records[effect.name], points).items():
+            record = simulation.dimensionless.records[effect.name]
+            for name, pair in effect.on_surfaces(record, points).items():
                 for side, depth in zip(("1", "2"), pair, strict=True):
                     if depth is not None:
                         self._writer.put_depth(side, name, depth)

@@ -50,14 +50,14 @@ class AcceptedState:
     fields : shape (nx,), of a plane (ny, nx)
         Fields of the step [SI units].
     in_contact : shape as of the fields
-    solution
-        Unknowns, and the history for the next step.
+    dimensionless
+        The same in the units of the equations, with the history for the next step.
     """
 
     scalars: dict
     fields: dict = field(repr=False)
     in_contact: np.ndarray = field(repr=False)
-    solution: State = field(repr=False)
+    dimensionless: State = field(repr=False)
 
     def __getattr__(self, name: str) -> Any:
         for values in (vars(self).get("scalars", {}), vars(self).get("fields", {})):
@@ -102,8 +102,8 @@ class Simulation:
         Number of the pass of both bodies over each other, from 1.
     state : AcceptedState or None
         Last state of this process.
-    solution : stepping.state.State or None
-        Unknowns of the last state, or of a restart file.
+    dimensionless : stepping.state.State or None
+        The same in the units of the equations, or the state of a restart file.
 
     Raises
     ------
@@ -150,10 +150,10 @@ class Simulation:
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
         self.state: AcceptedState | None = None
-        self.solution: State | None = None
+        self.dimensionless: State | None = None
         with self.options:
             solver: Any = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
-        before = after.solution.records if after else records or {}
+        before = after.dimensionless.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
 
@@ -166,17 +166,17 @@ class Simulation:
     @property
     def finished(self) -> bool:
         """Whether the last state is at the end of the travel; of a steady case, whether it is solved."""
-        if self.solution is None:
+        if self.dimensionless is None:
             return False
         return self.case.time is None or self._time_left() == 0.0
 
     @property
     def end(self) -> float:
         """Time of the end of the run [s]."""
-        return self.solution.time + self._time_left()
+        return self.dimensionless.time + self._time_left()
 
     def _time_left(self) -> float:
-        return self.operation.remaining(self.solution.time, self.solution.travelled)
+        return self.operation.remaining(self.dimensionless.time, self.dimensionless.travelled)
 
     def __iter__(self) -> Iterator[AcceptedState]:
         return self.states()
@@ -188,7 +188,7 @@ class Simulation:
         whether to abandon the step in progress. Raises `Stopped NotConverged`.
         """
         while not self.finished:
-            begun = self.solution is not None
+            begun = self.dimensionless is not None
             if begun and stop and stop(self.comm):
                 raise Stopped
             watch = partial(_raise_if_stopped, stop.overdue if begun else stop, self.comm) if stop else None
@@ -201,7 +201,7 @@ class Simulation:
         self.stepper = TimeStepping(solver, self.scene, effects, self._film, baseline)
         records = {e.name: state.records.get(e.name) or e.start() for e in effects}
         m = solver.problem.mass_per_area(state.q, state.w) if state.m is None else state.m
-        self.solution = replace(state, records=records, m=m)
+        self.dimensionless = replace(state, records=records, m=m)
 
     def advance(self, dt: float | None = None, watch: Watch | None = None) -> AcceptedState:
         """Solve the steady contact, at later calls one time step.
@@ -220,9 +220,9 @@ class Simulation:
         started, gmres = clock.monotonic(), self._linear_iterations
         with self.options:
             try:
-                state = self._start(watch) if self.solution is None else self._step(dt, watch)
+                state = self._start(watch) if self.dimensionless is None else self._step(dt, watch)
                 check_ends(self.scales.grid, state.p, state.solution.loads.contact_mask)
-                self.solution = state
+                self.dimensionless = state
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error
         problem, effects = self.stepper.problem, self.stepper.effects
@@ -244,7 +244,7 @@ class Simulation:
             raise UsageError("advance: the simulation is at its end")
         if dt is None:
             return
-        if self.solution is None:
+        if self.dimensionless is None:
             raise UsageError(f"dt = {dt!r}: the first state is the steady start, which has no time step")
         left, shortest = self._time_left(), MIN_STEP_RATIO * self.scales.dt
         if not shortest <= dt <= left * (1.0 + NODE_TOLERANCE):
@@ -293,12 +293,12 @@ class Simulation:
             coarse.advance(watch=watch)
         except (CaseError, NotConverged, UsageError):
             return None
-        return guess_of(coarse.solution, coarse.stepper.problem, self.stepper.problem)
+        return guess_of(coarse.dimensionless, coarse.stepper.problem, self.stepper.problem)
 
     def _step(self, dt: float | None, watch: Watch) -> State:
-        self._print_heading(f"step {self.solution.step + 1} from {1e6 * self.solution.time:.4f} us")
+        self._print_heading(f"step {self.dimensionless.step + 1} from {1e6 * self.dimensionless.time:.4f} us")
         with events.STEPS:
-            return self.stepper.advance(self.solution, dt, watch)
+            return self.stepper.advance(self.dimensionless, dt, watch)
 
     def _print_heading(self, text: str) -> None:
         """Print a heading above the output of PETSc's monitors."""

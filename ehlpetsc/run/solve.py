@@ -145,7 +145,7 @@ class Run:
             self._print(f"note: unused options: -{', -'.join(sorted(new))}")
 
     def _report(self, status: ExitStatus, failure: Exception | None) -> None:
-        recorder, state = self.recorder, self.simulation.solution
+        recorder, state = self.recorder, self.simulation.dimensionless
         if isinstance(failure, OutputError):
             saved = f"; the same command continues from {recorder.restart}"
             saved = saved if recorder.restart.exists() else ""
@@ -169,7 +169,7 @@ class Run:
 
 def place_of_stop(simulation: Simulation, recorder: Recorder) -> str:
     """Step at which a run was stopped, and how it is continued."""
-    if simulation.solution is None:
+    if simulation.dimensionless is None:
         return "stopped during the steady start; nothing to continue from"
     advice = f"; continue with the same command or --restart {recorder.restart}" if recorder.output else ""
-    return f"stopped at step {simulation.solution.step}{advice}"
+    return f"stopped at step {simulation.dimensionless.step}{advice}"

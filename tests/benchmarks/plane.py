@@ -156,7 +156,7 @@ def inside(scene: str, side: int, travel: float, options: dict[str, str | None],
 def convolution(simulation: Simulation, clock: Callable[[], float]) -> float:
     """Time of a convolution of the mesh [ms]."""
     problem, taken = simulation.stepper.problem, []
-    pressure = np.ascontiguousarray(simulation.solution.p[problem.first : problem.last])
+    pressure = np.ascontiguousarray(simulation.dimensionless.p[problem.first : problem.last])
     for _ in range(CONVOLUTIONS):
         at = clock()
         problem.deflection.convolution(pressure)

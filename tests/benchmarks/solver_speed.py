@@ -50,7 +50,7 @@ def advance(simulation, steps, fast=1.0):
     newton, begun = 0, time.process_time()
     for _ in range(steps):
         simulation.advance(fast * simulation.scales.dt)
-        newton += simulation.solution.newton
+        newton += simulation.dimensionless.newton
     return newton, time.process_time() - begun
 
 

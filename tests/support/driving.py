@@ -23,13 +23,13 @@ class Scene:
     def start(self, max_it=30):
         """Solve the steady start in at most `max_it` Newton iterations."""
         self.solver.snes.max_it = max_it
-        self.state = self.simulation.advance().solution
+        self.state = self.simulation.advance().dimensionless
         return self
 
     def steps(self, count, dt):
         """Take `count` steps of `dt` [s] and yield each state; a halved step is an error."""
         for _ in range(count):
-            self.state = self.simulation.advance(dt).solution
+            self.state = self.simulation.advance(dt).dimensionless
             assert self.state.retries == 0
             yield self.state
 

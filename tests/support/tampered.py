@@ -43,8 +43,8 @@ def tamper(accident, rank, step):
     accident, _, of_pass = accident.partition("@")
 
     def with_accident(self, **given):
-        of_this = not of_pass or self.pass_number == int(of_pass)
-        if of_this and self.solution and self.solution.step + 1 == step and MPI.COMM_WORLD.rank == rank:
+        state, of_this = self.dimensionless, not of_pass or self.pass_number == int(of_pass)
+        if of_this and state and state.step + 1 == step and MPI.COMM_WORLD.rank == rank:
             if accident == "raise":
                 raise ValueError("an accident")
             if accident == "late":

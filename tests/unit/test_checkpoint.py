@@ -31,7 +31,7 @@ class Scene:
 
     def save(self, path, state, smooth):
         stepper = SimpleNamespace(baseline=smooth)
-        of = dict(case=self.case, scales=self.scales, stepper=stepper, solution=state, pass_number=1)
+        of = dict(case=self.case, scales=self.scales, stepper=stepper, dimensionless=state, pass_number=1)
         checkpoint.save(path, SimpleNamespace(**of), np.arange(self.scales.nx) % 4, TOTALS)
 
     def load(self, path):

@@ -24,7 +24,7 @@ def solved(request):
 
 def fault(simulation, change=lambda q, w, rows: None, tolerance=None):
     """Fault of the solution once its copy is changed."""
-    state, solver = simulation.solution, simulation.stepper.solver
+    state, solver = simulation.dimensionless, simulation.stepper.solver
     rows = [np.copy(part) for part in solver.residual()]
     q, w = state.q.copy(), state.w.copy()
     change(q, w, rows)

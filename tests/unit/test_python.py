@@ -185,7 +185,7 @@ def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):
     advance, before = ehlpetsc.Simulation.advance, signal.getsignal(signal.SIGINT)
 
     def interrupted(self, **given):
-        if self.solution and self.solution.step == 2:
+        if self.dimensionless and self.dimensionless.step == 2:
             signal.raise_signal(signal.SIGINT)
         return advance(self, **given)
 
@@ -274,11 +274,11 @@ def test_a_time_step_is_a_number_within_the_time_left():
     with pytest.raises(UsageError, match="^dt = 1e-07: .*steady start"):
         Simulation(case).advance(1e-7)
     simulation = Simulation(case)
-    before = simulation.advance().solution
+    before = simulation.advance().dimensionless
     for dt in (-1e-7, 0.0, float("nan"), float("inf"), 1.0):
         with pytest.raises(UsageError, match=r"^dt = .*: .* 1\.49e-15 to .* 5\.96767e-06 s "):
             simulation.advance(dt)
-    assert simulation.solution is before
+    assert simulation.dimensionless is before
     assert simulation.advance(1e-6).time == pytest.approx(1e-6)
     list(simulation)
     with pytest.raises(UsageError, match="^advance: "):

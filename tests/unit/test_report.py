@@ -30,8 +30,8 @@ def clock(monkeypatch):
 
 def started(begin, end, stream):
     """Progress of a run from a time to its end [s]."""
-    solution, stepper = SimpleNamespace(time=begin), SimpleNamespace(show_ramp=lambda show: None)
-    return report.Progress(SimpleNamespace(solution=solution, stepper=stepper, end=end), stream)
+    dimensionless, stepper = SimpleNamespace(time=begin), SimpleNamespace(show_ramp=lambda show: None)
+    return report.Progress(SimpleNamespace(dimensionless=dimensionless, stepper=stepper, end=end), stream)
 
 
 def show(progress, step, time):

@@ -91,7 +91,7 @@ def test_a_steady_solution_stays_as_it_is_in_time():
     np.testing.assert_allclose(end.temperature_1, begin.temperature_1, atol=0.05)
     np.testing.assert_allclose(end.temperature_2, begin.temperature_2, atol=0.05)
     assert max(state.scalars["heat_error"] for state in states) < 1e-9
-    before, after = (state.solution.records["heat"] for state in states[-2:])
+    before, after = (state.dimensionless.records["heat"] for state in states[-2:])
     np.testing.assert_allclose(after.rate * simulation.scales.dt, after.film - before.film, atol=1e-9)
 
 

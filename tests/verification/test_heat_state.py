@@ -54,7 +54,7 @@ def test_oil_balance_of_the_stored_state(name, keys):
     case = load(CASES / name, keys)
     simulation = Simulation(case)
     for accepted in islice(simulation, 200):
-        state = simulation.solution
+        state = simulation.dimensionless
         temperature = StoredTemperature(case, accepted.film_temperature, simulation.scales)
         inputs = replace(state.solution.inputs, oil=temperature)
         layer = case.contact.asperity_height or 0.0
@@ -71,7 +71,7 @@ def test_rubbing_solids_heat_the_walls():
     simulation = Simulation(load(CASES / "table1_heat.toml", MESH | keys | {"mesh.inlet": -1.6}))
     above, walls = [], []
     for accepted in simulation:
-        record, touching = simulation.solution.records["heat"], accepted.contact_pressure > 0.5e9
+        record, touching = simulation.dimensionless.records["heat"], accepted.contact_pressure > 0.5e9
         wall = 0.5 * (record.wall_1 + record.wall_2)[touching]
         above.append(record.film[touching] - wall)
         walls.append(wall)

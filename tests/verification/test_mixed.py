@@ -122,7 +122,7 @@ def test_oil_inflow_minus_outflow_equals_storage(rough):
     passed = gained = 0.0
     begin = None
     for accepted in states:
-        state = accepted.solution
+        state = accepted.dimensionless
         if state.step < 2:  # the first step is of another order
             continue
         if begin is None:
@@ -168,7 +168,7 @@ def test_pocket_between_two_contacts_conserves_its_oil(tmp_path):
     front = round((first + apart) / scales.dx)  # nodes that the second ridge is behind
     contents, leak = [], 0.0
     for accepted in simulation:
-        state, left = accepted.solution, accepted.step - front
+        state, left = accepted.dimensionless, accepted.step - front
         right = left + round(apart / scales.dx)
         if left < 10 or not (accepted.in_contact[left - 2 : left + 2].all()):
             continue

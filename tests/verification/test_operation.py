@@ -24,7 +24,7 @@ COARSE = {"mesh.points_per_half_width": 50, "mesh.inlet": -2.5, "mesh.outlet": 1
 def states(name, overrides):
     """All accepted solutions of a case."""
     simulation = Simulation(load(CASES / name, overrides))
-    return simulation, [state.solution for state in simulation]
+    return simulation, [state.dimensionless for state in simulation]
 
 
 def scaled(simulation, name, solution):
@@ -108,7 +108,7 @@ def test_load_step_equals_a_restart_under_the_other_load():
     stepped.advance()
     for _ in range(before):
         stepped.advance(dt)
-    restarted.solution = stepped.solution
+    restarted.dimensionless = stepped.dimensionless
     for _ in range(after):
         one, other = stepped.advance(dt), restarted.advance(dt)
         assert one.load == pytest.approx(heavy, rel=1e-10)
@@ -188,7 +188,7 @@ def harmonic(quantity, steps):
     for _ in range(steps):
         assert simulation.advance(0.75 * period / steps).retries == 0
     window = (simulation.scales.x >= -1.0) & (simulation.scales.x <= 0.5)
-    return simulation.solution.h[window], simulation.solution.p[window]
+    return simulation.dimensionless.h[window], simulation.dimensionless.p[window]
 
 
 @pytest.mark.parametrize("quantity", ["load", "radius", "speed"])
@@ -231,7 +231,7 @@ def test_squeeze_film_of_an_approaching_cylinder():
     pressure = (200.0 / film) ** 2
     pressure *= 0.5 * np.pi / (pressure.sum() * (x[1] - x[0]))
     model = simulation.stepper.problem.model
-    simulation.solution = State(Unknowns(pressure, model.w_from_film(film), 200.0), m=film.copy())
+    simulation.dimensionless = State(Unknowns(pressure, model.w_from_film(film), 200.0), m=film.copy())
 
     def sinking(_, h):
         gap = h[0] + y**2 / (2.0 * radius)
@@ -241,9 +241,9 @@ def test_squeeze_film_of_an_approaching_cylinder():
     dt = end / 64
     for _ in range(64):
         state = simulation.advance(dt)
-        assert state.h_min == pytest.approx(exact(simulation.solution.time)[0], rel=5e-3)
+        assert state.h_min == pytest.approx(exact(simulation.dimensionless.time)[0], rel=5e-3)
     assert state.h_min < 0.51 * first
-    grown = (state.h_min**-0.5 - first**-0.5) / (rate * simulation.solution.time)
+    grown = (state.h_min**-0.5 - first**-0.5) / (rate * simulation.dimensionless.time)
     assert grown == pytest.approx(1.0, rel=1e-2)
 
 

@@ -96,4 +96,4 @@ def test_heat_of_the_pressure_flow_is_the_work_of_entrainment():
     simulation, [state] = solved(case)
     s = simulation.scales
     work = s.u * (state.film_thickness * np.gradient(state.pressure, s.a * s.grid.dx, axis=1)).sum()
-    assert simulation.solution.records["heat"].source.sum() == pytest.approx(work, rel=0.05)
+    assert simulation.dimensionless.records["heat"].source.sum() == pytest.approx(work, rel=0.05)

@@ -50,7 +50,9 @@ def test_an_asperity_of_a_strip_yields_and_wears_as_in_a_line(line):
     (of_line, states), (of_strip, others) = line, strip
     assert len(states) == len(others)
     for name in ("plastic_deformation", "wear"):
-        for alone, rows in zip(*(s.solution.records[name].depth for s in (of_line, of_strip)), strict=True):
+        for alone, rows in zip(
+            *(s.dimensionless.records[name].depth for s in (of_line, of_strip)), strict=True
+        ):
             assert alone.first == rows.first and alone.depth.max() > 0.0
             np.testing.assert_allclose(rows.depth - alone.depth, 0.0, atol=1e-9 * alone.depth.max())
     for name in ("set_volume", "wear_volume", "contact_share", "friction"):
@@ -81,14 +83,14 @@ def test_volumes_of_a_point_are_integrals_over_its_area(layer):
     """Worn volume k times pressure times sliding; plastic deformation the sum of its steps."""
     contact = {key: value for key, value in POINT["contact"].items() if key != "asperity_height"}
     simulation, states = solved(POINT | {"contact": contact | layer})
-    s, records = simulation.scales, simulation.solution.records
+    s, records = simulation.scales, simulation.dimensionless.records
     cell = s.grid.spacings[0] * s.grid.spacings[1]
     work = sum((state.contact_pressure * (s.u1 - s.u2) * state.dt).sum() * cell for state in states[1:])
     assert work > 0.0
     assert states[-1].wear_volume == pytest.approx(4.0 * K * work, rel=1e-9)
     one, two = records["wear"].depth
     assert two.volume == pytest.approx(3.0 * one.volume, rel=1e-12)
-    added = sum(state.solution.records["plastic_deformation"].added.sum() for state in states)
+    added = sum(state.dimensionless.records["plastic_deformation"].added.sum() for state in states)
     assert added > 0.0
     assert states[-1].set_volume == pytest.approx(added * cell, rel=1e-9)
     rows = records["plastic_deformation"].depth.surface_1.depth
@@ -112,7 +114,7 @@ def test_a_ball_far_beyond_yield_is_flattened_at_its_hardness(share):
     simulation, [state] = solved(case, f"contact.yield_pressure={hardness}")
     s, added = (
         simulation.scales,
-        state.solution.records["plastic_deformation"].added.reshape(state.pressure.shape),
+        state.dimensionless.records["plastic_deformation"].added.reshape(state.pressure.shape),
     )
     c = np.sqrt(contact["load"] / (np.pi * hardness))
     depth = 0.5 * c**2 / radius - (2.0 - 4.0 / np.pi) * hardness * c / (0.5 * s.E)

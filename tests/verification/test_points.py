@@ -41,9 +41,9 @@ def dry(changes, ellipticity, points, load_error=1e-10):
     state, s = simulation.advance(), simulation.scales
     assert s.b / s.a == pytest.approx(ellipticity, rel=1e-9)
     exact = np.sqrt(np.maximum(1.0 - s.grid.distance**2, 0.0))
-    wrong = np.abs(state.solution.p - exact)
+    wrong = np.abs(state.dimensionless.p - exact)
     hertz = hertz_ellipse(s.load, R, R * radius_ratio(ellipticity), s.E)
-    approach = -state.solution.h00 * s.h / hertz.approach - 1.0
+    approach = -state.dimensionless.h00 * s.h / hertz.approach - 1.0
     assert state.load_error < load_error
     return wrong[s.grid.distance < 0.9].max(), wrong.mean(), abs(approach)
 
@@ -88,7 +88,7 @@ def smooth(M, L, points, changes=None):
     simulation = Simulation(load(point(M, L, points, changes)))
     state, shape = simulation.advance(), simulation.scales.grid.shape
     film = moes_film(simulation.scales, state.film_thickness)
-    return simulation, state, film, state.solution.p.reshape(shape)
+    return simulation, state, film, state.dimensionless.p.reshape(shape)
 
 
 @pytest.mark.parametrize("ellipticity, M", ((8.0, 1000.0), (0.125, 5.0)))
@@ -110,7 +110,7 @@ def test_smooth_films_with_their_order(M, L, central, minimum, pressure, approac
     for points in (8, 16, 32):
         simulation, state, film, p = smooth(M, L, points)
         middle = len(film) // 2, int(np.argmin(np.abs(simulation.scales.x)))
-        found.append((film[middle], lowest(film), p[middle], state.solution.h00))
+        found.append((film[middle], lowest(film), p[middle], state.dimensionless.h00))
         np.testing.assert_allclose(film, film[::-1], rtol=1e-6)
         assert state.load_error < 1e-10 and state.mass_error < 2e-6
     orders, limits = zip(*(order_and_limit(*values) for values in np.array(found).T), strict=True)
@@ -133,7 +133,7 @@ def test_near_inlet_starves_thick_films():
 
 def fluxes(simulation):
     """Mass flow through the faces behind each node along x, and those below each node and above the last."""
-    s, solution = simulation.scales, simulation.solution.solution
+    s, solution = simulation.scales, simulation.dimensionless.solution
     (n_y, n_x), (dy, dx), inputs = s.grid.shape, s.grid.steps, solution.inputs
     reynolds = simulation.stepper.problem.reynolds
     at = reynolds.properties(solution.nodes.reynolds_unknown, solution.nodes.film, inputs.oil)

@@ -15,7 +15,7 @@ TOLERANCE = 1e-7  # of the residual
 @pytest.fixture(scope="module")
 def states():
     scene = Scene("table1_rough.toml", *SHORT, snes_atol=TOLERANCE).start()
-    levels = [scene.state, *(state.solution for state in scene.simulation)]
+    levels = [scene.state, *(state.dimensionless for state in scene.simulation)]
     found = list(itertools.pairwise(levels))
     return scene, found
 
@@ -39,7 +39,7 @@ def test_error_of_the_default_tolerance(states):
     """Pressures to 1e-5 p0, films to 1e-5 of the expected one, at every node and step; the same contacts."""
     tight, found = states
     for (_, state), looser in zip(found, Scene("table1_rough.toml", *SHORT).start().simulation, strict=True):
-        state_by_default = looser.solution
+        state_by_default = looser.dimensionless
         np.testing.assert_array_equal(state_by_default.h == 0.0, state.h == 0.0)
         np.testing.assert_allclose(state_by_default.p, state.p, rtol=0, atol=1e-5)
         np.testing.assert_allclose(state_by_default.h, state.h, rtol=0, atol=1e-5 * tight.problem.film_scale)

@@ -15,7 +15,7 @@ from ehlpetsc.run.simulation import Simulation
 
 def steady(name, *overrides):
     simulation = Simulation(load(CASES / name, overrides))
-    state = simulation.advance().solution
+    state = simulation.advance().dimensionless
     return simulation.scales, simulation.stepper.problem, state
 
 

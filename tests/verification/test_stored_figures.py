@@ -222,10 +222,10 @@ def test_excluded_nodes_are_flagged_and_their_oil_counted():
     simulation = ehlpetsc.Simulation(case, options={"snes_vi_zero_tolerance": "1e-3", "snes_atol": "1e-7"})
     above, lost = 0, 0.0
     for state in simulation:
-        left_out = state.in_contact & (state.solution.w > 0.0)
+        left_out = state.in_contact & (state.dimensionless.w > 0.0)
         assert (state.film_thickness[state.in_contact] == 0.0).all()
         above += left_out.sum()
-        residual = np.abs(state.solution.reynolds_residual)
+        residual = np.abs(state.dimensionless.reynolds_residual)
         assert residual[~state.in_contact].max() < 1e-6
         if left_out.any():
             lost = max(lost, residual[left_out].sum())

@@ -41,7 +41,7 @@ def test_strip_of_profiles_equals_the_line(name, changes):
     for one, other in zip(line, strip, strict=True):
         assert other.retries == one.retries == 0 and other.time == one.time
         for field, tolerance in (("p", 1e-9), ("h", 1e-10)):
-            expected, found = getattr(one.solution, field), getattr(other.solution, field)
+            expected, found = getattr(one.dimensionless, field), getattr(other.dimensionless, field)
             np.testing.assert_allclose(
                 found.reshape(shape), np.broadcast_to(expected, shape), rtol=0, atol=tolerance
             )

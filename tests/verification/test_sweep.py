@@ -71,14 +71,14 @@ def test_sweeps_step_from_their_own_start():
     for simulation in simulations("table1_rough.toml", "mesh.points_per_half_width=50"):
         for state in itertools.islice(simulation, 6):
             assert state.retries == 0
-        states.append((state.solution.q, state.solution.h))
+        states.append((state.dimensionless.q, state.dimensionless.h))
     assert_same(simulation.stepper.problem, *states, rtol=1e-5)
 
 
 def test_load_balance_at_an_exit_film_of_150_nm():
     coarse = "mesh.points_per_half_width=50"
     both = simulations("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
-    states = [simulation.advance().solution for simulation in both]
+    states = [simulation.advance().dimensionless for simulation in both]
     swept = both[1].stepper
     bound = swept.solver.bound
     assert states[1].h.min() == bound
@@ -111,9 +111,9 @@ def test_invalid_schemes_are_refused(name, value, message):
 def store():
     """Run the case to the steps of `CONTACTS` and keep what goes before each."""
     simulation, _ = simulations("table1_rough.toml")
-    kept, state = {}, simulation.advance().solution
+    kept, state = {}, simulation.advance().dimensionless
     while state.step < max(CONTACTS):
-        before, state = state, simulation.advance().solution
+        before, state = state, simulation.advance().dimensionless
         if state.step in CONTACTS:
             levels = before.q, before.w, before.m, before.m_older
             kept[f"levels_{state.step}"] = np.array(levels, dtype=np.float32)

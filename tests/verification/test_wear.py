@@ -25,7 +25,7 @@ def test_worn_volume_is_the_integral_of_the_solids_pressure_times_sliding(scale)
     work = sum(state.contact_pressure.sum() * dx * sliding * state.dt for state in states[1:])
     assert work > 0.0
     assert states[-1].wear_volume == pytest.approx(4.0 * K * work, rel=1e-10)
-    one, two = simulation.solution.records["wear"].depth
+    one, two = simulation.dimensionless.records["wear"].depth
     assert two.volume == pytest.approx(3.0 * one.volume, rel=1e-12)
     assert one.volume == pytest.approx(K * work, rel=1e-10)
 

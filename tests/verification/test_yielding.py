@@ -31,7 +31,7 @@ def rough():
 
 def added(simulation, state):
     """Depth that a step adds to both surfaces, in a^2/R."""
-    return state.solution.records["plastic_deformation"].added / simulation.scales.h
+    return state.dimensionless.records["plastic_deformation"].added / simulation.scales.h
 
 
 @pytest.mark.slow
@@ -51,7 +51,7 @@ def test_yielding_steps_pass_the_convergence_check(rough):
 @pytest.mark.slow
 def test_plastic_deformation_is_added_to_both_bodies(rough):
     simulation, states = rough
-    scales, sets = simulation.scales, simulation.solution.records["plastic_deformation"].depth
+    scales, sets = simulation.scales, simulation.dimensionless.records["plastic_deformation"].depth
     total = sum(added(simulation, state).sum() for state in states) * scales.h * scales.dx
     assert sum(one.volume for one in sets) == pytest.approx(total, rel=1e-12)
     assert sets[0].volume == pytest.approx(sets[1].volume, rel=1e-12)
@@ -61,7 +61,7 @@ def test_softer_surface_takes_all_plastic_deformation():
     keys = [*ROUGH, "contact.yield_pressure=[9e9, 2.5e9]", "time.travel=1.6"]
     case = load(CASES / "table1_mixed.toml", keys)
     *_, last = Simulation(case)
-    fast, slow = last.solution.records["plastic_deformation"].depth
+    fast, slow = last.dimensionless.records["plastic_deformation"].depth
     assert fast.volume == 0.0 < last.set_volume
     assert slow.volume == pytest.approx(last.set_volume, rel=1e-12)
 
