@@ -32,6 +32,9 @@ OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
+SOFT_LAYER = (
+    0.1  # beta E* over p0: a softer layer is a wall, as a node has either no asperity pressure or all
+)
 SCALE_TOLERANCE = 1e-12  # relative
 SCALES = ("a", "p0", "h")  # of load, radius and elasticity
 SPEEDS = ("motion", "operation", "gears")  # tables
@@ -152,7 +155,7 @@ def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:
     return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.h00)
 
 
-def cures(case: Case, conditions: Conditions, film: float) -> str:
+def cures(case: Case, scales: Scales, conditions: Conditions, film: float) -> str:
     """Advice for a case without a steady start under its first conditions; expected film in a^2/R."""
     if film > RIGID_FILM:
         return (
@@ -168,4 +171,7 @@ def cures(case: Case, conditions: Conditions, film: float) -> str:
         found.append('contact.model = "mixed"')
     if case.contact.asperity_height and not case.contact.adsorbed_film:
         found.append("contact.adsorbed_film = 1e-9, without which the film in the layer may vanish")
+    beta = case.contact.asperity_stiffness
+    if beta and 0.5 * scales.E * beta < SOFT_LAYER * scales.p0:
+        found.append(f"contact.asperity_stiffness above {beta:.2g}, which the Hertz pressure flattens whole")
     return f". Try {' or '.join(found)}"

@@ -258,7 +258,7 @@ class Simulation:
                 if isinstance(error.__cause__, NoSteadyStart):
                     from ehlpetsc.run.checkpoint import cures
 
-                    advice = cures(self.case, self.operation.at(0.0), self._film)
+                    advice = cures(self.case, self.scales, self.operation.at(0.0), self._film)
                     raise NotConverged(f"{error}{advice}") from error.__cause__
                 raise
         if isinstance(self.stepper.solver, NewtonSolver):

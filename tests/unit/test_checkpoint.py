@@ -12,6 +12,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import flat
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run import checkpoint
 from ehlpetsc.stepping.state import State, TimeLevel
@@ -110,3 +111,12 @@ def test_records_of_effects_round_trip(tmp_path, record):
     assert found.keys() == flat(record, name).keys()
     for key, value in flat(record, name).items():
         np.testing.assert_array_equal(found[key], value)
+
+
+def test_cure_of_a_layer_far_softer_than_the_hertz_pressure():
+    layer = ["contact.model='mixed'", "contact.asperity_height=20e-9", "contact.asperity_stiffness="]
+    for stiffness, is_soft in (("5e-4", True), ("0.03", False)):
+        scene = Scene(*layer[:2], layer[2] + stiffness)
+        conditions = operation_of(scene.case, scene.scales).at(0.0)
+        advice = checkpoint.cures(scene.case, scene.scales, conditions, 0.1)
+        assert ("contact.asperity_stiffness above 0.0005" in advice) == is_soft
