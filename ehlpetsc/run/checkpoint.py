@@ -32,9 +32,7 @@ OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
-SOFT_LAYER = (
-    0.1  # beta E* over p0: a softer layer is a wall, as a node has either no asperity pressure or all
-)
+SOFT_LAYER = 0.1  # beta E* over p0: a node of a softer layer has no asperity pressure or all of it
 SCALE_TOLERANCE = 1e-12  # relative
 SCALES = ("a", "p0", "h")  # of load, radius and elasticity
 SPEEDS = ("motion", "operation", "gears")  # tables
