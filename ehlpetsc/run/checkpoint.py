@@ -59,10 +59,10 @@ def axes_of(scales: Scales) -> dict[str, np.ndarray]:
 def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: dict[str, float]) -> None:
     """Write the restart file of a simulation at its last state; other arguments as of `Checkpoint`."""
     case, scales, state = simulation.case, simulation.scales, simulation.dimensionless
-    smooth_q, smooth_w = simulation.stepper.baseline
+    baseline_q, baseline_w = simulation.stepper.baseline
     values: dict[str, Any] = {"contact_count": contact_count}
     values |= {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
-    values |= {"smooth_q": smooth_q, "smooth_w": smooth_w, "pass_number": simulation.pass_number}
+    values |= {"baseline_q": baseline_q, "baseline_w": baseline_w, "pass_number": simulation.pass_number}
     values |= {"case": case.text, "contact_law": case.contact.law}
     values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
     values |= {name: value for name in OF_STATE if (value := getattr(state, name)) is not None}
@@ -110,8 +110,8 @@ def _checkpoint(values: dict[str, Any]) -> Checkpoint:
         records={effect.name: unflat(effect.record, values, effect.name) for effect in effects},
     )
     totals = {name.removeprefix(TOTAL): value for name, value in values.items() if name.startswith(TOTAL)}
-    smooth = values["smooth_q"], values["smooth_w"]
-    return Checkpoint(state, smooth, values["contact_count"], totals)
+    baseline = values["baseline_q"], values["baseline_w"]
+    return Checkpoint(state, baseline, values["contact_count"], totals)
 
 
 def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -> str | None:

@@ -139,9 +139,9 @@ def whole_nodes(v: np.ndarray, nodes: float) -> np.ndarray:
 
 
 def predict(
-    problem: EHLProblem, smooth: TimeLevel, levels: Sequence[TimeLevel], nodes: Sequence[float]
+    problem: EHLProblem, baseline: TimeLevel, levels: Sequence[TimeLevel], nodes: Sequence[float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Guess of q and w: the difference from the smooth solution, which roughness causes, advected.
+    """Guess of q and w: the difference from the baseline, which roughness causes, advected.
 
     The difference (of films the ratio, which keeps them positive) is advected with the entrainment speed from
     one of the last three time levels, the one whose distance to the new level is nearest to a whole number of
@@ -149,17 +149,17 @@ def predict(
     error of a predictor: on the measured surfaces the last level alone costs 6.0 Newton iterations a step,
     the best of three 4.6 (over a travel of 5 a). Extrapolation in time does not reduce this number.
 
-    `smooth`: steady solution of the start. `levels`: earlier time levels, latest first. `nodes`: distance of
+    `baseline`: smooth steady solution. `levels`: earlier time levels, latest first. `nodes`: distance of
     each level to the new time, with the entrainment speed, in nodes.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
     level, distance, model, rows = levels[best], nodes[best], problem.model, problem.grid.rows
-    q0, film = smooth.q, model.state(level.q, level.w).film
-    h0 = np.maximum(model.state(q0, smooth.w).film, MIN_FILM_DIVISOR * problem.film_scale)
+    q0, film = baseline.q, model.state(level.q, level.w).film
+    h0 = np.maximum(model.state(q0, baseline.w).film, MIN_FILM_DIVISOR * problem.film_scale)
     q = q0 + advected(rows(level.q - q0), distance).ravel()
     # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
     smallest = np.minimum(*neighbours(rows(level.q), distance)).ravel()
-    in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the smooth solution
+    in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the baseline
     full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, smallest), in_cavity)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
     interpolated = model.w_from_film(h0 * advected(rows(film / h0), distance).ravel())
