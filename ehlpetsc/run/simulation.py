@@ -268,21 +268,32 @@ class Simulation:
         return state
 
     def _started(self, watch: Watch) -> State:
-        """Steady state; from the solution on a coarser mesh where there are many nodes, else if need be."""
-        guessed = self.case.fluid is None and self.roughness is None  # by Hertz
-        nested = self.scales.grid.n > MANY_NODES and not guessed
-        guess = self._coarse_guess(watch) if nested else None
-        self._print_heading(f"steady start on {self.scales.grid.n} nodes")
-        try:
-            return self.stepper.start(self._records, watch, guess)
-        except NotConverged as failure:
-            few = self.case.mesh.points_per_half_width < 2 * MIN_COARSE_POINTS
-            if not isinstance(failure.__cause__, NoSteadyStart) or (guess is None and (nested or few)):
-                raise
-            guess = None if nested else self._coarse_guess(watch)
-            if guess is None and not nested:
-                raise
-            return self.stepper.start(self._records, watch, guess)
+        failures = []
+        for guess in self._guesses(watch):
+            self._print_heading(f"steady start on {self.scales.grid.n} nodes")
+            try:
+                return self.stepper.start(self._records, watch, guess)
+            except NotConverged as error:
+                if not isinstance(error.__cause__, NoSteadyStart):
+                    raise
+                failures.append(error)
+        raise failures[-1]
+
+    def _guesses(self, watch: Watch) -> Iterator[Unknowns | None]:
+        """Guesses of the steady state, one after the other; None: by Hertz.
+
+        The solution on a coarser mesh, if any, is the first one where there are many nodes, else the last.
+        """
+        is_hertz = self.case.fluid is None and self.roughness is None
+        is_first = self.scales.grid.n > MANY_NODES and not is_hertz
+        if not is_first:
+            yield None
+        is_fine = self.case.mesh.points_per_half_width >= 2 * MIN_COARSE_POINTS
+        coarse = self._coarse_guess(watch) if is_first or is_fine else None
+        if coarse is not None:
+            yield coarse
+        if is_first:
+            yield None
 
     def _coarse_guess(self, watch: Watch) -> Unknowns | None:
         """Steady solution on a mesh with half as many nodes per half-width; None: there is none."""
