@@ -16,9 +16,7 @@ from ehlpetsc.results.reader import Result
 OIL_INDEX = 1.5  # refractive index of the oil; of a dry gap 1
 WAVELENGTHS = {"red": 630e-9, "green": 530e-9, "blue": 460e-9}  # m
 BANDWIDTH = 20e-9  # of the colours, full width at half of the maximum [m]
-PIXELS = (
-    600  # along the longer side: films are interpolated, a mesh would alias the fringes outside the contact
-)
+PIXELS = 600  # along the longer side: on the mesh itself fringes outside the contact would be aliased
 MARGIN = 2.0  # inches above and below the maps
 CHART = 400  # films of the chart of intensities
 

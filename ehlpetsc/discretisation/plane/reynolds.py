@@ -103,11 +103,7 @@ class Reynolds:
         residual *= 1.0 / self.film_scale
         derivatives *= 1.0 / self.film_scale
         first = slice(None, None, n_x)
-        start = (
-            len(q) // n_x - n_y - (0 if self.has_sides[1] else 1)
-        )  # rows of the window before the local ones
-        local = slice(start * n_x, (start + n_y) * n_x)
-        inlet_rows = inlet(q[local][first], h[local][first], inputs.inlet_film)
+        inlet_rows = inlet(q[self.owned][first], h[self.owned][first], inputs.inlet_film)
         residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = inlet_rows
         return residual, derivatives
 

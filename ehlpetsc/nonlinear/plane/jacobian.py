@@ -14,9 +14,7 @@ from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.ranks import all_ranks
 from ehlpetsc.nonlinear.two_fields import Jacobian
 
-SAME_PRESSURE = (
-    1e-6  # relative difference: pressures that asperities carry in a cavity are left out of the elimination
-)
+SAME_PRESSURE = 1e-6  # relative: the elimination leaves out what asperities carry in a cavity
 
 
 class Elimination(Protocol):
@@ -34,9 +32,9 @@ class PlaneJacobian(Jacobian):
 
     `elimination`: of the preconditioner, kept between solves.
 
-    `deflected`: last change of the unknowns whose deflection is known, and that deflection: the
-        preconditioner,
-    which computes it for the vector that GMRES multiplies next, saves every second convolution.
+    `deflected`: last change of the unknowns whose deflection is known, that deflection and load: the
+        preconditioner, which computes them for the vector that GMRES multiplies next, saves every second
+        convolution.
     """
 
     exchange: PlaneExchange
@@ -50,11 +48,8 @@ class PlaneJacobian(Jacobian):
 
     def pressure_of(self, v: np.ndarray) -> np.ndarray:
         """Change of the local pressures by a change of the local unknowns."""
-        by, owned, pairs = (
-            self.derivatives,
-            self.problem.owned,
-            v[: n_dofs(self.problem.local)].reshape(-1, 2),
-        )
+        by, owned = self.derivatives, self.problem.owned
+        pairs = v[: n_dofs(self.problem.local)].reshape(-1, 2)
         return by[0, 0, owned] * pairs[:, 0] + by[0, 1, owned] * pairs[:, 1]
 
     def remember(self, v: np.ndarray, pressure: np.ndarray, sums: PressureSums) -> None:
