@@ -55,7 +55,7 @@ def sq_down_to(shortest: float) -> float:
 
 def contact(chosen: argparse.Namespace, lay: float, pressure: float) -> dict[str, Any]:
     """Case of a dry smooth strip of Hertz pressure `pressure`; of ridges the line contact."""
-    points, mesh = chosen.points, {"inlet": -2.5, "outlet": 1.5 if chosen.table == "film" else 2.5}
+    points, mesh = chosen.points, {"inlet": -2.5, "outlet": chosen.outlet if chosen.table == "film" else 2.5}
     if lay > RIDGES:
         across = {"points_per_half_width": [points, max(4, round(points * lay))], "width": chosen.width}
     else:
@@ -237,6 +237,7 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("--at", type=float, nargs="+", help="pressures [Pa] or speeds [m/s]")
     parser.add_argument("--points", type=int, default=64, help="nodes per half-width; of flat along x")
     parser.add_argument("--width", type=float, default=1.0, help="of a strip [half-widths]")
+    parser.add_argument("--outlet", type=float, default=1.5, help="of film [half-widths]")
     parser.add_argument("--border", type=float, default=40e-6, help="shortest wave on the mesh [m]")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--map", type=Path, help="of film: file of a measured map")
