@@ -19,7 +19,7 @@ from ehlpetsc.base.toml_file import plain
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
 
-VERSION = 5  # of the format
+VERSION = 6  # of the format
 HEADER_BYTES = 512
 SIGNATURE = b"ehlpetsc restart file %d\n" % VERSION
 

@@ -171,5 +171,5 @@ def cures(case: Case, scales: Scales, conditions: Conditions, film: float) -> st
         found.append("contact.adsorbed_film = 1e-9, without which the film in the layer may vanish")
     beta = case.contact.asperity_stiffness
     if beta and 0.5 * scales.E * beta < SOFT_LAYER * scales.p0:
-        found.append(f"contact.asperity_stiffness above {beta:.2g}, which the Hertz pressure flattens whole")
+        found.append(f"contact.asperity_stiffness above {beta:.2g}, as the Hertz pressure flattens the layer")
     return f". Try {' or '.join(found)}"
