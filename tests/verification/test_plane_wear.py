@@ -50,9 +50,8 @@ def test_an_asperity_of_a_strip_yields_and_wears_as_in_a_line(line):
     (of_line, states), (of_strip, others) = line, strip
     assert len(states) == len(others)
     for name in ("plastic_deformation", "wear"):
-        for alone, rows in zip(
-            *(s.dimensionless.records[name].depth for s in (of_line, of_strip)), strict=True
-        ):
+        depths = (s.dimensionless.records[name].depth for s in (of_line, of_strip))
+        for alone, rows in zip(*depths, strict=True):
             assert alone.first == rows.first and alone.depth.max() > 0.0
             np.testing.assert_allclose(rows.depth - alone.depth, 0.0, atol=1e-9 * alone.depth.max())
     for name in ("set_volume", "wear_volume", "contact_share", "friction"):
