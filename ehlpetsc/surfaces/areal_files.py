@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.format import MAGIC_PREFIX, read_array
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.outliers import SPIKE_WIDTH, map_spikes, without_no_data
@@ -67,7 +68,7 @@ def _matrix(path: Path, layout: Layout) -> Map:
     if layout.spacing is None:
         raise ProfileError("a matrix of heights needs spacing = distance of its columns in m")
     if path.suffix.lower() == ".npy":
-        z = np.load(path)
+        z = by_package("numpy", _by_numpy, path, "")
         if z.dtype.kind not in "fiu":
             raise ProfileError(f"numbers of type {z.dtype}; allowed: real numbers")
     else:
@@ -78,6 +79,16 @@ def _matrix(path: Path, layout: Layout) -> Map:
             )
         z = columns.T
     return Map(UNITS[layout.unit or "m"] * z, layout.spacing, layout.spacing_across or layout.spacing)
+
+
+def _by_numpy(path: Path) -> np.ndarray:
+    with path.open("rb") as file:
+        if file.read(len(MAGIC_PREFIX)) != MAGIC_PREFIX:  # np.load would read archives and pickles too
+            raise ProfileError(
+                "not a matrix as numpy.save writes it; allowed under .npy: one of real numbers"
+            )
+        file.seek(0)
+        return read_array(file, allow_pickle=False)
 
 
 @read_once

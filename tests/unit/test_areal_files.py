@@ -1,5 +1,7 @@
 """Areal maps as files: read, filled, levelled, filtered, turned, or refused with the key that settles it."""
 
+import io
+import pickle
 import sys
 from dataclasses import replace
 from types import ModuleType, SimpleNamespace
@@ -146,6 +148,43 @@ def test_a_faulty_matrix_is_refused(tmp_path, z, layout, message):
     np.save(tmp_path / "map.npy", z)
     with pytest.raises(ProfileError, match=message):
         read_map(tmp_path / "map.npy", layout)
+
+
+def npy_bytes(z=Z):
+    file = io.BytesIO()
+    np.save(file, z)
+    return file.getvalue()
+
+
+def archive_bytes():
+    file = io.BytesIO()
+    np.savez(file, z=Z)
+    return file.getvalue()
+
+
+NO_MATRIX = "^not a matrix as numpy.save writes it; allowed under .npy: one of real numbers$"
+DAMAGED = {
+    "archive": (archive_bytes(), NO_MATRIX),
+    "damaged archive": (archive_bytes()[:900], NO_MATRIX),
+    "empty": (b"", NO_MATRIX),
+    "pickle": (pickle.dumps(Z.tolist()), NO_MATRIX),
+    "no header": (npy_bytes()[:9], "^numpy cannot read it: "),
+    "half of a header": (npy_bytes().replace(b"fortran_order", b"f(rtran_order"), "^numpy cannot read it: "),
+    "half of the heights": (npy_bytes()[:9000], "^numpy cannot read it: "),
+    "a shape beyond any memory": (
+        npy_bytes().replace(b"(40, 60), }      ", b"(40, 60000000000)}"[:17]),
+        "^numpy cannot read it: ",
+    ),
+    "objects": (npy_bytes(np.array([[{}] * 4] * 4)), "^numpy cannot read it: "),
+}
+
+
+@pytest.mark.parametrize(("content", "message"), DAMAGED.values(), ids=DAMAGED)
+def test_a_file_that_is_no_npy_matrix_is_refused_in_one_sentence(tmp_path, content, message):
+    (tmp_path / "map.npy").write_bytes(content)
+    with pytest.raises(ProfileError, match=message) as caught:
+        read_map(tmp_path / "map.npy", SPACED)
+    assert "\n" not in str(caught.value)
 
 
 def test_the_width_of_a_gap_is_that_of_its_widest_circle():
