@@ -214,11 +214,17 @@ class GearPair:
         """Positions of A, B, C, D and E [m]: dict of str to float.
 
         A: tip of the wheel, contact begins; E: tip of the pinion, contact ends; a single pair carries between
-        B and D; C: pitch point.
+        B and D; C: pitch point, which may lie beyond A or E.
         """
         a, e = self._a_and_e()
         c = self.base_radii[0] * math.tan(self.working_angle)
         return {"A": a, "B": e - self.base_pitch, "C": c, "D": a + self.base_pitch, "E": e}
+
+    @property
+    def points_on_path(self) -> dict[str, float]:
+        """`points` from A to E: without a pitch point beyond them."""
+        points = self.points
+        return {name: rho for name, rho in points.items() if points["A"] <= rho <= points["E"]}
 
     @property
     def contact_ratio(self) -> float:

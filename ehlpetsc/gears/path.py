@@ -49,7 +49,7 @@ class Path:
         return (self.speed_1 - self.speed_2) / self.entrainment
 
     def index(self, point: str) -> int:
-        """Index of the sample at A, B, C, D or E."""
+        """Index of the sample at a point of :attr:`GearPair.points_on_path`."""
         return int(np.argmin(np.abs(self.rho - self.pair.points[point])))
 
 
@@ -76,7 +76,7 @@ def path_of_contact(gears: GearPair | Mapping[str, Any]) -> Path:
     found = faults(pair)
     if found:
         raise CaseError(found)
-    points = pair.points
+    points = pair.points_on_path
     rho = np.linspace(points["A"], points["E"], PATH_INTERVALS + 1)
     rho = np.unique(np.concatenate([rho, list(points.values())]))
     # positions that differ by rounding would be equal times
@@ -112,6 +112,10 @@ def describe(path: Path) -> list[str]:
         f"a pinion tooth meets {pair.partners} of {abs(pair.teeth[1])} wheel teeth; "
         f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
     ]
+    if "C" not in pair.points_on_path:
+        at, a, e = (pair.points[name] for name in "CAE")
+        where = f"{1e3 * (a - at):.3g} mm before A" if at < a else f"{1e3 * (at - e):.3g} mm after E"
+        lines.append(f"the pitch point lies {where}: the flanks slide in one direction along the whole path")
     lines += [f"warning: {note}" for note in notes(pair)]
     if pair.tip_relief > 0.0:
         kappa = single_stiffness(pair) * pair.tip_relief / pair.normal_load

@@ -48,10 +48,9 @@ class Rating:
 
 def friction(rating: Rating) -> float:
     """Mean coefficient of friction along the path, by load, speed and radius at the pitch point."""
-    path, at = rating.path, rating.path.index("C")
-    speeds = 2.0 * path.entrainment[at]
+    pair, at = rating.path.pair, rating.path.pair.points["C"]
     of_oil = rating.viscosity(rating.oil), rating.roughness, rating.oil_factor
-    return float(hoehn_michaelis(path.pair.normal_load, speeds, path.radius[at], *of_oil))
+    return float(hoehn_michaelis(pair.normal_load, sum(pair.speeds(at)), pair.radius(at), *of_oil))
 
 
 def flash(rating: Rating, coefficient: float | np.ndarray | None = None) -> np.ndarray:
@@ -90,12 +89,15 @@ def loss_factor(pair: GearPair) -> float:
 
     .. math:: H_V=\frac{\pi(i+1)}{z_1i\cos\beta_b}(1-\varepsilon_\alpha+\varepsilon_1^2+\varepsilon_2^2)
 
-    with the gear ratio i and the contact ratios :math:`\varepsilon_{1,2}` from C to E and from A to C.
+    with the gear ratio i and the contact ratios :math:`\varepsilon_{1,2}` from C to E and from A to C: the
+    integral of a load that is halved outside B to D, with the pitch point between them. Its value for any
+    pitch point is :math:`\frac12(e|e|-a|a|+d|d|-b|b|)` in place of the bracket, a to e the distances of the
+    points from C in base pitches.
     """
     points, i = pair.points, pair.teeth[1] / pair.teeth[0]
-    e_1, e_2 = ((points[end] - points["C"]) / pair.base_pitch for end in "EA")
+    a, b, d, e = ((points[name] - points["C"]) / pair.base_pitch for name in "ABDE")
     factor = np.pi * (i + 1.0) / (pair.teeth[0] * i * np.cos(pair.base_helix_angle))
-    return float(factor * (1.0 - pair.contact_ratio + e_1**2 + e_2**2))
+    return float(0.5 * factor * (e * abs(e) - a * abs(a) + d * abs(d) - b * abs(b)))
 
 
 def bulk_temperatures(

@@ -19,7 +19,7 @@ EDGES = {"A": "before A, on the tip edge of the wheel", "E": "after E, on the ti
 def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
     """Lines of text: data of the pair, a table of A to E, mean values of the standards."""
     pair = path.pair
-    where = [path.index(name) for name in pair.points]
+    where = [path.index(name) for name in pair.points_on_path]
     arcs = pair.flank_arcs(path.rho)
     quantities = [
         ("time, µs", 1e6 * path.time),
@@ -49,7 +49,7 @@ def rows(path: Path, modulus: float, rating: Rating | None) -> list[str]:
         elif name != "loss factor H_V":
             lines.append(f"{name} {value:.4g} {entry.unit}{' ' if entry.unit else ''}by {entry.source}")
     width = max(len(name) for name, _ in quantities)
-    lines += ["", " " * width + "".join(f"{name:>11}" for name in pair.points)]
+    lines += ["", " " * width + "".join(f"{name:>11}" for name in pair.points_on_path)]
     for name, values in quantities:
         source = f"  {names[name]}" if name in names else ""
         lines.append(f"{name:{width}}" + "".join(f"{_shown(values[i]):>11}" for i in where) + source)

@@ -112,7 +112,8 @@ def draw_damage(runs: list[GearRun], target: Path) -> None:
                     maximum = np.nan_to_num(run.damage.damage[k]).max(axis=0)
                     look = dict(color=colour, linewidth=0.5, label=run.title)
                     axis.semilogy(1e3 * run.damage.arcs[k], np.where(maximum > 0.0, maximum, np.nan), **look)
-            _mark(axis, pair, {name: float(pair.flank_arcs(rho)[k]) for name, rho in pair.points.items()})
+            places = {name: float(pair.flank_arcs(rho)[k]) for name, rho in pair.points_on_path.items()}
+            _mark(axis, pair, places)
             axis.set_ylabel(f"damage of an\nengagement, {FLANKS[k]}")
         axes[0].legend(**ABOVE)
 
@@ -157,7 +158,7 @@ def _mark(
     axis: Axes, pair: GearPair, places: dict[str, float] | None = None, with_names: bool = True
 ) -> None:
     """Mark the points A to E, by default on the line of action, at places in metres."""
-    places = places or {name: rho - pair.points["C"] for name, rho in pair.points.items()}
+    places = places or {name: rho - pair.points["C"] for name, rho in pair.points_on_path.items()}
     for name, x in places.items():
         axis.axvline(1e3 * x, color="0.7", linewidth=0.8)
         if with_names:

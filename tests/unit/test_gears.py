@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import tomllib
 from types import SimpleNamespace
 
 import h5py
@@ -188,6 +189,41 @@ def test_no_sliding_at_the_pitch_point():
     omega_1, pitch_radius = pair.angular_speeds[0], 91.5e-3 * 16 / 40
     assert u_1 == pytest.approx(u_2, rel=1e-14)
     assert u_1 == pytest.approx(omega_1 * pitch_radius * math.sin(pair.working_angle), rel=1e-14)
+
+
+PITCH_POINT_BEYOND = {  # teeth, shifts, side
+    "internal, before A": ({"teeth": (42, 127), "profile_shift": (0.76, 0.57), "internal": True}, "before A"),
+    "internal, after E": ({"teeth": (40, 75), "profile_shift": (-0.3, -0.63), "internal": True}, "after E"),
+    "all recess": (
+        {"teeth": (30, 40), "centre_distance": 105e-3, "tip_diameter": (101e-3, 119.5e-3)},
+        "before A",
+    ),
+}
+
+
+@pytest.mark.parametrize("pair", PITCH_POINT_BEYOND)
+def test_path_is_from_a_to_e_where_the_pitch_point_lies_beyond_them(pair, tmp_path, capsys, monkeypatch):
+    """The path began or ended at the pitch point, where no teeth touch."""
+    monkeypatch.chdir(tmp_path)
+    teeth, side = PITCH_POINT_BEYOND[pair]
+    gears = {"module": 3e-3, "face_width": 30e-3, "torque": 500.0, "speed": 1000.0} | teeth
+    path = path_of_contact(gears)
+    points = path.pair.points
+    assert (path.rho[0], path.rho[-1], path.time[0]) == (points["A"], points["E"], 0.0)
+    sliding = np.sign(path.speed_1 - path.speed_2)
+    assert (sliding == (1.0 if side == "before A" else -1.0)).all()
+    case = load({"title": "pair", "gears": gears, **tomllib.loads(CONTACT)})
+    assert case.conditions.time[-1] == pytest.approx((points["E"] - points["A"]) / path.pair.base_speed)
+    (tmp_path / "pair.toml").write_text(case.text)
+    assert main(["pair.toml"]) == 0
+    printed = capsys.readouterr().out
+    assert f"mm {side}: the flanks slide in one direction" in printed
+    assert ["A", "B", "D", "E"] in [line.split() for line in printed.splitlines()]
+    # half of the load outside B to D: the integral by the formula of Niemann and Winter
+    rho = np.linspace(points["A"], points["E"], 200_001)
+    halves = np.where((rho < points["B"]) | (rho > points["D"]), 0.5, 1.0)
+    expected = (halves * np.abs(np.subtract(*path.pair.speeds(rho)))).mean() * path.contact_ratio
+    assert loss_factor(path.pair) == pytest.approx(expected / path.pair.base_speed, rel=1e-4)
 
 
 RULES = {
