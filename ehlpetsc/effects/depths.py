@@ -44,7 +44,12 @@ class BodyDepth(Effect[D]):
     contact with the heights of the profile. Ahead of the profile the body is smooth: pits without the
     asperities in which they formed would disturb the steady start. Depths ahead of the profile are hidden
     from the gap, but kept in the record; depths added during the pass are not hidden.
+
+    While roughness is ramped up before time 0, nothing is added: solids that yield there do so in each step
+    anew, and with lasting effect in the first step of the pass.
     """
+
+    frozen_before_start = True
 
     def start(self, before: D | None = None, **entries: np.ndarray) -> D:
         """Depth zero with further entries of the record, or the record of the previous pass."""
@@ -133,7 +138,8 @@ class PlasticDeformation(BodyDepth[PlasticRecord]):
 
     def start(self, before: PlasticRecord | None = None, **entries: np.ndarray) -> PlasticRecord:
         """No deformation, or the deformation of the previous pass."""
-        return super().start(before, added=np.zeros(self.scene.scales.grid.n), **entries)
+        none = np.zeros(self.scene.scales.grid.n)
+        return super().start(before, added=none, **entries)._replace(added=none)
 
     def accept(self, record: PlasticRecord, solution: Solution, step: Step) -> PlasticRecord:
         """Add the depth of the step to both bodies."""

@@ -103,6 +103,7 @@ class Effect(Generic[R]):
     `table`: table of the case file, :class:`ehlpetsc.base.declarations.KeyTable`.
     `contacts`: kinds of contact that it serves; others are refused.
     `moves_with_surfaces`: whether its contribution to the gap moves with the surfaces from the first step on.
+    `frozen_before_start`: whether its record does not change in the time steps before time 0.
     `fields`, `scalars`, `surface`: quantities of the effect, see :mod:`ehlpetsc.base.quantities`: fields
     over the nodes, scalars of every time step, depths along each surface at the end of the run.
     """
@@ -112,6 +113,7 @@ class Effect(Generic[R]):
     table: KeyTable | None = None
     contacts: Collection[str] = ("line", "strip", "point")
     moves_with_surfaces = False
+    frozen_before_start = False
     fields: dict = {}
     scalars: dict = {}
     surface: dict = {}

@@ -150,11 +150,12 @@ class TimeStepping:
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
         self.ramp_time = np.ceil(RAMP_LENGTH * self.scales.a / self.scales.u / dt) * dt
         moved = self.operation.displacement(0.0, -self.ramp_time)
-        state = replace(state, time=-self.ramp_time, travelled=moved)
+        frozen = {e.name: records[e.name] for e in self.effects if e.frozen_before_start}
+        state = replace(state, time=-self.ramp_time, travelled=moved, records=state.records | frozen)
         self.baseline = (state.q, state.w)
         while state.time < -LEVEL_TOLERANCE * dt:
             state = self.advance(state, watch=watch)
-            newton += state.newton
+            state, newton = replace(state, records=state.records | frozen), newton + state.newton
             self._show_ramp(1.0 + state.time / self.ramp_time)
         begun: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
         return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
