@@ -62,7 +62,22 @@ def rows(found: ArealParameters, core: CoreParameters) -> list[str]:
         ("Sal", um * found.sal, "um", "autocorrelation length, 0.2 in the direction of its fastest decay"),
         ("Str", found.str, "", "texture aspect ratio: 0 a lay, 1 isotropic"),
     )
-    return [f"{name:3s} {value:10.4f} {unit:2s}  {text}" for name, value, unit, text in table]
+    return parameter_lines(
+        table, f"stays above {CORRELATION_THRESHOLD:g} up to half the map in some direction"
+    )
+
+
+def parameter_lines(table: tuple[tuple[str, float, str, str], ...], correlated: str) -> list[str]:
+    """Parameters with unit and meaning, a line each, with the reason for one that is not a number.
+
+    `correlated`: of messages, how an autocorrelation does that gives no length.
+    """
+    smooth = any(np.isnan(value) for name, value, *_ in table if name[1:] == "ku")
+    reason = "none: no height differs" if smooth else f"none: the autocorrelation {correlated}"
+    return [
+        f"{name:3s} {value:10.4f} {unit:2s}  {text}{f'; {reason}' if np.isnan(value) else ''}"
+        for name, value, unit, text in table
+    ]
 
 
 def draw(name: str, surface: Topography) -> Figure:
@@ -72,10 +87,14 @@ def draw(name: str, surface: Topography) -> Figure:
     style.set_title(
         figure,
         name,
-        f"Sa {1e6 * found.sa:.3g} µm, Sq {1e6 * found.sq:.3g} µm, Ssk {found.ssk:.2f}, "
-        f"Sdq {found.sdq:.3g}, Str {found.str:.2g}",
+        f"Sa {1e6 * found.sa:.3g} µm, Sq {1e6 * found.sq:.3g} µm, Sdq {found.sdq:.3g}"
+        + "".join(f", {name} {v:.2g}" for name, v in (("Ssk", found.ssk), ("Str", found.str)) if v == v),
     )
     _draw_heights(figure, heights, surface)
+    if surface.sq == 0.0:
+        for empty in (correlation, spectrum):
+            empty.set_axis_off()
+        return figure
     _draw_correlation(correlation, surface)
     draw_spectra(spectrum, spectra(surface))
     spectrum.legend(frameon=False, **style.SMALL)

@@ -134,7 +134,7 @@ def rows(parameters: ProfileParameters) -> list[str]:
         ("Rdq", parameters.rdq, "", "root mean square slope"),
         ("l", um * parameters.correlation_length, "um", "correlation length, autocorrelation 1/e"),
     )
-    return [f"{name:3s} {value:10.4f} {unit:2s}  {text}" for name, value, unit, text in table]
+    return areal_surface.parameter_lines(table, "stays above 1/e up to half the profile")
 
 
 def csv(spectra: dict[str, tuple[np.ndarray, np.ndarray]]) -> str:
@@ -162,7 +162,10 @@ def draw(
     )
     axes["profile"].plot(1e3 * profile.X, 1e6 * profile.z, color=style.SINGLE, lw=0.7)
     axes["profile"].set(xlabel="X [mm]", ylabel="height [µm]", xlim=1e3 * profile.X[[0, -1]])
-    areal_surface.draw_spectra(axes["spectrum"], {"": spectrum})
+    if parameters.rq > 0.0:
+        areal_surface.draw_spectra(axes["spectrum"], {"": spectrum})
+    else:
+        axes["spectrum"].set_axis_off()
     _draw_material_ratio(axes["material"], profile.z, parameters.core)
     return figure
 

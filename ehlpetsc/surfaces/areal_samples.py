@@ -89,7 +89,7 @@ def _processed(found: Map, spec: Values) -> Topography:
         z, note = without_short_waves(z, mean_surface(X, Y, z, spec.short_cutoff, "short_cutoff"), "Sa", spec)
         notes += (note,)
     z, dx, dy = turned(z, dx, dy, spec.direction or 0.0)
-    z, notes = centred(z, notes)
+    z, notes = centred(z, found.z, notes)
     if spec.flip:
         z = z[::-1, ::-1]  # turned by half a turn, not mirrored
     X, Y = dx * np.arange(z.shape[1]), dy * np.arange(z.shape[0])

@@ -10,7 +10,18 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # relative rounding of the abscissas of equally spaced points in a file
+ROUNDING = 1e-12  # of the largest height
 MIN_SPACINGS = 2  # of the shortest wave in a profile
+
+
+def deviations(z: np.ndarray, given: np.ndarray | None = None) -> np.ndarray:
+    """Heights minus their mean; all 0 where no more than rounding errors of the heights given are left.
+
+    `given`: heights before a form was subtracted; default: z.
+    """
+    largest = np.abs(z if given is None else given).max()
+    z = z - z.mean()
+    return z if np.ptp(z) > ROUNDING * largest else np.zeros_like(z)
 
 
 def levelled(x: np.ndarray, z: np.ndarray) -> np.ndarray:

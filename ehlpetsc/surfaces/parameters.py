@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.surfaces.filters import SPACING_TOLERANCE
+from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations
 
 SECTIONS = 5  # section lengths of a profile without a cut-off
 CORE_FRACTION = 0.4  # of the material ratio, over which the core has its smallest slope
@@ -52,7 +52,7 @@ class ProfileParameters(NamedTuple):
     @classmethod
     def of(cls, z: np.ndarray, dx: float, section: float | None = None) -> ProfileParameters:
         """Parameters of heights that are dx apart; `section`: section length [m], the cut-off."""
-        z = z - z.mean()
+        z = deviations(z)
         rq = float(np.sqrt(np.mean(z**2)))
         skewness, kurtosis = (float(np.mean((z / rq) ** k)) if rq > 0 else np.nan for k in (3, 4))
         return cls(
@@ -100,12 +100,20 @@ def core_parameters(z: np.ndarray) -> CoreParameters:
     mr1, below = float((heights > top).mean()), float((heights < bottom).mean())
     rpk = 2.0 * peaks.mean() / mr1 if mr1 else 0.0
     rvk = 2.0 * valleys.mean() / below if below else 0.0
-    return CoreParameters(float(rpk), float(-fall), float(rvk), mr1, 1.0 - below, float(top))
+    return CoreParameters(float(rpk), 0.0 - float(fall), float(rvk), mr1, 1.0 - below, float(top))
 
 
 def slopes(z: np.ndarray, dx: float) -> np.ndarray:
-    """Local slopes by the seven-point formula of ISO 21920-2, shape (n - 6,)."""
-    return np.correlate(z, SLOPE_WEIGHTS, "valid") / dx
+    """Local slopes along the last axis by the seven-point formula of ISO 21920-2, shape (..., n - 6).
+
+    Central differences of fewer than seven points, shape (..., n).
+    """
+    from scipy.ndimage import correlate1d
+
+    half = len(SLOPE_WEIGHTS) // 2
+    if z.shape[-1] <= 2 * half:
+        return np.gradient(z, dx, axis=-1)
+    return correlate1d(z, SLOPE_WEIGHTS)[..., half:-half] / dx
 
 
 def correlation_length(z: np.ndarray, dx: float) -> float:
@@ -176,7 +184,7 @@ class ArealParameters(NamedTuple):
     @classmethod
     def of(cls, z: np.ndarray, dx: float, dy: float) -> ArealParameters:
         """Parameters of a map, shape (ny, nx), with spacings [m]."""
-        z = z - z.mean()
+        z = deviations(z)
         sq = float(np.sqrt(np.mean(z**2)))
         skewness, kurtosis = (float(np.mean((z / sq) ** k)) if sq > 0 else np.nan for k in (3, 4))
         fastest, slowest = correlation_lengths(z, dx, dy) if sq > 0 else (np.nan, np.nan)
@@ -185,9 +193,8 @@ class ArealParameters(NamedTuple):
 
 
 def rms_gradient(z: np.ndarray, dx: float, dy: float) -> float:
-    """Sdq: root mean square of the gradient, by central differences."""
-    along_y, along_x = np.gradient(z, dy, dx)
-    return float(np.sqrt(np.mean(along_x**2 + along_y**2)))
+    """Sdq: root mean square of the gradient, by the formula of :func:`slopes` along rows and columns."""
+    return float(np.sqrt(np.mean(slopes(z, dx) ** 2) + np.mean(slopes(z.T, dy) ** 2)))
 
 
 def autocorrelation(z: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.surfaces import synthetic
-from ehlpetsc.surfaces.filters import levelled, mean_line, without_form
+from ehlpetsc.surfaces.filters import deviations, levelled, mean_line, without_form
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
 
 if TYPE_CHECKING:
@@ -70,6 +70,7 @@ def samples(folder: Path, spec: Values) -> Samples:
         X, z, notes = checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
         X, z, notes = read_profile(folder / spec.file, layout_of(spec))
+    given = z
     if spec.form is not None:
         z = without_form([X], z, spec.form)
     elif spec.level:
@@ -79,7 +80,7 @@ def samples(folder: Path, spec: Values) -> Samples:
     if spec.short_cutoff is not None:
         z, note = without_short_waves(z, mean_line(X, z, spec.short_cutoff, "short_cutoff"), "Ra", spec)
         notes += (note,)
-    z, notes = centred(z, notes)
+    z, notes = centred(z, given, notes)
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
     return Samples(X, z if spec.scale == 1.0 else spec.scale * z, True, True, notes)
@@ -97,9 +98,14 @@ def without_short_waves(z: np.ndarray, mean: np.ndarray, name: str, spec: Values
     return mean, f"short_cutoff: {name} {next(shown)} before, {next(shown)} after"
 
 
-def centred(z: np.ndarray, notes: tuple[str, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Heights minus their mean, which would enter as a step and change the film, and notes with one on it."""
+def centred(z: np.ndarray, given: np.ndarray, notes: tuple[str, ...]) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Heights minus their mean, which would enter as a step and change the film, and notes with one on it.
+
+    `given`: heights before a form was subtracted [m].
+    """
     mean = float(z.mean())
+    if not deviations(z, given).any():
+        return np.zeros_like(z), (*notes, "all heights are equal, or on the form subtracted: smooth")
     if abs(mean) <= MEAN_TOLERANCE * (z - mean).std():
         return z, notes
     return z - mean, (*notes, f"mean height of {1e6 * mean:.4g} um subtracted")

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from ehlpetsc.pictures.surface import main
-from ehlpetsc.surfaces.parameters import ArealParameters, autocorrelation, correlation_lengths
+from ehlpetsc.surfaces.parameters import (
+    ArealParameters,
+    ProfileParameters,
+    autocorrelation,
+    correlation_lengths,
+)
 
 AMPLITUDE, WAVE = 1e-7, 40e-6
 STEP = WAVE / 32
@@ -26,6 +31,20 @@ def test_heights_of_a_product_of_cosines():
 def test_gradient_of_a_product_of_cosines():
     found = ArealParameters.of(waves(2 * WAVE), STEP, STEP)
     assert found.sdq == pytest.approx(AMPLITUDE * np.pi / WAVE * np.hypot(1.0, 0.5), rel=6e-3)
+
+
+@pytest.mark.parametrize("points", [8, 6])
+def test_gradient_of_few_points_a_wave(points):
+    x = WAVE / points * np.arange(30 * points)
+    z = np.broadcast_to(AMPLITUDE * np.sin(2 * np.pi * x / WAVE), (24, len(x)))
+    exact = np.sqrt(2) * np.pi * AMPLITUDE / WAVE
+    assert ArealParameters.of(z, x[1], STEP).sdq == pytest.approx(exact, rel=1e-2)
+    assert ArealParameters.of(z.T, STEP, x[1]).sdq == pytest.approx(exact, rel=1e-2)
+
+
+def test_gradient_of_fewer_rows_than_the_formula_has():
+    z = 1e-3 * X[:40] + 2e-3 * STEP * np.arange(4)[:, np.newaxis]
+    assert ArealParameters.of(z, STEP, STEP).sdq == pytest.approx(np.hypot(1e-3, 2e-3), rel=1e-9)
 
 
 def test_texture_of_a_product_of_cosines():
@@ -62,6 +81,46 @@ def test_a_plane_has_no_shape():
     found = ArealParameters.of(np.zeros((8, 8)), STEP, STEP)
     assert (found.sa, found.sq, found.sdq) == (0.0, 0.0, 0.0)
     assert np.isnan([found.ssk, found.sku, found.sal, found.str]).all()
+
+
+@pytest.mark.parametrize("height", [1.234567e-7, 3.3e-3, -7.7])
+def test_rounding_errors_of_equal_heights_have_no_shape(height):
+    of_map = ArealParameters.of(np.full((40, 50), height), STEP, STEP)
+    of_profile = ProfileParameters.of(np.full(60, height), STEP)
+    assert of_map.sq == of_profile.rq == 0.0
+    assert np.isnan([of_map.ssk, of_map.sku, of_map.sal, of_map.str, of_profile.rsk, of_profile.rku]).all()
+
+
+SMOOTH = {
+    "equal": (np.full((40, 60), 1.234567e-7), []),
+    "plane": (1e-7 + 1e-3 * X[:60] + 2e-9 * np.arange(40)[:, np.newaxis], ["--no-picture"]),
+    "paraboloid": (
+        1e-7 + 30 * X[:60] ** 2 + 4e-9 * np.arange(40)[:, np.newaxis] ** 2,
+        ["--set", "form=2", "--no-picture"],
+    ),
+}
+
+
+@pytest.mark.parametrize(("z", "words"), SMOOTH.values(), ids=SMOOTH)
+@pytest.mark.filterwarnings("error")
+def test_the_command_gives_the_reason_for_parameters_of_a_smooth_map(tmp_path, capsys, z, words):
+    np.save(tmp_path / "map.npy", z)
+    assert main([str(tmp_path / "map.npy"), "--set", f"spacing={STEP!r}", *words]) == 0
+    _, note, *shown = capsys.readouterr().out.splitlines()[:12]
+    assert note == "all heights are equal, or on the form subtracted: smooth"
+    values = {line.split()[0]: line.split()[1] for line in shown}
+    assert [name for name, value in values.items() if value == "nan"] == ["Ssk", "Sku", "Sal", "Str"]
+    assert all(("; none: no height differs" in line) == ("nan" in line) for line in shown)
+    assert values["Sk"] == values["Sq"] == "0.0000"
+
+
+def test_the_command_gives_the_reason_for_a_missing_aspect_ratio(tmp_path, capsys):
+    np.save(tmp_path / "map.npy", np.broadcast_to(np.cos(2 * np.pi * X / WAVE), (64, len(X))))
+    assert main([str(tmp_path / "map.npy"), "--set", f"spacing={STEP!r}", "--no-picture"]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert last.startswith("Str        nan ") and last.endswith(
+        "; none: the autocorrelation stays above 0.2 up to half the map in some direction"
+    )
 
 
 def test_a_map_shorter_than_its_texture_has_no_correlation_length():
