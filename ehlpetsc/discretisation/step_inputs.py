@@ -164,6 +164,11 @@ class StepInputs:
         """Table `[fluid]` of the case; None: dry."""
         return self.oil.fluid if self.oil else None
 
+    @property
+    def rests(self) -> bool:
+        """Whether the oil is at rest, at ambient pressure: steady, without entrainment."""
+        return self.oil is not None and self.history is None and self.conditions.entrainment == 0.0
+
     @cached_property
     def flow(self) -> FlowLaw:
         """Shear law of the oil."""

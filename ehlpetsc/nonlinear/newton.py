@@ -26,6 +26,8 @@ LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton itera
 START_FACTOR = 7  # iteration limit of a steady start over that of a time step
 MAX_ROUNDING_FACTOR = 10.0  # limit of the factor by which rounding may raise Newton's absolute tolerance
 CLEAR_OF_BOUND = 0.02  # of the expected film: minimum film of a guess that is solved without the bound
+MAX_SHORTENED_STEPS = 20  # of a solve
+OVERFLOW = PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
 REJECTED_STEP = (
     PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
     PETSc.SNES.ConvergedReason.DIVERGED_LINE_SEARCH,
@@ -55,6 +57,8 @@ class NewtonSolver:
         self._petsc_objects = owned(self)
         self._watch: Watch = None
         self._needs_renewal = False
+        self._before: np.ndarray | None = None
+        self._share = 1.0
         self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
         # other line searches may end at another point than the last trial point
         self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
@@ -131,7 +135,11 @@ class NewtonSolver:
     def _before_step(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         if self._watch:
             self._watch()
+        self._before = x.array_r.copy()
         self.system.limit_step(x, y)
+        if self._share < 1.0:
+            y.scale(self._share)
+            self._share = 1.0
         if self._unconstrained:
             self._reaches_bound = self.system.reaches_bound(x, y)
         return True
@@ -192,14 +200,31 @@ class NewtonSolver:
     def _solve(
         self, snes: PETSc.SNES, guess: Unknowns, inputs: StepInputs, max_it: int | None
     ) -> tuple[Unknowns, int]:
-        if self._needs_renewal:
-            snes = self._renew(snes)
+        """Solution and iterations; a step to a residual that is not finite is repeated at half its length."""
         self.system.set_initial_guess(guess, inputs)
-        self._unconstrained, self._reaches_bound = snes is self._unconstrained_snes, False
+        limit, unconstrained = max_it or self._max_it, snes is self._unconstrained_snes
+        spent, share = 0, 1.0
+        for _ in range(MAX_SHORTENED_STEPS):
+            if self._needs_renewal:
+                self._renew()
+            snes = self._unconstrained_snes if unconstrained else self.snes
+            self._unconstrained, self._share, self._before = unconstrained, share, None
+            self._run(snes, limit - spent)
+            taken = snes.getIterationNumber()
+            spent += taken + 1
+            if snes.getConvergedReason() != OVERFLOW or self._before is None or spent >= limit:
+                break
+            share, self._needs_renewal = 0.5 * share if taken == 0 else 0.5, True
+            self.system.continue_from(self._before)
+        return self._solution(snes, spent - 1)
+
+    def _run(self, snes: PETSc.SNES, max_it: int) -> None:
+        """Run SNES from the unknowns of the system."""
+        self._reaches_bound = False
         self._is_first = self._needs_renewal = self._is_solving = True
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                self._set_tolerances(snes, max_it or self._max_it)
+                self._set_tolerances(snes, max_it)
                 snes.solve(None, self.system.x)
             snes.setTolerances(max_it=self._max_it, atol=self._atol)  # for -snes_view
         except PETSc.Error as error:
@@ -214,7 +239,7 @@ class NewtonSolver:
             raise
         finally:
             self._is_solving = False
-        return self._solution(snes)
+        self.linear_iterations += snes.getLinearSolveIterations()
 
     def _set_tolerances(self, snes: PETSc.SNES, max_it: int) -> None:
         system = self.system
@@ -228,9 +253,8 @@ class NewtonSolver:
             system.f.array[:] = system.evaluation(system.x).residual
             self.tolerance = max(self.tolerance, factor * system.f.norm())
 
-    def _solution(self, snes: PETSc.SNES) -> tuple[Unknowns, int]:
-        reason, iterations = snes.getConvergedReason(), snes.getIterationNumber()
-        self.linear_iterations += snes.getLinearSolveIterations()
+    def _solution(self, snes: PETSc.SNES, iterations: int) -> tuple[Unknowns, int]:
+        reason = snes.getConvergedReason()
         # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
         self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
         if reason <= 0:
@@ -244,13 +268,11 @@ class NewtonSolver:
             raise SolveFailed("SNES", "FILM_BELOW_ITS_BOUND", iterations)
         return solution, iterations
 
-    def _renew(self, snes: PETSc.SNES) -> PETSc.SNES:
-        """Create PETSc's objects anew after a failed solve; return the successor of `snes`."""
-        unconstrained = snes is self._unconstrained_snes
+    def _renew(self) -> None:
+        """Create PETSc's objects anew after a failed solve."""
         while self._petsc_objects:
             self._petsc_objects.pop().destroy()
         self._create()
-        return self._unconstrained_snes if unconstrained else self.snes
 
 
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}

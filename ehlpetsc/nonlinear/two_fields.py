@@ -190,11 +190,16 @@ class TwoFields:
 
     def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
         """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve."""
-        self.inputs, self.x_evaluated, self.rows = inputs.begin(), None, None
+        self._given, self.inputs, self.x_evaluated, self.rows = inputs, inputs.begin(), None, None
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
         if self.problem.load_is_local:
             self.x.array[-1] = guess.h00
+
+    def continue_from(self, local: np.ndarray) -> None:
+        """Set the unknowns of this rank, and the inputs as at the begin of the solve."""
+        self.x.array[:] = local
+        self.inputs, self.x_evaluated = self._given.begin(), None
 
     def solution(self) -> Unknowns:
         """The whole solution on every rank."""
@@ -256,6 +261,8 @@ class TwoFields:
             y.scale(STEP_LIMIT / change)
         step = pairs(y.array, self.local)
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
+        if self.inputs.rests:  # any void would be a solution: no flow fills it
+            step[:, 0] = np.minimum(step[:, 0], now[:, 0])
 
     def reaches_bound(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         """Whether the step y brings a film of this rank to its bound."""

@@ -48,7 +48,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
     grid, load = problem.grid, load_of(problem, inputs)
     width_2 = (load * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
     p = np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0))
-    oil_carries = problem.fluid is not None and inputs.conditions.entrainment != 0.0
+    oil_carries = problem.fluid is not None and not inputs.rests
     if oil_carries:
         p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
     p *= grid.load * load / (grid.cell * p.sum())
@@ -57,8 +57,6 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
         lowest = 0.0 if problem.fluid is None else problem.model.minimum_film
         gap = lowest + np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
         q, w = problem.model.dry_start(p, gap)
-        if problem.fluid is not None:
-            q = np.maximum(q, AMBIENT)
         return Unknowns(q, w, lowest - h[np.argmax(p)])
     h00 = problem.model.start_film(thick * film) - h.min()
     h += h00
@@ -129,17 +127,18 @@ def project(p: np.ndarray, limit: float, total: float) -> np.ndarray:
 
 
 def bounded_start(problem: EHLProblem, film: float, inputs: StepInputs, smoothing: float) -> Unknowns:
-    """Unknowns of the dry contact; with oil, the oil carries the load on an even film in a^2/R.
+    """Unknowns of the dry contact; with entrained oil, the oil carries the load on an even film in a^2/R.
 
     `smoothing` is the width of the smoothing of the oil pressure in lengths of the inlet sweep, film^(2/3).
     """
     model, limit = problem.model, problem.model.yield_pressure
     p, gap = bounded_pressure(problem, inputs)
-    lowest = model.minimum_film if problem.fluid is None else max(film, model.minimum_film)
+    oil_carries = problem.fluid is not None and not inputs.rests
+    lowest = max(film, model.minimum_film) if oil_carries else model.minimum_film
     elastic = (p > 0.0) & (p < limit)
     h00 = lowest - gap[elastic if elastic.any() else p > 0.0].max()
     depth = np.where(p < limit, 0.0, np.maximum(lowest - gap - h00, 0.0))
-    if problem.fluid is None:
+    if not oil_carries:
         carried = p + depth / model.compliance
         return Unknowns(*model.dry_start(carried, gap + h00 + depth), h00)
     rows = problem.grid.rows

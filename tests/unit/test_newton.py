@@ -9,11 +9,12 @@ from support.running import PYTHON, called
 
 import ehlpetsc
 from ehlpetsc.base.errors import UsageError
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
-TOUCHING = {"mesh.inlet": -1.2, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
-TOUCHING |= {"time.travel": 1.0, "time.courant": 1.0, "fluid.viscosity": 0.001}
+TOUCHING_MESH = {"mesh.inlet": -1.2, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
+TOUCHING = TOUCHING_MESH | {"time.travel": 1.0, "time.courant": 1.0, "fluid.viscosity": 0.001}
 
 
 class Interruption(Exception):
@@ -81,6 +82,29 @@ def test_nan_in_a_linear_solve_halves_the_step(monkeypatch):
     monkeypatch.setattr(JacobianOperator, "linearise", faulty)
     state = simulation.advance()
     assert state.retries == 1 and np.isfinite(state.pressure).all()
+
+
+@pytest.mark.parametrize("model", ["direct", "mixed"])
+def test_overflow_is_met_by_a_shorter_step(monkeypatch, model):
+    """The first step, and one after it, have no finite residual until they are shorter."""
+    case = ehlpetsc.load(CASES / "table1_smooth.toml", {"contact.model": model} | TOUCHING_MESH)
+    expected = ehlpetsc.Simulation(case).advance()
+    evaluate, begin, changes, failed = EHLProblem.evaluate, [], [], []
+
+    def faulty(problem, unknowns, inputs, sums=None):
+        evaluation = evaluate(problem, unknowns, inputs, sums)
+        begin.append(unknowns.q.copy())
+        change = np.abs(unknowns.q - begin[0]).max()
+        changes.extend([change] if change > 0.0 else [])
+        if change > 0.0 and len(failed) < 5 and change > 0.3 * changes[0]:
+            failed.append(change)
+            evaluation.residual[5] = np.nan
+        return evaluation
+
+    monkeypatch.setattr(EHLProblem, "evaluate", faulty)
+    state = ehlpetsc.Simulation(case).advance()
+    assert len(failed) == 5 and failed[1] < 0.6 * failed[0]
+    np.testing.assert_allclose(state.pressure, expected.pressure, rtol=0, atol=1e-6 * expected.p_max)
 
 
 FAULTY = """
