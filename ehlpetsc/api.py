@@ -89,6 +89,7 @@ def solve(
     progress: bool | None = None,
     laws: Mapping[str, Law] | None = None,
     density_laws: Mapping[str, Law] | None = None,
+    shear_laws: Mapping[str, Law] | None = None,
     effects: Iterable[type[Effect]] = (),
 ) -> Result:
     """Solve a case.
@@ -112,7 +113,7 @@ def solve(
         replaced, and an unfinished run of it is continued from its restart file.
     progress
         Whether to show progress; by default on a terminal and in a notebook.
-    laws, density_laws, effects
+    laws, density_laws, shear_laws, effects
         As of `ehlpetsc.load`.
 
     Raises
@@ -142,7 +143,7 @@ def solve(
     from ehlpetsc.run.solve import solve as write_states
     from ehlpetsc.run.stop import StopRequest
 
-    extend(laws, density_laws, effects)
+    extend(laws, density_laws, effects, shear_laws)
     simulation = Simulation(case, comm, options)
     time = simulation.case.time
     if time is not None and time.passes > 1:

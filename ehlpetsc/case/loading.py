@@ -39,6 +39,7 @@ def load(
     *,
     laws: Mapping[str, Law] | None = None,
     density_laws: Mapping[str, Law] | None = None,
+    shear_laws: Mapping[str, Law] | None = None,
     effects: Iterable[type[Effect]] = (),
 ) -> Case:
     """Read and check a case; raises `CaseError` with all faults, one message each.
@@ -51,9 +52,9 @@ def load(
     overrides
         ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
         syntax, otherwise text.
-    laws, density_laws, effects
-        Viscosity and density laws by name, and effects, of your own. With their keys and quantities they are
-        known to the process from then on; names of built-in ones are refused.
+    laws, density_laws, shear_laws, effects
+        Viscosity, density and shear laws by name, and effects, of your own. With their keys and quantities
+        they are known to the process from then on; names of built-in ones are refused.
 
     Examples
     --------
@@ -62,7 +63,7 @@ def load(
     >>> case.fluid.viscosity, case.contact.radius  # Pa s, m
     (0.003, 0.0191)
     """
-    extend(laws, density_laws, effects)
+    extend(laws, density_laws, effects, shear_laws)
     if not isinstance(case, dict | str | PathLike):  # a number would be a file descriptor
         raise CaseError([f"{case!r}: not a case; allowed: the path of a case file, or a dict of its tables"])
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))

@@ -41,7 +41,7 @@ class Law:
         law, (x,) of a shear law, see :func:`ehlpetsc.physics.rheology.flow_stress`.
     constants
         Of the function, from the tables `[fluid]` and `[heat]` of a case (None: isothermal); the first one
-        of a viscosity law is a factor of the logarithm.
+        of a viscosity law is a factor of the logarithm, that of a shear law of the stress.
     keys
         Of `[fluid]` that belong to this law.
     complete

@@ -1,8 +1,8 @@
 r"""Shear laws of the oil: stress by rate, mobility of the pressure flow.
 
 A law is an entry of `SHEAR_LAWS`: a function of :math:`x=\ln(\eta\dot\gamma/\tau_s)` and of its constants,
-the first of which is its stress :math:`\tau_s`. The pressure flow of Newton's and of Eyring's law has a
-closed form; that of any other is a table, see :mod:`ehlpetsc.physics.tabulated_flow`.
+the first of which is its stress :math:`\tau_s`, a factor of the result. The pressure flow of Newton's and of
+Eyring's law has a closed form; that of any other is a table, see :mod:`ehlpetsc.physics.tabulated_flow`.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.base.compiled import address_of, call_at, compiled, inlined
 from ehlpetsc.base.declarations import Key, Refused
-from ehlpetsc.physics.law import Derivatives, FluidValues, Law, switched
+from ehlpetsc.physics.law import Derivatives, FluidValues, Law, n_constants, switched
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables.contact import Fluid
@@ -36,11 +36,11 @@ class FlowLaw(NamedTuple):
     Attributes
     ----------
     kind
-        One of the above.
+        One of the above, or the address of a user's law.
     stress
         :math:`\tau_0` or G [Pa]; 1 Pa for `NEWTON`.
     n, a
-        Of `CARREAU`.
+        Of `CARREAU`; second and third constant of a user's law.
     """
 
     kind: int
@@ -123,6 +123,8 @@ SHEAR_LAWS = {  # a law is that of the case whose first key, its stress, is give
         _complete_carreau,
     ),
 }
+BUILT_IN = tuple(SHEAR_LAWS.values())
+N_BUILT_IN = len(BUILT_IN)  # positions; larger numbers are addresses
 _shear_stress = switched(SHEAR_LAWS, 1)
 
 
@@ -169,7 +171,11 @@ def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, fl
     -------
     stress, by_x, by_limit
     """
-    tau, by_x = _shear_stress(flow.kind, (x,), (flow.stress, flow.n, flow.a))
+    constants = (flow.stress, flow.n, flow.a)
+    if flow.kind >= N_BUILT_IN:
+        tau, by_x, _ = call_at(flow.kind, x, 0.0, constants)
+    else:
+        tau, by_x = _shear_stress(flow.kind, (x,), constants)
     if limit == np.inf:
         return tau, by_x, 0.0 * by_x
     value, by_tau, by_limit = limited_shear(tau, limit)
@@ -178,9 +184,11 @@ def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, fl
 
 def flow_law(fluid: Fluid) -> FlowLaw:
     """Shear law of a case with its constants."""
-    name = shear_law(fluid)
-    constants = map(float, SHEAR_LAWS[name].constants(fluid, None))
-    return FlowLaw(list(SHEAR_LAWS).index(name), *constants)
+    law = SHEAR_LAWS[shear_law(fluid)]
+    constants = map(float, law.constants(fluid, None))
+    built_in = law in BUILT_IN
+    kind = BUILT_IN.index(law) if built_in else address_of(law.function, n_constants(law.function, 1), 1)
+    return FlowLaw(kind, *constants)
 
 
 def stress_pressure(fluid: Fluid) -> float:

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined, unsigned
-from ehlpetsc.physics.rheology import CARREAU, SERIES_LIMIT
+from ehlpetsc.physics.rheology import CARREAU, EYRING, SERIES_LIMIT, FlowLaw, flow_stress
 
 MIN_RATE = 1e-30  # shear rate and stress difference of a film at rest, over those of its law
 NO_FLOW = 0.0, 0.0, 0.0, 0.0
@@ -24,19 +24,25 @@ _Z += 0.5  # on either side of the lowest stress, squared: dense there
 
 
 @inlined
-def rate_of_stress(t: float, n: float, a: float) -> tuple[float, float]:
-    """Shear rate times viscosity of Carreau's law by the stress, both over the law's, and its derivative."""
+def rate_of_stress(t: float, law: FlowLaw) -> tuple[float, float]:
+    """Shear rate times viscosity by the stress, both over that of the law, and its derivative."""
     size = abs(t)
     if size < 1e-8:
         return t, 1.0
+    n, a = law.n, law.a
     ln_t, power = np.log(size), (n - 1.0) / a
-    x = ln_t if size < 1.0 else ln_t / n
+    x = ln_t if size < 1.0 or law.kind != CARREAU else ln_t / n
     slope = 1.0
     for _ in range(50):
-        e = np.exp(-a * abs(x))
-        thinned = e / (1.0 + e) if x < 0.0 else 1.0 / (1.0 + e)
-        slope = 1.0 + (n - 1.0) * thinned
-        change = (ln_t - x - power * (max(a * x, 0.0) + np.log(1.0 + e))) / slope
+        if law.kind == CARREAU:
+            e = np.exp(-a * abs(x))
+            thinned = e / (1.0 + e) if x < 0.0 else 1.0 / (1.0 + e)
+            slope = 1.0 + (n - 1.0) * thinned
+            change = (ln_t - x - power * (max(a * x, 0.0) + np.log(1.0 + e))) / slope
+        else:
+            tau, by_x, _ = flow_stress(x, law, np.inf)
+            slope = by_x / tau
+            change = (ln_t - np.log(tau)) / slope
         x += change
         if abs(change) < 1e-10:
             break
@@ -45,19 +51,21 @@ def rate_of_stress(t: float, n: float, a: float) -> tuple[float, float]:
 
 
 @compiled
-def flow_across(gamma: float, drop: float, n: float, a: float) -> tuple[float, float]:
-    r"""Mobility and mean stress of a film of Carreau's law, isothermal across it, by Gauss points.
+def flow_across(gamma: float, drop: float, law: FlowLaw) -> tuple[float, float]:
+    r"""Mobility and mean stress of a film, isothermal across it, by Gauss points.
 
     :math:`\Phi=12\eta M/h^3=(12/s)\int z\,\dot\gamma(t+zs)\,dz` and t by :math:`\int\dot\gamma\,dz=\Gamma`.
 
     Parameters
     ----------
     gamma, drop
-        :math:`\Gamma=\eta|u_1-u_2|/(hG)` and :math:`s=hp_x/G`, not negative.
+        :math:`\Gamma=\eta|u_1-u_2|/(h\tau_s)` and :math:`s=hp_x/\tau_s`, not negative.
+    law
+        With a stress :math:`\tau_s` of 1.
     """
     steep = max(drop, SHALLOW)
     low, high = 0.0, gamma + 1e-300  # the mean stress is below the viscous one, and its rate convex
-    t = min(gamma, gamma**n)
+    t = min(gamma, gamma**law.n) if law.kind == CARREAU else flow_stress(np.log(high), law, np.inf)[0]
     moment = 0.0
     for _ in range(200):
         mean, slope, moment = 0.0, 0.0, 0.0
@@ -65,7 +73,7 @@ def flow_across(gamma: float, drop: float, n: float, a: float) -> tuple[float, f
         for length in (0.5 - lowest, -0.5 - lowest):
             for k in range(len(_Z)):
                 z, weight = lowest + length * _Z[k] * _Z[k], 2.0 * abs(length) * _Z[k] * _WEIGHTS[k]
-                rate, by_t = rate_of_stress(t + z * steep, n, a)
+                rate, by_t = rate_of_stress(t + z * steep, law)
                 mean += weight * rate
                 slope += weight * by_t
                 moment += weight * z * rate
@@ -80,11 +88,14 @@ def flow_across(gamma: float, drop: float, n: float, a: float) -> tuple[float, f
 
 
 @compiled
-def _fill_table(n: float, a: float, x: np.ndarray, ln_drop: np.ndarray, out: np.ndarray) -> None:
+def _fill_table(law: FlowLaw, x: np.ndarray, ln_drop: np.ndarray, out: np.ndarray) -> None:
     for i in range(len(x)):
         for j in range(len(ln_drop)):
-            phi, t = flow_across(np.exp(x[i]), np.exp(ln_drop[j]), n, a)
-            out[0, i, j], out[1, i, j] = phi, np.log(t) - x[i]
+            phi, t = flow_across(np.exp(x[i]), np.exp(ln_drop[j]), law)
+            if law.kind == CARREAU:
+                out[0, i, j], out[1, i, j] = phi, np.log(t) - x[i]
+            else:
+                out[0, i, j], out[1, i, j] = np.log(phi), x[i] - np.log(rate_of_stress(t, law)[0])
 
 
 @cache
@@ -95,28 +106,51 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
     small Gamma and s; beyond large ones, where the law is a power, the logarithms of both at (x, ln s) are
     those at (x - e, ln s - n e) with :math:`\pm(1-n)e`. Cubic between the points, to 1e-4; a = 1: 8e-4.
 
+    Of a user's law the quantities are :math:`\ln\Phi` and :func:`stress_spread`, which is equal at both
+    places; n is the power at the end of the table.
+
     Returns
     -------
     ndarray, shape (2 * intervals of x + 1, intervals of ln s, 16)
         Coefficients of :math:`u^av^b` at 4 b + a in an interval, u and v from 0 to 1, of the first and then
         of the second quantity. The last row begins with n, the first x and ln s, one over both steps, the
-        last x and ln s, a, and Gamma and s below which the film is Newtonian.
+        last x and ln s, a (0: of a user's law), and Gamma and s below which the film is Newtonian.
     """
-    if kind != CARREAU:
+    if kind <= EYRING:
         return np.zeros((0, 0, 16))
     from scipy.interpolate import CubicSpline
 
-    last, bend = RANGE / min(a, 2.0), max(a, 2.0) / 2.0
+    law, sharpness = FlowLaw(kind, 1.0, n, a), a if kind == CARREAU else 1.0
+    bend = max(sharpness, 2.0) / 2.0
     step_x, step = STEPS[0] / bend, STEPS[1] / bend
-    x, ln_drop = np.arange(-last, last, step_x), np.arange(-last, n * last + 1.0, step)
+    if kind == CARREAU:
+        last = RANGE / min(a, 2.0)
+        x, ln_drop = np.arange(-last, last, step_x), np.arange(-last, n * last + 1.0, step)
+    else:
+        x = np.arange(
+            -RANGE, 2.0 * RANGE, step_x
+        )  # so far that a law that grows as Eyring's is nearly a power
+        tau, by_x, _ = flow_stress(x[-1], law, np.inf)
+        ln_drop = np.arange(-0.5 * RANGE, min(np.log(tau), 0.5 * RANGE) + 1.0, step)
+        n, a = by_x / tau, 0.0
     values = np.empty((2, len(x), len(ln_drop)))
-    _fill_table(n, a, x, ln_drop, values)
+    _fill_table(law, x, ln_drop, values)
     u, v = (np.arange(len(points), dtype=float) for points in (x, ln_drop))
     table = np.zeros((2 * len(x) - 1, len(ln_drop) - 1, 16))
     for quantity, rows in enumerate(np.split(table[:-1], 2)):
         coefficients = CubicSpline(v, CubicSpline(u, values[quantity]).c, axis=2).c  # falling powers of v, u
         rows[:] = coefficients[::-1, :, ::-1].transpose(3, 1, 0, 2).reshape(rows.shape)
-    constants = n, x[0], ln_drop[0], 1.0 / step_x, 1.0 / step, x[-1], ln_drop[-1], a, NEWTONIAN ** (1.0 / a)
+    constants = (
+        n,
+        x[0],
+        ln_drop[0],
+        1.0 / step_x,
+        1.0 / step,
+        x[-1],
+        ln_drop[-1],
+        a,
+        NEWTONIAN ** (1.0 / sharpness),
+    )
     table[-1, 0, : len(constants)] = constants
     return table
 
@@ -171,7 +205,8 @@ def tabulated_mobilities(
     cubic_l = _cubic_in_x(at_l[0], at_l[1], at_l[3], table)
     cubic_r = _cubic_in_x(at_r[0], at_r[1], at_r[3], table)
     over_gradient = 1.0 / gradient if gradient != 0.0 else 0.0
-    face = over_h, over_gradient, cube, table[last, 0, 0], table[last, 0, 3], table[last, 0, 4]
+    steps = table[last, 0, 3], table[last, 0, 4]
+    face = over_h, over_gradient, cube, table[last, 0, 0], *steps, table[last, 0, 7] == 0.0
     return (
         _tabulated_mobility(fluidity_l, at_l, cubic_l, face),
         _tabulated_mobility(fluidity_r, at_r, cubic_r, face),
@@ -183,13 +218,16 @@ def _tabulated_mobility(
     fluidity: float, at: tuple, cubic: tuple, face: tuple
 ) -> tuple[float, float, float, float]:
     """One of :func:`.rheology.mobilities`."""
-    over_h, over_gradient, cube, n, per_x, per_v = face
+    over_h, over_gradient, cube, n, per_x, per_v, is_logarithm = face
     u, beyond, (p, d) = at[2], at[4], cubic
     unit = cube * fluidity
     if beyond > 0.0:
         unit *= np.exp((1.0 - n) * beyond)
-    mobility, by_drop = unit * _cubic(u, p), unit * per_v * _cubic(u, d)
-    by_x = unit * per_x * (p[1] + u * (2.0 * p[2] + 3.0 * u * p[3]))
+    value, by_u, by_v = _cubic(u, p), p[1] + u * (2.0 * p[2] + 3.0 * u * p[3]), _cubic(u, d)
+    if is_logarithm:
+        value = np.exp(value)
+        by_u, by_v = value * by_u, value * by_v
+    mobility, by_drop, by_x = unit * value, unit * per_v * by_v, unit * per_x * by_u
     return mobility, over_h * (3.0 * mobility - by_x + by_drop), by_drop * over_gradient, by_x - mobility
 
 
@@ -209,8 +247,10 @@ def stress_spread(sigma: float, x: float, table: np.ndarray) -> float:
         i, j, u, v, beyond = _place(x, np.log(max(2.0 * sigma, MIN_RATE)), table)
         p, _ = _cubic_in_x(unsigned(table.shape[0] // 2) + i, j, v, table)
         n, a = table[-1, 0, 0], table[-1, 0, 7]
+        if a == 0.0:
+            return _cubic(u, p)
         lower = _cubic(u, p) - (1.0 - n) * beyond
-        return x - np.log(rate_of_stress(np.exp(x + lower), n, a)[0])
+        return x - np.log(rate_of_stress(np.exp(x + lower), FlowLaw(CARREAU, 1.0, n, a))[0])
     if sigma < SERIES_LIMIT:
         square = sigma * sigma
         return square * (1 / 6 - square * (1 / 180 - square / 2835))

@@ -23,7 +23,7 @@ PAGE = CASES / "own_laws.md"
 def folder(tmp_path):
     """Folder with the code of the page and its case."""
     codes = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    for name, text in zip(("my_oil", "my_density", "my_supply", "script"), codes, strict=True):
+    for name, text in zip(("my_oil", "my_density", "my_shear", "my_supply", "script"), codes, strict=True):
         (tmp_path / f"{name}.py").write_text(text)
     shutil.copy(CASES / "table1_smooth.toml", tmp_path)
     return tmp_path
@@ -82,9 +82,43 @@ def test_density_law_of_the_page(folder):
     assert other > 0.05
 
 
+SHEARED = """
+import ehlpetsc, my_shear, numpy
+keys = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0, "fluid.eyring_stress": None}
+keys |= {"motion.slide_roll_ratio": 0.5}
+newton = ehlpetsc.solve(ehlpetsc.load("table1_smooth.toml", keys))
+films = []
+for stress in (1e12, 5e6):
+    own = {"fluid.cross_stress": stress, "fluid.cross_exponent": 0.9}
+    case = ehlpetsc.load("table1_smooth.toml", keys | own, shear_laws=my_shear.SHEAR_LAWS)
+    result = ehlpetsc.solve(case)
+    films.append(abs(result.film_thickness / newton.film_thickness - 1.0).max())
+k = numpy.argmin(abs(result.x))
+p, h = result.pressure[0, k], result.film_thickness[0, k]
+eta = case.fluid.viscosity * numpy.exp(ehlpetsc.physics.laws.viscosity(p, case.fluid)[0])
+rate = eta * 0.5 * case.motion.entrainment_speed / h
+mean = 0.5 * (result.shear_stress_1 - result.shear_stress_2)[0, k]
+print(*films, abs(mean) / (rate / (1.0 + (rate / 5e6) ** 0.9)))
+try:
+    ehlpetsc.load("table1_smooth.toml", {"fluid.cross_stress": 5e6})
+except ehlpetsc.CaseError as error:
+    print(error)
+"""
+
+
+def test_shear_law_of_the_page(folder):
+    """Newtonian films under a high stress; else the stress of the law in the middle, and thinner films."""
+    found, fault, *_ = call(folder, "-c", SHEARED).splitlines()
+    stiff, other, stress = map(float, found.split())
+    assert stiff < 1e-3 < 0.05 < other
+    assert stress == pytest.approx(1.0, rel=1e-5)
+    assert "fluid.cross_stress = 5000000.0: needs fluid.eyring_stress left out" in fault
+
+
 BAD = {
     "LAWS": "from my_oil import LAWS\nLAWS = {'barus': LAWS['saturating']}",
     "DENSITY_LAWS": "from my_oil import LAWS\nDENSITY_LAWS = {'incompressible': LAWS['saturating']}",
+    "SHEAR_LAWS": "from my_oil import LAWS\nSHEAR_LAWS = {'eyring': LAWS['saturating']}",
     "key": "from my_oil import Key, LAWS\nLAWS['saturating'].keys['gamma'] = Key('of mine')",
     "EFFECTS": "from my_supply import Starving\nStarving.name = 'wear'\nEFFECTS = [Starving]",
     "table": "from my_supply import Starving, replace\n"
@@ -95,6 +129,7 @@ BAD = {
 REPLACED = {
     "LAWS": '"barus": a viscosity law',
     "DENSITY_LAWS": '"incompressible": a density law',
+    "SHEAR_LAWS": '"eyring": a shear law',
     "key": '"gamma": a key of [fluid]',
     "EFFECTS": '"wear": an effect',
     "table": '"contact": a table or key',

@@ -13,7 +13,8 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables import FLUID
-from ehlpetsc.physics import laws, oils, viscosity_laws
+from ehlpetsc.physics import laws, oils, rheology, viscosity_laws
+from ehlpetsc.physics.law import n_constants
 from ehlpetsc.run.simulation import Simulation
 
 STEP = 1e-20
@@ -395,3 +396,22 @@ def test_film_of_carreaus_law(heat):
         films.append(film)
     assert films[1] == pytest.approx(films[0], rel=1e-4)
     assert 0.75 < films[2] / films[0] < 0.9
+
+
+FACTORS = {name: {} for name in ("barus", "roelands")}
+FACTORS |= {"yasutomi": OF_YASUTOMI, "doolittle": SQUALANE}
+FACTORS |= {"modulus": {name: oils.OILS["fva3"].fluid[name] for name in viscosity_laws.MODULUS}}
+
+
+def test_first_constant_of_a_law_is_a_factor():
+    """Of the logarithm of the viscosity, by which a steady start is continued, or of the shear stress."""
+    assert set(FACTORS) == set(laws.LAWS)
+    for name, keys in FACTORS.items():
+        first, *others = laws.LAWS[name].constants(oil(law=name, **keys), None)
+        one, two = (laws.LAWS[name].function(0.7e9, 320.0, factor * first, *others) for factor in (1.0, 2.0))
+        assert two == pytest.approx([2.0 * value for value in one], rel=1e-14), name
+    for name, law in rheology.SHEAR_LAWS.items():
+        others = (0.45, 2.0)[: n_constants(law.function, 1) - 1]
+        assert law.function(1.3, 2e6, *others) == pytest.approx(
+            [2.0 * value for value in law.function(1.3, 1e6, *others)], rel=1e-14
+        ), name

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from ehlpetsc.base.compiled import address_of
 from ehlpetsc.discretisation.plane.finite_volumes import cross_mobility
 from ehlpetsc.physics import rheology, tabulated_flow, traction
 
@@ -122,7 +123,7 @@ def carreau(n, a):
 def test_rate_inverts_the_stress_of_carreaus_law(n, a):
     for x in np.linspace(-15.0, 15.0, 31):
         stress, by_x, _ = rheology.flow_stress(x, carreau(n, a), np.inf)
-        rate, slope = tabulated_flow.rate_of_stress(-stress / STRESS, n, a)
+        rate, slope = tabulated_flow.rate_of_stress(-stress / STRESS, carreau(n, a))
         assert -rate == pytest.approx(np.exp(x), rel=1e-12)
         assert slope == pytest.approx(-rate * STRESS / by_x, rel=1e-9)
 
@@ -143,7 +144,7 @@ def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
     z = (np.arange(2000) + 0.5) / 2000 - 0.5
     gamma = ETA * sliding / FILM / STRESS
     stress = 0.5 * (lower + upper) / STRESS
-    rate = np.array([tabulated_flow.rate_of_stress(stress + at * drop, n, a)[0] for at in z])
+    rate = np.array([tabulated_flow.rate_of_stress(stress + at * drop, flow)[0] for at in z])
     assert rate.mean() == pytest.approx(gamma, rel=5e-4, abs=1e-12)
     if drop:
         moment = 12.0 * (z * rate).mean() / drop
@@ -152,10 +153,43 @@ def test_flow_of_carreaus_law_across_a_film(n, a, sliding, drop):
         assert mobility == pytest.approx(FILM**3 / (12.0 * ETA), rel=1e-6)
 
 
+def sinh_law(x, stress):
+    """Eyring's law as one of the user."""
+    e = np.exp(x)
+    root = np.sqrt(1.0 + e * e)
+    return stress * (np.log(e + root) if x > -2.0 else np.arcsinh(e)), stress * e / root
+
+
+@pytest.fixture(scope="module")
+def own():
+    return address_of(sinh_law, 1, 1)
+
+
+@pytest.mark.parametrize("zeta", [1e-30, 0.3, 5.0, 1e6])
+@pytest.mark.parametrize("sigma", [0.0, 0.5, 2.0, 10.0])
+def test_flow_of_a_users_law_is_that_of_the_same_law_built_in(own, sigma, zeta):
+    table, closed = tabulated_flow.flow_table(own, 1.0, 2.0), tabulated_flow.flow_table(rheology.EYRING, 1, 2)
+    slip = zeta * FILM / ETA
+    state = FILM, 2.0 * STRESS * sigma / FILM, 1.0 / ETA, 3.0 / ETA, STRESS, slip
+    found = tabulated_flow.tabulated_mobilities(*state, table)
+    for side, expected in zip(found, rheology.mobilities(*state), strict=True):
+        assert side[0] == pytest.approx(expected[0], rel=1e-5)
+        relative = np.array([FILM, state[1], 1.0]) / expected[0]
+        np.testing.assert_allclose(relative * side[1:], relative * expected[1:], rtol=0.0, atol=3e-3)
+    x = np.log(zeta)
+    spread = tabulated_flow.stress_spread(sigma, x, table)
+    assert spread == pytest.approx(tabulated_flow.stress_spread(sigma, x, closed), abs=1e-6)
+    assert rheology.flow_stress(x, rheology.FlowLaw(own, STRESS), 5e7)[:2] == pytest.approx(
+        rheology.flow_stress(x, rheology.FlowLaw(rheology.EYRING, STRESS), 5e7)[:2], rel=1e-12
+    )
+
+
 @pytest.mark.parametrize("gradient", [1e10, -8e12, 6e13])
-def test_derivatives_of_carreaus_flow(gradient):
+@pytest.mark.parametrize("law", ["carreau", "own"])
+def test_derivatives_of_a_tabulated_flow(gradient, law, own):
     state = {"h": FILM, "gradient": gradient, "ln_eta": np.log(ETA)}
-    table = tabulated_flow.flow_table(rheology.CARREAU, 0.45, 2.0)
+    constants = (rheology.CARREAU, 0.45) if law == "carreau" else (own, 1.0)
+    table = tabulated_flow.flow_table(*constants, 2.0)
 
     def mobility(values):
         fluidity = np.exp(-values["ln_eta"])

@@ -9,6 +9,7 @@ import importlib
 import os
 import sys
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from ehlpetsc.case.tables.surface import SURFACE, with_digests
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.law import Law
-from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS
+from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, SHEAR_LAWS
 
 CONDITIONS = (CONTACT, FLUID, MOTION, MESH, SURFACE, TIME, OPERATION, GEARS)
 TABLES = (*CONDITIONS, *(effect.table for effect in EFFECTS if effect.table), OUTPUT, POST, LIFE, SERIES)
@@ -103,6 +104,7 @@ CASE = KeyTable(
 BUILT_IN: dict[str, dict[str, object]] = {
     "a viscosity law": dict(LAWS),
     "a density law": dict(DENSITY_LAWS),
+    "a shear law": dict(SHEAR_LAWS),
     "a key of [fluid]": dict(FLUID.keys),
     "an effect": {effect.name: effect for effect in EFFECTS},
     "a table or key": dict(CASE.keys),
@@ -114,16 +116,20 @@ def extend(
     laws: Mapping[str, Law] | None = None,
     density_laws: Mapping[str, Law] | None = None,
     effects: Iterable[type[Effect]] = (),
+    shear_laws: Mapping[str, Law] | None = None,
 ) -> None:
     """Add laws and effects of the user, with their keys and quantities, to this process.
 
     Raises `CaseError` where a name is that of a built-in one.
     """
-    laws, density_laws, effects = dict(laws or {}), dict(density_laws or {}), list(effects)
-    keys = {name: key for law in [*laws.values(), *density_laws.values()] for name, key in law.keys.items()}
+    laws, density_laws, shear_laws = dict(laws or {}), dict(density_laws or {}), dict(shear_laws or {})
+    effects = list(effects)
+    all_laws = [*laws.values(), *density_laws.values(), *shear_laws.values()]
+    keys = {name: key for law in all_laws for name, key in law.keys.items()}
     own: dict[str, Mapping[str, object]] = {
         "a viscosity law": laws,
         "a density law": density_laws,
+        "a shear law": shear_laws,
         "a key of [fluid]": keys,
         "an effect": {effect.name: effect for effect in effects},
         "a table or key": {effect.table.name: effect.table for effect in effects if effect.table},
@@ -137,7 +143,13 @@ def extend(
                 raise CaseError([f'"{name}": {kind} of this name is built in; allowed: another name'])
     LAWS.update(laws)
     DENSITY_LAWS.update(density_laws)
+    SHEAR_LAWS.update(shear_laws)
     FLUID.keys.update(keys)
+    for law in shear_laws.values():  # a case has one of them
+        stress, *_ = law.keys
+        others = (next(iter(other.keys)) for other in SHEAR_LAWS.values() if other.keys)
+        left_out = [f"fluid.{name} left out" for name in others if name != stress]
+        FLUID.keys[stress] = replace(law.keys[stress], needs=(*law.keys[stress].needs, *left_out))
     for effect in effects:
         EFFECTS[:] = [*(kind for kind in EFFECTS if kind.name != effect.name), effect]
         quantities.register(effect)
@@ -160,6 +172,8 @@ if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, a
     try:
         own = importlib.import_module(name)
     except ImportError as error:
-        allowed = "a module in this folder or on Python's path, with LAWS, DENSITY_LAWS or EFFECTS"
+        allowed = (
+            "a module in this folder or on Python's path, with LAWS, DENSITY_LAWS, SHEAR_LAWS or EFFECTS"
+        )
         raise UsageError(f"EHLPETSC_OWN = {name}: {error}; allowed: {allowed}") from None
-    extend(*(getattr(own, name, {}) for name in ("LAWS", "DENSITY_LAWS", "EFFECTS")))
+    extend(*(getattr(own, name, {}) for name in ("LAWS", "DENSITY_LAWS", "EFFECTS", "SHEAR_LAWS")))
