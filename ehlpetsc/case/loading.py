@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import copy
+import math
 import os
 from collections.abc import Collection, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
@@ -25,6 +26,10 @@ from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.law import Law
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.surfaces.samples import Samples
+    from ehlpetsc.surfaces.topography import Topography
 
 DICT_NAME = "case"  # name of a case without a file in messages
 SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
@@ -246,19 +251,29 @@ def _map_faults(folder: Path, spec: Values | None, case: Case, place: str) -> li
         return []
     grid = Scales.of(case).grid
     try:
-        areal_samples(folder, spec, grid.spacings[0] * grid.shape[0], grid.periodic)
+        width = grid.spacings[0] * grid.shape[0]
+        if spec.synthetic:
+            areal_samples(folder, spec, width, grid.periodic)
+        else:
+            _check_plausible(areal_samples(folder, spec, width, False), case)  # with its own spacings
     except ProfileError as error:
         return [Fault("", f"{place}: {error}")]
     return []
 
 
 def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
-    from ehlpetsc.surfaces.profile_checks import absurd  # smooth surfaces need none
-    from ehlpetsc.surfaces.samples import samples
+    from ehlpetsc.surfaces.samples import samples  # smooth surfaces need none
 
     given = samples(folder, spec)
     if case and case.contact:  # their faults are reported with their keys
-        scales = Scales.of(case)
-        film = scales.h * expected_film(case, scales) if case.fluid else 0.0
-        if fault := absurd(given, scales.a, scales.dx, scales.h, film):
-            raise ProfileError(fault)
+        _check_plausible(given, case)
+
+
+def _check_plausible(given: Samples | Topography, case: Case) -> None:
+    from ehlpetsc.surfaces.profile_checks import absurd
+
+    scales = Scales.of(case)
+    across = scales.b if math.isfinite(scales.b) else scales.grid.spacings[0] * scales.grid.shape[0]
+    film = scales.h * expected_film(case, scales) if case.fluid else 0.0
+    if fault := absurd(given, scales.a, across, scales.h, film):
+        raise ProfileError(fault)

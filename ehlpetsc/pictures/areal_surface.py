@@ -19,7 +19,7 @@ from ehlpetsc.surfaces.parameters import (
     core_parameters,
     power_spectrum,
 )
-from ehlpetsc.surfaces.profile_checks import entry_times
+from ehlpetsc.surfaces.profile_checks import doubts, entry_times
 from ehlpetsc.surfaces.topography import Topography
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def lines(file: str, surface: Topography) -> list[str]:
     return [
         f"{file}: {size}, {points}",
         *surface.notes,
+        *doubts(surface),
         *rows(surface.parameters, core_parameters(surface.z)),
     ]
 

@@ -32,6 +32,7 @@ from ehlpetsc.surfaces.parameters import (
     equally_spaced,
     power_spectrum,
 )
+from ehlpetsc.surfaces.profile_checks import doubts
 from ehlpetsc.surfaces.samples import Samples, samples
 from ehlpetsc.surfaces.topography import Topography
 
@@ -77,7 +78,7 @@ def run(chosen: argparse.Namespace) -> None:
     dx, z, is_interpolated = equally_spaced(profile.X, profile.z)
     parameters, spectrum = ProfileParameters.of(z, dx, spec.cutoff), power_spectrum(z, dx)
     notes = [*profile.notes, *(["interpolated at equal spacing"] if is_interpolated else [])]
-    print("\n".join([_size(chosen.file, profile), *notes, *rows(parameters)]))
+    print("\n".join([_size(chosen.file, profile), *notes, *doubts(profile), *rows(parameters)]))
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv({"": spectrum}).encode())
         print(chosen.csv)

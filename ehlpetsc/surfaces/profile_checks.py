@@ -19,28 +19,56 @@ MAX_SPACING = 0.25  # half-widths between two points: wider than asperities
 MAX_RQ = 0.1  # half-widths
 MAX_RQ_RATIO = 30.0  # Rq over the elastic approach a^2/R, or over the film
 MAX_SLOPE = 1.0  # root mean square
+SMALLEST_RQ = 0.1e-9  # m, of measured roughness
+USUAL_SPACING, USUAL_RQ = 100e-6, 100e-6  # m, at most
+OTHER_SPACING = "is x in another unit, x_unit or unit, or spacing not in m?"
+OTHER_HEIGHTS = 'are the heights in another unit, unit = "mm", "um" or "nm", or is level or form needed?'
 
 
-def absurd(samples: Samples | Topography, a: float, dx: float, approach: float, film: float) -> str | None:
+def absurd(
+    surface: Samples | Topography, a: float, across: float, approach: float, film: float
+) -> str | None:
     """Message on a profile or map that is implausible for a contact, mostly by a wrong unit; None: plausible.
 
-    `a`, `dx`: half-width and spacing of the mesh [m].
+    `a`, `across`: half-width along x, and across, of a strip its width [m].
     `approach`, `film`: a^2/R and expected film [m].
     """
-    rq = float(samples.z.std())
-    slope = samples.rms_slope
-    highest = min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film))
-    if samples.spacing > MAX_SPACING * a:
-        fault = f"points {_um(samples.spacing)} apart beside a half-width of {_um(a)}"
-    elif rq > highest:
-        fault = (
-            f"Rq {_um(rq)} beside a half-width of {_um(a)}, a^2/R of {_um(approach)}, a film of {_um(film)}"
-        )
-    elif slope > MAX_SLOPE:
-        fault = f"slopes of {slope:.3g} in the root mean square"
-    else:
-        return None
-    return f'{fault}: not a profile of this contact; is it in another unit, unit = "mm", "um" or "nm"?'
+    beside = f" beside a half-width of {_um(a)}"
+    fault = _implausible(
+        surface,
+        (MAX_SPACING * a, MAX_SPACING * across),
+        min(MAX_RQ * a, MAX_RQ_RATIO * max(approach, film)),
+        (beside, f"{beside}, a^2/R of {_um(approach)}, a film of {_um(film)}"),
+    )
+    return fault and "{}: not a surface of this contact; {}".format(*fault)
+
+
+def doubts(surface: Samples | Topography) -> list[str]:
+    """Warning of a profile or map whose spacings or heights are hardly those of roughness, a line or none."""
+    fault = _implausible(surface, (USUAL_SPACING, USUAL_SPACING), USUAL_RQ)
+    if fault is None and 0.0 < (rq := float(surface.z.std())) < SMALLEST_RQ:
+        fault = f"Rq {_um(rq)}", OTHER_HEIGHTS
+    return ["warning: {}, hardly roughness: {}".format(*fault)] if fault else []
+
+
+def _implausible(
+    surface: Samples | Topography,
+    spacings: tuple[float, float],
+    rq: float,
+    beside: tuple[str, str] = ("", ""),
+) -> tuple[str, str] | None:
+    """Words on a spacing along or across, an Rq or a slope above its limit, and a question on its cause.
+
+    `spacings`, `rq`: limits [m].
+    `beside`: words on the scales of the contact, behind a spacing and behind an Rq.
+    """
+    for spacing, limit in zip(surface.spacings, spacings, strict=False):
+        if spacing > limit:
+            return f"points {_um(spacing)} apart{beside[0]}", OTHER_SPACING
+    if (found := float(surface.z.std())) > rq:
+        return f"Rq {_um(found)}{beside[1]}", OTHER_HEIGHTS
+    slope = surface.rms_slope
+    return (f"slopes of {slope:.3g} in the root mean square", OTHER_HEIGHTS) if slope > MAX_SLOPE else None
 
 
 def _um(length: float) -> str:

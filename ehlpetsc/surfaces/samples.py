@@ -45,6 +45,11 @@ class Samples:
         return self.length / (self.X.size - 1)
 
     @property
+    def spacings(self) -> tuple[float]:
+        """`spacing`, as of a map [m]."""
+        return (self.spacing,)
+
+    @property
     def extent_text(self) -> str:
         """Length and points for messages; "" of a synthetic profile."""
         points = f"{self.X.size} points {1e6 * self.spacing:.4g} um apart"

@@ -64,9 +64,9 @@ class Topography:
         return self.dx if self.is_ridge else float(self.Y[-1] - self.Y[0]) / (len(self.Y) - 1)
 
     @property
-    def spacing(self) -> float:
-        """The wider distance of two points [m]."""
-        return max(self.dx, self.dy)
+    def spacings(self) -> tuple[float, ...]:
+        """Distances of the points along X and, but for ridges, along Y [m]."""
+        return (self.dx,) if self.is_ridge else (self.dx, self.dy)
 
     @property
     def rms_slope(self) -> float:

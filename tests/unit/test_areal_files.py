@@ -385,3 +385,85 @@ REFUSED_MATRICES = {
 def test_a_faulty_matrix_in_the_case_is_refused(keys, message):
     with pytest.raises(CaseError, match=message):
         load(CASES / "table1_smooth.toml", {"surface.2": {"spacing": 1e-6} | keys})
+
+
+POINT = {
+    "title": "a map in a contact",
+    "contact": {"radius": [0.01, 0.01], "load": 12.0, "youngs_modulus": 206e9, "poisson_ratio": 0.3},
+    "fluid": {
+        "viscosity": 0.02,
+        "law": "roelands",
+        "pressure_viscosity": 18e-9,
+        "density": "incompressible",
+    },
+    "motion": {"entrainment_speed": 1.0},
+    "mesh": {"inlet": -2.0, "outlet": 1.5, "width": 3.0, "points_per_half_width": 8},
+}
+STRIP = {"contact": POINT["contact"] | {"radius": 0.01, "load": 8e4}}
+FINE = np.random.default_rng(1).standard_normal((60, 80)) * 5e-8
+RIDGE = np.transpose([2e-6 * np.arange(200), np.tile(FINE[0], 3)[:200]])
+IMPLAUSIBLE = {
+    "spacing a hundred times too wide": ({"spacing": 8e-4}, "points 800 um apart beside a half-width of "),
+    "spacing across": ({"spacing": 2e-6, "spacing_across": 2e-4}, "points 200 um apart beside "),
+    "unit of the heights": ({"spacing": 2e-6, "unit": "mm"}, None),
+    "heights a thousand times too high": ({"spacing": 2e-6, "scale": 1e3}, r"Rq 50 um beside "),
+    "slopes": ({"spacing": 2e-8}, r"slopes of 3\.\d* in the root mean square: "),
+    "as it is": ({"spacing": 2e-6}, None),
+}
+
+
+@pytest.mark.parametrize("more", [{}, STRIP], ids=["point", "strip"])
+@pytest.mark.parametrize("source", ["file", "z"])
+@pytest.mark.parametrize(("keys", "message"), IMPLAUSIBLE.values(), ids=IMPLAUSIBLE)
+def test_an_implausible_map_is_refused(tmp_path, monkeypatch, more, source, keys, message):
+    monkeypatch.chdir(tmp_path)
+    np.save("map.npy", FINE)
+    heights = {"file": "map.npy"} if source == "file" else {"z": FINE}
+    tables = POINT | more | {"surface": {"1": heights | keys}}
+    if message is None:
+        assert load(tables).surface.body_1 is not None
+        return
+    with pytest.raises(CaseError, match=f"surface.1: {message}.* in another unit") as caught:
+        load(tables)
+    assert len(caught.value.faults) == 1
+
+
+@pytest.mark.parametrize("more", [{}, STRIP], ids=["point", "strip"])
+@pytest.mark.parametrize(
+    ("factors", "message"),
+    [((1e3, 1e6), "points 2e.03 um apart"), ((1, 1e6), "Rq 4.* um beside"), ((1, 1), None)],
+)
+def test_an_implausible_ridge_is_refused(tmp_path, monkeypatch, more, factors, message):
+    monkeypatch.chdir(tmp_path)
+    np.savetxt("p.csv", RIDGE * factors, delimiter=",")
+    tables = POINT | more | {"surface": {"2": {"file": "p.csv"}}}
+    if message is None:
+        assert load(tables).surface.body_2 is not None
+        return
+    with pytest.raises(CaseError, match=f"surface.2: {message}"):
+        load(tables)
+
+
+DOUBTFUL = {
+    "mm and um": ((1e3, 1e6), [], "warning: points 2e+03 um apart, hardly roughness: is x in another unit"),
+    "um": ((4e5, 1e6), [], "warning: points 8e+05 um apart, hardly roughness: "),
+    "heights in um": ((1, 1e6), [], "warning: Rq "),
+    "heights in um, few": ((1, 1e2), [], "warning: slopes of "),
+    "m as mm": ((1, 1), ["--set", "unit=mm", "--set", "x_unit=m"], "warning: Rq "),
+    "m": ((1, 1), [], None),
+}
+
+
+@pytest.mark.parametrize(("factors", "words", "warning"), DOUBTFUL.values(), ids=DOUBTFUL)
+def test_the_command_doubts_heights_that_are_hardly_roughness(tmp_path, capsys, factors, words, warning):
+    from ehlpetsc.pictures.surface import main
+
+    np.savetxt(tmp_path / "p.csv", RIDGE * factors, delimiter=",")
+    np.save(tmp_path / "m.npy", FINE * factors[1])
+    spacing = [f"spacing={2e-6 * factors[0]!r}"] + [word for word in words if word == "unit=mm"]
+    of_map = [word for value in spacing for word in ("--set", value)]
+    for name, keys in (("p.csv", words), ("m.npy", of_map)):
+        assert main([str(tmp_path / name), "--no-picture", *keys]) == 0
+        doubts = [line for line in capsys.readouterr().out.splitlines() if line.startswith("warning: ")]
+        assert len(doubts) == (warning is not None)
+        assert not doubts or doubts[0].startswith(warning)

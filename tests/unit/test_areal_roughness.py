@@ -154,7 +154,7 @@ def test_a_strip_keeps_the_heights_of_the_middle_of_the_map():
 )
 def test_maps_in_another_unit_are_noticed(keys, message):
     wave = {"kind": "sine", "wavelength": 30e-6, "wavelength_across": 75e-6}
-    found = absurd(made(**wave | keys), A, DX, 1e-6, 1e-7)
+    found = absurd(made(**wave | keys), A, A, 1e-6, 1e-7)
     assert found is None if message is None else found.startswith(message)
 
 
