@@ -127,9 +127,7 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
         last = RANGE / min(a, 2.0)
         x, ln_drop = np.arange(-last, last, step_x), np.arange(-last, n * last + 1.0, step)
     else:
-        x = np.arange(
-            -RANGE, 2.0 * RANGE, step_x
-        )  # so far that a law that grows as Eyring's is nearly a power
+        x = np.arange(-RANGE, 2.0 * RANGE, step_x)  # at its end the power of Eyring's law changes slowly
         tau, by_x, _ = flow_stress(x[-1], law, np.inf)
         ln_drop = np.arange(-0.5 * RANGE, min(np.log(tau), 0.5 * RANGE) + 1.0, step)
         n, a = by_x / tau, 0.0
@@ -140,17 +138,8 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
     for quantity, rows in enumerate(np.split(table[:-1], 2)):
         coefficients = CubicSpline(v, CubicSpline(u, values[quantity]).c, axis=2).c  # falling powers of v, u
         rows[:] = coefficients[::-1, :, ::-1].transpose(3, 1, 0, 2).reshape(rows.shape)
-    constants = (
-        n,
-        x[0],
-        ln_drop[0],
-        1.0 / step_x,
-        1.0 / step,
-        x[-1],
-        ln_drop[-1],
-        a,
-        NEWTONIAN ** (1.0 / sharpness),
-    )
+    first, last = (x[0], ln_drop[0], 1.0 / step_x, 1.0 / step), (x[-1], ln_drop[-1])
+    constants = n, *first, *last, a, NEWTONIAN ** (1.0 / sharpness)
     table[-1, 0, : len(constants)] = constants
     return table
 

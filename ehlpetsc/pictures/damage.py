@@ -45,8 +45,7 @@ def map_picture(
         rows, MAP_COLUMNS, (8.0, 1.0 + 2.2 * rows), sharex=True, sharey=True, squeeze=False
     )
     shown = list(panels.flat[:count])
-    for axes in panels.flat[count:]:
-        axes.set_visible(False)
+    style.leave_out(panels, count)
     if surface in result.profiles:
         s, heights = result.profiles[surface]
         axes = shown.pop(0)
@@ -265,7 +264,7 @@ def field_picture(path: str, result: PostResult) -> Figure:
     row.set_title(f"{name}, maximum {1e-9 * values[k, j]:.3g} GPa at {depth}", fontsize="small", loc="left")
     row.set_xlabel(style.ACROSS)
     across = "" if middle is None else f", y = {1e3 * middle:.4g} mm"
-    style.set_title(figure, f"solid of surface {surface}{across}, {1e6 * time:.4g} µs")
+    style.set_title(figure, _case(result), f"solid of surface {surface}{across}, {1e6 * time:.4g} µs")
     return figure
 
 
@@ -289,13 +288,18 @@ def depth_picture(result: PostResult) -> Figure:
     """Distributions of damage at the asperities of one surface, by depth (figure 10)."""
     curves = [(f"z/a = {z:g}", result.under[k], result.fits[k]) for k, z in enumerate(result.z)]
     counted = f"{result.height.size} asperities, surface {result.main}, {_ratio(result)}"
-    return draw_distributions(curves, f"{counted}, {rule_name(result)}")
+    return draw_distributions(curves, f"{_case(result)}\n{counted}, {rule_name(result)}")
+
+
+def _case(result: PostResult) -> str:
+    """Title of the case."""
+    return str(result.attrs["title"])
 
 
 def _conditions(result: PostResult, surface: str) -> str:
-    """Surface, section of a plane, slide/roll ratio and rule in the title."""
+    """Title of the case; surface, section of a plane, slide/roll ratio and rule."""
     across = "" if result.section_y is None else f", y = {1e3 * result.section_y:.4g} mm"
-    return f"surface {surface}{across}, {_ratio(result)}, {rule_name(result)}"
+    return f"{_case(result)}\nsurface {surface}{across}, {_ratio(result)}, {rule_name(result)}"
 
 
 def _ratio(result: PostResult) -> str:

@@ -44,6 +44,16 @@ def new_figure(rows: int, columns: int, size: tuple[float, float], **shared: obj
     return figure, figure.subplots(rows, columns, **shared)
 
 
+def leave_out(panels: np.ndarray, count: int) -> None:
+    """Hide all but `count` panels of shape (rows, columns); the last one of each column has tick labels."""
+    for axes in panels.flat[count:]:
+        axes.set_visible(False)
+    for column in panels.T:
+        shown = [axes for axes in column if axes.get_visible()]
+        for axes in shown[-1:]:
+            axes.tick_params(labelbottom=True)
+
+
 def set_title(figure: Figure, *lines: str) -> None:
     """Set the title above all panels; empty lines are left out."""
     text = folded("\n".join(filter(None, lines)), figure.get_figwidth())

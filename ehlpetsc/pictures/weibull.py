@@ -66,8 +66,7 @@ def weibull_picture(result: PostResult) -> Figure:
         no_fit = "" if fit.beta > 0.0 else f", {fitted_asperities(under)} with damage: no fit"
         axes.set_title(f"z/a = {z:g}{no_fit}", fontsize="small", loc="left")
         draw_fits(axes, log_life(under), fit)
-    for axes in panels.flat[result.z.size :]:
-        axes.set_visible(False)
+    style.leave_out(panels, result.z.size)
     first = panels[0, 0]
     first.set(xscale="log", ylim=_stretched(np.array([0.005, 0.99])))
     first.xaxis.set_major_formatter("{x:g}")
@@ -78,7 +77,8 @@ def weibull_picture(result: PostResult) -> Figure:
     figure.supylabel("asperities of shorter life [%]", fontsize="medium")
     style.legend_beside(panels[0, -1])
     counted = f"{result.height.size} asperities, surface {result.main}"
-    style.set_title(figure, f"{counted}, bounds of {100 * CONFIDENCE:g} % confidence")
+    bounds = f"{counted}, bounds of {100 * CONFIDENCE:g} % confidence"
+    style.set_title(figure, str(result.attrs["title"]), bounds)
     return figure
 
 

@@ -6,6 +6,7 @@ import pytest
 from support.made_loads import A, Scene, write
 from support.made_planes import FRICTION, sphere, write_plane
 
+from ehlpetsc.pictures import damage as gallery
 from ehlpetsc.post import damage, dang_van, stress_plane
 from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.accumulate import count_damage
@@ -99,7 +100,7 @@ def test_command_on_a_point(scene, tmp_path, capsys):
     p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
     s = scene.profiles["1"][0]
     waves = {side: 1e-7 * np.cos(s / 1e-5) * np.cos(y[:, None] / 5e-5) for side in ("1", "2")}
-    path = write_plane(tmp_path / "point.h5", scene, "point", y, p, waves, depths=(0.0, 0.3))
+    path = write_plane(tmp_path / "point.h5", scene, "point", y, p, waves, depths=(0.0, 0.1, 0.2, 0.3))
     assert main([str(path), "--surface", "1"]) == 0
     assert "ehlpetsc post: done" in capsys.readouterr().out
     with h5py.File(tmp_path / "point.post.h5") as file:
@@ -195,13 +196,22 @@ def test_pictures_of_a_plane(scene, tmp_path, capsys):
     """Maps over the surface, a section through the worst row, stresses below, Weibull plots with bounds."""
     y = scene.x[14:35] - scene.x[24]
     p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
-    path = write_plane(tmp_path / "point.h5", scene, "point", y, p, depths=(0.0, 0.3))
+    path = write_plane(tmp_path / "point.h5", scene, "point", y, p, depths=(0.0, 0.1, 0.2, 0.3))
     assert main([str(path), "--surface", "2", "--pictures", str(tmp_path), "--weibull"]) == 0
     drawn = {name.name for name in tmp_path.glob("*.png")}
     kinds = ("damage_map_2", "damage_2", "exceedance", "stress", "weibull")
     assert drawn == {f"point.{kind}.png" for kind in kinds}
     assert set(capsys.readouterr().out.split()) >= {str(tmp_path / name) for name in drawn}
     result = PostResult(tmp_path / "point.post.h5")
+    figures = dict([*gallery.pictures(str(path), result), *gallery.weibull_pictures(str(path), result)])
+    for kind, figure in figures.items():
+        assert figure._suptitle.get_text().startswith("made up\n"), kind
+    for kind in ("damage_map_2", "weibull"):
+        figures[kind].draw_without_rendering()
+        shown = [axes for axes in figures[kind].axes[:6] if axes.get_visible()]
+        assert len(shown) in (4, 5)  # of four depths, with the heights
+        for axes in shown[-3:]:  # the last of their columns
+            assert axes.xaxis.get_major_ticks(1)[0].label1.get_visible(), kind
     section = result.section(result.worst_row("2"))
     assert np.nanmax(section.damage["2"]) == np.nanmax(result.damage["2"])
     assert section.worst_point("2") == result.worst_point("2")

@@ -167,13 +167,13 @@ def key_of(name: object) -> Key | None:
     return key
 
 
+OWN = ("LAWS", "DENSITY_LAWS", "EFFECTS", "SHEAR_LAWS")  # in the order of `extend`
+
 if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
     sys.path.append(os.getcwd())
     try:
         own = importlib.import_module(name)
     except ImportError as error:
-        allowed = (
-            "a module in this folder or on Python's path, with LAWS, DENSITY_LAWS, SHEAR_LAWS or EFFECTS"
-        )
+        allowed = f"a module in this folder or on Python's path, with {', '.join(OWN)}"
         raise UsageError(f"EHLPETSC_OWN = {name}: {error}; allowed: {allowed}") from None
-    extend(*(getattr(own, name, {}) for name in ("LAWS", "DENSITY_LAWS", "EFFECTS", "SHEAR_LAWS")))
+    extend(*(getattr(own, name, {}) for name in OWN))
