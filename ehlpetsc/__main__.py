@@ -123,7 +123,9 @@ def _run(words: list[str]) -> int:
         return run(chosen, stop)
     except CaseError as error:
         return refuse(str(error))
-    except (OutputError, UsageError) as error:
+    except OutputError as error:
+        return refuse(f"ehlpetsc: {error}", error.status)
+    except UsageError as error:
         return refuse(f"ehlpetsc: {error}")
 
 
@@ -139,7 +141,8 @@ def help_text() -> str:
         run_parser().format_help().partition("\n")[2],
         "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",
         "may be in [petsc] of the case, in PETSC_OPTIONS and on the command line; the last one counts.",
-        "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written.",
+        "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written,",
+        "5 result file deleted or replaced during the run.",
     ]
     return "\n".join(lines)
 
@@ -150,11 +153,11 @@ def _print(text: object) -> int:
     return ExitStatus.DONE
 
 
-def refuse(text: str) -> int:
-    """Print a fault on one rank; returns the exit status of bad input."""
+def refuse(text: str, status: ExitStatus = ExitStatus.BAD_INPUT) -> int:
+    """Print a fault on one rank; returns the exit status."""
     if packages.first_rank():
         print(text, file=sys.stderr, flush=True)
-    return ExitStatus.BAD_INPUT
+    return status
 
 
 def _after_error(error: BaseException) -> int:

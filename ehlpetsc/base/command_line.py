@@ -99,6 +99,7 @@ def exit_status(
         print(f"{name}: {text}", file=sys.stderr)
     except faults as error:
         print(f"{name}: {error}", file=sys.stderr)
+        return getattr(error, "status", ExitStatus.BAD_INPUT)
     else:
         return ExitStatus.DONE if status is None else status
     return ExitStatus.BAD_INPUT

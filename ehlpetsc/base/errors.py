@@ -17,6 +17,7 @@ class ExitStatus(IntEnum):
     BAD_INPUT = 2
     NOT_CONVERGED = 3
     STOPPED = 4
+    OUTPUT_LOST = 5
 
     @property
     def words(self) -> str:
@@ -52,6 +53,14 @@ class UsageError(Exception):
 
 class OutputError(Exception):
     """A result or restart file cannot be read or written; the message states the reason."""
+
+    status = ExitStatus.BAD_INPUT
+
+
+class OutputLost(OutputError):
+    """A result file was deleted or replaced while it was being written."""
+
+    status = ExitStatus.OUTPUT_LOST
 
 
 class PostError(Exception):

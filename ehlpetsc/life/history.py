@@ -15,9 +15,17 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError, not_written
+from ehlpetsc.base.errors import OutputError, OutputLost, not_written
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_for_reading, open_hdf5, plain
+from ehlpetsc.results.hdf5_file import (
+    LIBVER,
+    Place,
+    check_space,
+    extend,
+    open_for_reading,
+    open_hdf5,
+    plain,
+)
 from ehlpetsc.results.output_guard import replacing
 
 BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
@@ -35,17 +43,21 @@ class LifeFile:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._file: h5py.File | None = None
+        self._place: Place | None = None
 
     def store(self, history: LifeHistory) -> None:
-        """Append the last row of a life, or write all rows if the file is not open yet.
+        """Append the last row of a life, or write all rows if the file is not open yet, or deleted.
 
-        Raises `OutputError`.
+        Raises `OutputError`, and `OutputLost` where another file is in its place.
         """
         try:
-            if self._file is None:
+            if self._place is None or not self.path.exists():
                 self._create(history)
+                self._place = Place(self.path, self._file)
             else:
+                self._place.check()
                 self._append(history, [len(history.rows) - 1])
+                self._place.note()
         except (OSError, RuntimeError) as error:
             raise OutputError(not_written(error, self.path)) from error
 
@@ -55,7 +67,8 @@ class LifeFile:
         `status`: "done", "stopped", "not converged".
         """
         if self._file:
-            with contextlib.suppress(OSError, RuntimeError):  # its rows are complete
+            with contextlib.suppress(OSError, RuntimeError, OutputLost):  # its rows are complete
+                self._place.check()
                 self._file.attrs.modify("status", np.bytes_(status.encode()))
                 self._file.close()
         self._file = None

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import OutputError, OutputLost
 
 LIBVER = ("v110", "v110")  # the first with SWMR, that of Debian 12, which cannot read files of newer formats
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
@@ -64,6 +64,38 @@ def extend(dataset: h5py.Dataset, rows: Sequence | np.ndarray) -> None:
         begin = dataset.shape[0]
         dataset.resize(begin + len(rows), axis=0)
         dataset[begin:] = rows
+
+
+class Place:
+    """Place of an HDF5 file that grows: another program may delete or replace the file meanwhile.
+
+    `file`: opened by this process; between its writes its size is constant.
+    """
+
+    def __init__(self, path: Path, file: h5py.File) -> None:
+        self._path, self._number = Path(path), file.id.get_vfd_handle()
+        self.note()
+
+    def note(self) -> None:
+        """Note the size after a write."""
+        self._size = os.fstat(self._number).st_size
+
+    def check(self) -> None:
+        """Raise OutputLost if the file is no longer at its path, or has been written by another program.
+
+        It may then only be closed.
+        """
+        try:
+            is_own = os.path.samestat(os.fstat(self._number), self._path.stat())
+        except (FileNotFoundError, NotADirectoryError) as error:
+            raise OutputLost(f"{self._path}: deleted during the run ({error.strerror})") from error
+        if is_own and os.fstat(self._number).st_size == self._size:
+            return
+        if is_own:  # written over: closing must not write to it
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            os.dup2(nowhere, self._number)
+            os.close(nowhere)
+        raise OutputLost(f"{self._path}: replaced by another file during the run")
 
 
 def check_space(path: Path, data_bytes: int) -> None:

@@ -20,9 +20,9 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.declarations import Field
-from ehlpetsc.base.errors import OutputError, not_written
+from ehlpetsc.base.errors import OutputError, OutputLost, not_written
 from ehlpetsc.base.quantities import FIELDS, OTHERS, STEP_SCALARS, dims_in, of_every_case, unit_in
-from ehlpetsc.results.hdf5_file import LIBVER, check_space, extend, open_hdf5
+from ehlpetsc.results.hdf5_file import LIBVER, Place, check_space, extend, open_hdf5
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
@@ -153,9 +153,12 @@ class ResultWriter:
     ------
     OutputError
         The file cannot be written, or the one to resume does not fit the run.
+    OutputLost
+        The file has been deleted or replaced since the last flush.
     """
 
     _file: Any = None  # an h5py.File
+    _place: Place | None = None  # of a file that is not in memory
 
     def __init__(
         self,
@@ -174,7 +177,7 @@ class ResultWriter:
         self._steps: list[dict] = []
         self._frames: list[dict] = []
         self._memory = io.BytesIO()
-        with self._one_sentence():
+        with self._writing():
             if path is None:
                 self._create(self._memory, layout, attributes)
             else:
@@ -185,6 +188,7 @@ class ResultWriter:
                         self._copy_up_to(path, resume_step)
                     self._file.swmr_mode = True
                     self._file.flush()
+                self._place = Place(path, self._file)
         self._flushed = clock.monotonic()
         self._fields = [name for name in FIELDS if name in self._file]
 
@@ -222,8 +226,8 @@ class ResultWriter:
 
     def flush(self) -> None:
         """Write all rows to the file; a killed process then does not lose them."""
-        file, scalars = self._file, list(self._file["steps"])
-        with self._one_sentence():
+        with self._writing():
+            file, scalars = self._file, list(self._file["steps"])
             if self.path:
                 frame_bytes = 8 * self.contact_count.size * len(self._fields)
                 check_space(self.path, len(self._frames) * frame_bytes + 8 * len(self._steps) * len(scalars))
@@ -243,7 +247,7 @@ class ResultWriter:
 
     def put_depth(self, side: str, name: str, depth: np.ndarray) -> None:
         """Store a depth [m] of a surface, "1" or "2", at the points s of its profile."""
-        with self._one_sentence():
+        with self._writing():
             self._file[f"surface/{side}/{name}"][:] = depth
 
     def means(self, case: Case | None = None) -> dict[str, float]:
@@ -259,8 +263,9 @@ class ResultWriter:
         if not self._file:
             return
         self.flush()
-        with self._one_sentence():
+        with self._writing():
             self._file.attrs.modify("limits", np.bytes_("\n".join(limits).encode()))
+            self._place = None
             self._end(status)
 
     def to_bytes(self) -> bytes:
@@ -272,13 +277,20 @@ class ResultWriter:
         self._file.close()
 
     @contextlib.contextmanager
-    def _one_sentence(self) -> Iterator[None]:
-        """After an error close the file; one of HDF5 or the system becomes an OutputError."""
+    def _writing(self) -> Iterator[None]:
+        """Write to the file if it is in its place; after an error close it.
+
+        An error of HDF5 or the system becomes an OutputError.
+        """
         try:
+            if self._place:
+                self._place.check()
             yield
+            if self._place:
+                self._place.note()
         except (OutputError, OSError, RuntimeError) as error:
             with contextlib.suppress(Exception):  # the first fault is reported
-                self._end("stopped")
+                self._file.close() if isinstance(error, OutputLost) else self._end("stopped")
             if isinstance(error, OutputError):
                 raise
             raise OutputError(not_written(error, self.path)) from error

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time as clock
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -14,7 +16,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
-from ehlpetsc.base.errors import ExitStatus
+from ehlpetsc.base.errors import ExitStatus, OutputError, OutputLost
 from ehlpetsc.base.quantities import FIELDS, MEAN_HEIGHT, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
@@ -101,7 +103,7 @@ def summary_line(status: ExitStatus, totals: Totals, wall: float) -> str:
 class Recorder:
     """Output that stores the accepted states of a simulation.
 
-    The restart file is written every few minutes and at a stop.
+    The restart file is written every few minutes, at a stop, and where the result is lost.
 
     `output`: result file; the restart file is named after it. None: in memory, without a restart file.
 
@@ -162,13 +164,13 @@ class Recorder:
         """Store an accepted state; write the restart file if it is due."""
         if not self._is_open:
             self._open()
-        with events.OUTPUT:
-            on_root(self.comm, self._append, state)
         self.totals.add(state.scalars)
         solved = self.simulation.dimensionless and self.simulation.dimensionless.solution
         if solved:
             friction = float(np.max(solved.inputs.boundary_friction))
             self._boundary_friction = max(self._boundary_friction, friction)
+        with events.OUTPUT:
+            on_root(self.comm, self._append, state)
         if state.step and self._next_save(self.comm):
             self.checkpoint()
             self._next_save = Deadline(self.simulation.case.output.checkpoint)
@@ -188,7 +190,8 @@ class Recorder:
             return
         if status is not ExitStatus.DONE or time is not None and time.passes > 1:
             self.checkpoint()
-        on_root(self.comm, self._close, status)
+        with self._kept_if_lost():
+            on_root(self.comm, self._close, status)
 
     def to_bytes(self) -> bytes:
         """The bytes of a result in memory, on every rank."""
@@ -227,7 +230,8 @@ class Recorder:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
         level, nominal = self.simulation.operation.level, self.simulation.scales.dt
         frame = every == 1 or steady or on_level(level(float(state.time), nominal), every)
-        self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
+        with self._kept_if_lost():
+            self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
 
     def _close(self, status: ExitStatus) -> None:
         simulation, surfaces = self.simulation, self._surfaces
@@ -248,10 +252,25 @@ class Recorder:
 
             write_xdmf(self.output)
 
+    @contextlib.contextmanager
+    def _kept_if_lost(self) -> Iterator[None]:
+        """Write the restart file if the result is lost meanwhile: what is computed can be continued."""
+        try:
+            yield
+        except OutputLost:
+            if self.comm.rank == 0:
+                with contextlib.suppress(OutputError):  # the folder may be lost too
+                    self._save_state()
+            raise
+
     def _save(self) -> None:
+        with self._kept_if_lost():
+            self._writer.flush()
+        self._save_state()
+
+    def _save_state(self) -> None:
         from ehlpetsc.run.checkpoint import save
 
-        self._writer.flush()
         save(self.restart, self.simulation, self._writer.contact_count, self.totals.values)
 
 

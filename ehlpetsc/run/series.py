@@ -1,8 +1,8 @@
 """Series of a case: members distributed to groups of ranks, one result file each and one index file.
 
 The index ``OUTPUT.series.json`` contains the varied key, or keys, and for each member its value, result file
-(in the folder of the index) and state: "done", "not converged", "stopped", "bad input" or "waiting". Members
-with a complete file of the same case are not computed again; unfinished ones are continued.
+(in the folder of the index) and state: "done", "not converged", "stopped", "bad input", "output lost" or
+"waiting". Members with a complete file of the same case are not computed again, unfinished ones continued.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.base.command_line import ERASE, ProgressLine, on_terminal
-from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, OutputLost, UsageError
 from ehlpetsc.case.combinations import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -161,10 +161,16 @@ class Series:
             if self.world.rank == 0:
                 self._line.clear()
                 self._report(clock.monotonic() - begun)
-            on_root(self.world, index.write)
+            self._write_index()
         finally:
             index.release()
         return self._status()
+
+    def _write_index(self) -> None:
+        try:
+            on_root(self.world, self.index.write)
+        except OutputError as error:  # its folder is lost with the members
+            raise OutputLost(error) if self._status() is ExitStatus.OUTPUT_LOST else error from error
 
     def _show_progress(self, missing: list[int]) -> None:
         """Begin the line of progress, on a terminal, which the first rank writes."""
@@ -198,7 +204,7 @@ class Series:
         states = {row["state"] for row in self.index.rows}
         if {WAITING, ExitStatus.STOPPED.words} & states:
             return ExitStatus.STOPPED
-        failed = (ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
+        failed = (ExitStatus.OUTPUT_LOST, ExitStatus.NOT_CONVERGED, ExitStatus.BAD_INPUT)
         return next((status for status in failed if status.words in states), ExitStatus.DONE)
 
     def _run_member(self, number: int, group: MPI.Comm, stop: PollingStop) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol, TextIO
 
 from mpi4py import MPI
 
-from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, Stopped
+from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, OutputLost, Stopped
 from ehlpetsc.run.recorder import Progress, Recorder, summary_line
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Run:
         except OutputError as error:
             if self.simulation.state is None:  # nothing was computed yet
                 raise
-            status, failure = ExitStatus.BAD_INPUT, error
+            status, failure = error.status, error
         if self.root:
             self._report(status, failure)
         self._print(summary_line(status, self.recorder.totals, clock.monotonic() - begun))
@@ -148,6 +148,8 @@ class Run:
         recorder, state = self.recorder, self.simulation.dimensionless
         if isinstance(failure, OutputError):
             saved = f"; the same command continues from {recorder.restart}"
+            if isinstance(failure, OutputLost):
+                saved = f"; --restart {recorder.restart} -o OTHER.h5 continues without the steps before"
             saved = saved if recorder.restart.exists() else ""
             print(f"ehlpetsc: {failure}{saved}", file=self.err, flush=True)
             return

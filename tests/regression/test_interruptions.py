@@ -77,7 +77,7 @@ def test_signal_during_imports_prints_one_line_at_most(tmp_path):
     assert len(errors.splitlines()) <= 1
 
 
-def test_folder_removed_during_a_run_is_an_error(tmp_path):
+def test_folder_removed_during_a_run_is_a_lost_output(tmp_path):
     folder = tmp_path / "out"
     folder.mkdir()
     soon = settings("output.checkpoint=0.005")  # minutes, after which the file must be there
@@ -85,6 +85,6 @@ def test_folder_removed_during_a_run_is_an_error(tmp_path):
     wait_for(folder / "r.h5", process)
     shutil.rmtree(folder)
     _, output, errors = ended(process)
-    assert process.returncode == 2
-    assert f"{folder}/r.h5: " in errors and "No such file or directory" in errors
+    assert process.returncode == 5
+    assert f"{folder}/r.h5: deleted" in errors and "No such file or directory" in errors
     assert not os.path.exists(folder)
