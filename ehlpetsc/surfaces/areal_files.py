@@ -22,9 +22,9 @@ from ehlpetsc.surfaces.profile_files import (
     by_package,
     read_once,
 )
-from ehlpetsc.surfaces.text_files import text_columns, units_in
+from ehlpetsc.surfaces.text_files import text_columns
+from ehlpetsc.surfaces.text_maps import MIN_POINTS, in_metres, is_matrix, listed, with_axes
 
-MIN_POINTS = 4  # along either side
 MIN_PRESENT = 0.5  # of the heights of a map
 OF_PROFILES = {".smd"}  # besides text
 
@@ -44,11 +44,14 @@ class Map(NamedTuple):
 
 
 def is_map(path: str | PathLike, layout: Layout) -> bool:
-    """Whether a file holds a map: by its suffix or, of text, a matrix, for which a spacing is stated."""
+    """Whether a file holds a map: by its suffix or, of text, by its numbers."""
     path = Path(path)
     if path.suffix.lower() not in TEXT:
         return path.suffix.lower() not in OF_PROFILES
-    return layout.spacing is not None and path.is_file() and len(_columns_of(path, layout)[0]) >= MIN_POINTS
+    if not path.is_file():
+        return False
+    columns, header = _columns_of(path, layout)
+    return listed(columns) is not None or is_matrix(columns, header, layout)
 
 
 @read_once
@@ -65,20 +68,14 @@ def read_map(path: Path, layout: Layout) -> Map:
 
 
 def _matrix(path: Path, layout: Layout) -> Map:
-    if layout.spacing is None:
-        raise ProfileError("a matrix of heights needs spacing = distance of its columns in m")
-    if path.suffix.lower() == ".npy":
-        z = by_package("numpy", _by_numpy, path, "")
-        if z.dtype.kind not in "fiu":
-            raise ProfileError(f"numbers of type {z.dtype}; allowed: real numbers")
-    else:
+    if path.suffix.lower() != ".npy":
         columns, header = _columns_of(path, layout)
-        if layout.unit is None and (named := set(units_in(header)) - {"m"}):
-            raise ProfileError(
-                f"its header names {' and '.join(sorted(named))}; write unit for the heights, spacing is in m"
-            )
-        z = columns.T
-    return Map(UNITS[layout.unit or "m"] * z, layout.spacing, layout.spacing_across or layout.spacing)
+        return Map(*in_metres(listed(columns) or with_axes(columns.T, header), header, layout))
+    z = by_package("numpy", _by_numpy, path, "")
+    if z.dtype.kind not in "fiu":
+        raise ProfileError(f"numbers of type {z.dtype}; allowed: real numbers")
+    _check_shape(z)
+    return Map(*in_metres(with_axes(z.astype(float), ""), "", layout))
 
 
 def _by_numpy(path: Path) -> np.ndarray:
@@ -140,9 +137,7 @@ def checked(found: Map, layout: Layout) -> Map:
     """Map without missing heights; ProfileError for a faulty one."""
     _, dx, dy, notes = found
     z, no_data = without_no_data(found.z, UNITS[layout.unit or "m"])
-    if z.ndim != 2 or min(z.shape) < MIN_POINTS:
-        shape = " x ".join(map(str, z.shape))
-        raise ProfileError(f"{shape} heights; allowed: a matrix of {MIN_POINTS} x {MIN_POINTS} or more")
+    _check_shape(z)
     if not (0 < dx < MAX_ABSCISSA and 0 < dy < MAX_ABSCISSA):
         raise ProfileError(f"spacings {dx:g} and {dy:g} m; allowed: above 0")
     wrong = np.abs(z) >= MAX_ABSCISSA
@@ -161,6 +156,12 @@ def checked(found: Map, layout: Layout) -> Map:
         z, note = filled(z, dx, dy, widest, no_data)
         notes += (note,)
     return Map(z, dx, dy, notes)
+
+
+def _check_shape(z: np.ndarray) -> None:
+    if z.ndim != 2 or min(z.shape) < MIN_POINTS:
+        shape = " x ".join(map(str, z.shape))
+        raise ProfileError(f"{shape} heights; allowed: a matrix of {MIN_POINTS} x {MIN_POINTS} or more")
 
 
 def filled(

@@ -42,7 +42,7 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
         return Topography(
             profile.X, np.zeros(1), profile.z[np.newaxis], along, measured=True, notes=profile.notes
         )
-    if spec.x is None:
+    if spec.z is not None and spec.x is None:
         _refuse(spec, ("x_unit",), "of x, not of spacing, which is in m; leave it out")
     surface = _processed(_map(folder, spec), spec)
     return surface.periodic_over(width) if is_strip else surface

@@ -13,16 +13,14 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.outliers import groups, held, spikes, without_no_data
-from ehlpetsc.surfaces.text_files import read_softgauge, text_columns, units_in
+from ehlpetsc.surfaces.text_files import UNITS, read_softgauge, text_columns, units_in
+from ehlpetsc.surfaces.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
 SPACING_VARIATION = 0.02  # relative, of equally spaced points
-MIN_MATRIX_COLUMNS = 8  # of heights alike: a map, which a line contact does not read
 MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
 MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
-UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}
-UNITS |= {"inch": 0.0254, "microinch": 0.0254e-6, "mil": 0.0254e-3}
 
 
 @dataclass(frozen=True)
@@ -125,13 +123,6 @@ def read_profile(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray, tu
 
 def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     columns, header = text_columns(path, layout.decimal, layout.header_lines)
-    named = units_in(header)
-    if layout.unit is None and set(named) - {"m"}:
-        raise ProfileError(
-            f"its header names {' and '.join(dict.fromkeys(named))}, which a file need not mean for both "
-            f'columns; write unit = "{named[-1]}" for the heights'
-            + (f' and x_unit = "{named[0]}"' if named[0] != named[-1] else "")
-        )
     if columns.shape[1] <= 2 and len(columns) >= MIN_MEASURED_POINTS:  # one line of heights, or of x and of z
         columns = columns.T
     count, numeric = len(columns), [k for k, c in enumerate(columns, 1) if not np.isnan(c).all()]
@@ -142,7 +133,14 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
         raise ProfileError(
             f"columns = {list(chosen)}: no numbers in column {min(empty)}; allowed: {numeric}, from 1"
         )
-    _check_matrix(columns, chosen)
+    _check_map(columns, header, chosen)
+    named = units_in(header)
+    if layout.unit is None and set(named) - {"m"}:
+        raise ProfileError(
+            f"its header names {' and '.join(dict.fromkeys(named))}, which a file need not mean for both "
+            f'columns; write unit = "{named[-1]}" for the heights'
+            + (f' and x_unit = "{named[0]}"' if named[0] != named[-1] else "")
+        )
     if len(chosen) > 2:
         raise ProfileError(
             f"{count} columns; write columns = [1, 2] for x and z, counted from 1, or columns = [2] and "
@@ -159,21 +157,23 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     return UNITS[layout.x_unit or layout.unit or "m"] * columns[chosen[0] - 1], z
 
 
-def _check_matrix(columns: np.ndarray, chosen: tuple[int, ...]) -> None:
-    """Refuse the columns of a map of heights as a profile: none of them is x, a trace across is short."""
+def _check_map(columns: np.ndarray, header: str, chosen: tuple[int, ...]) -> None:
+    """Refuse a map of heights as a profile: none of its columns is x, a trace across is short."""
     count, lines = columns.shape
-    if count < MIN_MATRIX_COLUMNS:
-        return
-    if len(chosen) == 1:
-        is_map = lines < min(count, MIN_MEASURED_POINTS)
+    if found := listed(columns):
+        size = "x y z of {1} x {0} points".format(*found.z.shape)
+    elif count >= MIN_MATRIX_COLUMNS and (
+        lines < min(count, MIN_MEASURED_POINTS) if len(chosen) == 1 else has_no_x(columns, chosen[0] - 1)
+    ):
+        size = f"{count} columns in {lines} lines without an equally spaced x"
+    elif len(chosen) > 2 and lines >= MIN_POINTS and has_positions(columns, header):
+        size = f"{count} columns in {lines} lines with positions"
     else:
-        step = np.abs(np.diff(columns[chosen[0] - 1]))
-        is_map = not (np.abs(step - np.median(step)) <= SPACING_VARIATION * np.median(step)).mean() > 0.5
-    if is_map:
-        raise ProfileError(
-            f"{count} columns in {lines} lines without an equally spaced x: a map of heights, not a profile; "
-            "write one line of it to a file, with spacing = distance of its points [m]"
-        )
+        return
+    raise ProfileError(
+        f"{size}: a map of heights, not a profile; points and strips read it, a line contact one line of it "
+        "in a file of its own, with spacing = distance of its points [m]"
+    )
 
 
 def _from_surface_topography(path: Path) -> tuple[np.ndarray, np.ndarray]:

@@ -23,10 +23,13 @@ from ehlpetsc.base.errors import ProfileError
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[ed][+-]?\d+)?"
 MISSING = r"(?:-?nan(?:\(ind\))?|-?1\.#\w+|#?n/?a|bad|\*+|-+)"  # markers, besides empty cells
+SCANNED = (2, 3)  # columns of x and z, and of x, y and z, in which empty lines part the scans
 CELL = re.compile(f"(?:({NUMBER})|({MISSING})?)", re.IGNORECASE)
 WITH_UNIT = re.compile(rf"(?>{NUMBER})\s*[^\W\d_/:.-]", re.IGNORECASE)  # as 0.12 um, unlike a date or a name
 COMMENT = re.compile(r"(?:^|(?<=[\s,;|]))#(?!n/?a).*", re.IGNORECASE | re.MULTILINE)
 SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})  # minus and dash of word processors
+UNITS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "angstrom": 1e-10}  # m
+UNITS |= {"inch": 0.0254, "microinch": 0.0254e-6, "mil": 0.0254e-3}
 UNIT_NAMES = {
     "m": ("m",),
     "mm": ("mm",),
@@ -59,14 +62,21 @@ def text_columns(
     above = _first_line(lines) if header_lines is None else min(header_lines, len(lines))
     header, body = "\n".join(lines[:above]), COMMENT.sub("", "\n".join(lines[above:]))
     body, separator = _with_points(_unquoted(body), decimal)
-    columns = np.empty((0, 0))
+    columns, second = np.empty((0, 0)), _second_block(body, above)
     if re.search(r"\d", body):
         try:
             columns = np.loadtxt(io.StringIO(body), delimiter=separator, comments=None, ndmin=2).T
         except ValueError:
-            columns = _cell_by_cell(body, separator, above).T
+            try:
+                columns = _cell_by_cell(body, separator, above).T
+            except ProfileError:
+                if second:
+                    raise ProfileError(second) from None
+                raise
         while len(columns) and np.isnan(columns[-1]).all():  # behind separators at the ends of the lines
             columns = columns[:-1]
+    if second and len(columns) not in SCANNED:
+        raise ProfileError(second)
     if not columns.size:
         raise ProfileError("0 points; allowed: lines of numbers, x and z")
     if header_lines is None and above:
@@ -132,10 +142,26 @@ def _with_points(text: str, decimal: str | None) -> tuple[str, str | None]:
     return text.replace({",": ".", ".": ","}.get(decimal or "", ""), "").replace(",", "."), separator
 
 
+def _second_block(body: str, above: int) -> str:
+    """Message on lines behind an empty line among the numbers; "": none, or as many behind every line.
+
+    `above`: lines before the body.
+    """
+    filled = [n for n, line in enumerate(body.split("\n"), above + 1) if line.strip(",;| \t")]
+    steps = [after - n for n, after in zip(filled[:-1], filled[1:], strict=True)]
+    if not steps or min(steps) == max(steps):
+        return ""
+    n = next(after for after, step in zip(filled[1:], steps, strict=True) if step > min(steps))
+    return (
+        f"line {n}: a second block behind an empty line; allowed: one block of numbers; delete the others, "
+        f"or write header_lines = {n - 1} if those above are no heights"
+    )
+
+
 def _cell_by_cell(text: str, separator: str | None, above: int) -> np.ndarray:
     """Numbers of lines read one by one; nan for missing ones and for columns of words."""
     lines = enumerate(text.split("\n"), above + 1)
-    rows = {n: line.strip().split(separator) for n, line in lines if line.strip(",;| \t")}
+    rows = {n: line.rstrip().lstrip(" ").split(separator) for n, line in lines if line.strip(",;| \t")}
     *_, width = map(len, rows.values())
     for n, row in rows.items():
         if len(row) != width:

@@ -119,7 +119,7 @@ def test_a_spacing_beside_that_of_the_file_is_refused(tmp_path):
 
 
 def test_units_named_in_a_header_are_asked_for(tmp_path):
-    (tmp_path / "map.txt").write_text("height [um]\n" + as_text(1e6 * Z))
+    (tmp_path / "map.txt").write_text("scan [um]\n" + as_text(1e6 * Z))
     with pytest.raises(ProfileError, match="^its header names um; write unit "):
         read_map(tmp_path / "map.txt", SPACED)
     np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)

@@ -1,0 +1,292 @@
+"""Maps in text files: matrices, with positions of their columns and rows or without, and lists of x y z.
+
+Spacings are positions in the file, words of its header, or the keys of the case; where there are several of
+them they must agree.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.surfaces.text_files import NUMBER, UNIT_OF_NAME, UNITS, units_in
+
+if TYPE_CHECKING:
+    from ehlpetsc.surfaces.profile_files import Layout
+
+MIN_POINTS = 4  # along either side
+MIN_MATRIX_COLUMNS = 8  # of heights alike, where no spacing is stated
+LONG = 8  # points of a line that rises by chance in one of 20,000
+MIN_PRESENT = 0.5  # of the points of a grid in a list
+MAX_UNEVEN = 0.45  # steps, of positions, whose decimals are few, from equally spaced ones
+MAX_UNEVEN_OF_FEW = 0.02  # of fewer than `LONG`
+UNEVEN_RATIO, MIN_UNEVEN = 5.0, 0.05  # of heights beside positions: over the positions, and in steps
+SAME_RISE = 0.2  # relative, of the lines of an inclined map
+SMOOTH_JUMP = 0.3  # of a line to the next over the height, of a smooth map
+JUMP_RATIO = 3.0  # of a line to the next over that of the others, where it is no line of heights
+AGREEMENT = 0.02  # relative, of spacings
+EQUAL_STEPS = 0.02  # relative, of x in a profile
+
+NAME = "|".join(sorted(map(re.escape, UNIT_OF_NAME), key=len, reverse=True))
+UNIT_OF_HEIGHTS = re.compile(
+    rf"^\W*(?:(?:z|heights?|values?|data)[ _-]*)?units?\s*[:=\s]\s*\"?({NAME})\b"
+    rf"|(?<![a-z])(?:z|heights?|values?)\s*[\[(/]\s*({NAME})\s*(?:[\])]|$)",
+    re.IGNORECASE | re.MULTILINE,
+)
+UNIT_OF_X = re.compile(
+    rf"^\W*(?:x|y|lateral|axis|axes)[ _-]*units?\s*[:=\s]\s*\"?({NAME})\b"
+    rf"|(?<![a-z])(?:x|y)\s*[\[(/]\s*({NAME})\s*(?:[\])]|$)",
+    re.IGNORECASE | re.MULTILINE,
+)
+ENTRY = re.compile(
+    rf"^[^\w\n]*([a-z][a-z _.-]*?)\s*(?:[\[(/]\s*({NAME})\s*[\])]?)?\s*[:=,;\t ]\s*\"?"
+    rf"(\d+(?:[.,]\d*)?(?:e[+-]?\d+)?)\s*\"?\s*(?:[\[(]?({NAME})\b)?",
+    re.IGNORECASE | re.MULTILINE,
+)  # name [unit] = number unit
+STEPS = {
+    "step",
+    "stepsize",
+    "stepwidth",
+    "spacing",
+    "pointspacing",
+    "pixelsize",
+    "pixelwidth",
+    "pixelspacing",
+}
+STEPS |= {"cellsize", "increment", "pitch", "d", "delta", "lateralresolution", "resolution", "sampling"}
+STEPS |= {"samplinginterval", "interval"}
+EXTENTS = {"": {"width": "x", "scanwidth": "x", "scansize": "x", "height": "y", "scanheight": "y"}}
+EXTENTS |= {axis: dict.fromkeys(("length", "range", "extent", "size", "width"), axis) for axis in "xy"}
+
+
+class TextMap(NamedTuple):
+    """Numbers of a map in the units of its file.
+
+    `z`: heights, shape (ny, nx).
+    `x`, `y`: positions of the columns and of the rows; None: not in the file.
+    `is_list`: whether they are a list of x y z.
+    """
+
+    z: np.ndarray
+    x: np.ndarray | None
+    y: np.ndarray | None
+    is_list: bool = False
+
+
+def listed(columns: np.ndarray) -> TextMap | None:
+    """Map of a list of x y z, in any order, nan where a point of the grid is missing; None: no such list."""
+    if len(columns) != 3 or np.isnan(columns[:2]).any():
+        return None
+    axes, places = [], []
+    for values in columns[:2]:
+        digits = 7 - int(np.floor(np.log10(np.ptp(values)))) if np.ptp(values) > 0 else 0
+        axis, place = np.unique(np.round(values, digits), return_inverse=True)
+        axes.append(axis)
+        places.append(place)
+    (x, y), count = axes, columns.shape[1]
+    if min(len(x), len(y)) < MIN_POINTS or count < MIN_PRESENT * len(x) * len(y):
+        return None
+    z = np.full((len(y), len(x)), np.nan)
+    z[places[1], places[0]] = columns[2]
+    if len(np.unique(places[1] * len(x) + places[0])) < count:
+        raise ProfileError("x y z: a point is in it twice; allowed: every point of the grid once")
+    return TextMap(z, x, y, True)
+
+
+def is_matrix(columns: np.ndarray, header: str, layout: Layout) -> bool:
+    """Whether columns of numbers are a map, not profiles: by a spacing, positions, or many columns alike."""
+    if min(columns.shape) < MIN_POINTS:
+        return False
+    if layout.spacing is not None or spacings_in(header, columns.shape[::-1], layout.x_unit):
+        return True
+    return has_no_x(columns) or has_positions(columns, header)
+
+
+def has_positions(columns: np.ndarray, header: str) -> bool:
+    """Whether positions are above the columns; numbers alone may be those of profiles beside each other."""
+    _, x, y, _ = with_axes(columns.T, header)
+    return x is not None and not (_are_numbers(x) and (y is None or not _are_numbers(y)))
+
+
+def has_no_x(columns: np.ndarray, x: int = 0) -> bool:
+    """Whether many columns are heights alike: column x, from 0, is not equally spaced."""
+    step = np.abs(np.diff(columns[x]))
+    usual = np.median(step)
+    is_x = usual > 0.0 and (np.abs(step - usual) <= EQUAL_STEPS * usual).mean() > 0.5
+    return len(columns) >= MIN_MATRIX_COLUMNS and not is_x
+
+
+def with_axes(z: np.ndarray, header: str) -> TextMap:
+    """Matrix without the line and the column that hold positions, or numbers, of its columns and rows.
+
+    They are equally spaced beside heights that are not, or at the end of a header, behind a word.
+    """
+    x, y = _axis_in(header, z.shape[1]), None
+    is_named = bool(np.isnan(z[:, 0]).all())  # rows with words in front
+    if x is None and _is_axis(z[0, 1:], z[1:, 1:], "line"):
+        x, z = z[0], z[1:]
+    if is_named or _is_axis(z[:, 0], z[:, 1:].T, "column") or x is not None and len(x) < z.shape[1]:
+        y, z = None if is_named else z[:, 0], z[:, 1:]
+        x = x if x is None else x[-z.shape[1] :]
+    for axis, place in ((x, "first line"), (y, "first column")):
+        if axis is not None and not _unevenness(axis[np.newaxis])[0] <= MAX_UNEVEN:
+            raise ProfileError(
+                f"its {place} holds positions that are not equally spaced; allowed: equally spaced ones, or "
+                "heights alone, with header_lines = lines above them"
+            )
+    return TextMap(z, x, y)
+
+
+def _axis_in(header: str, width: int) -> np.ndarray | None:
+    """Positions at the end of a header, one for each column, or for each but the first; None: none."""
+    line = header.rstrip().rpartition("\n")[2].lstrip("#%; ")
+    for separator in ("\t", ";", "|", ",", None):
+        cells = [cell.strip(" \"'") for cell in line.split(separator)]
+        if separator != ",":
+            cells = [cell.replace(",", ".") for cell in cells]
+        numbers: list[float] = []
+        while cells and re.fullmatch(NUMBER, cells[-1], re.IGNORECASE):
+            numbers.insert(0, float(cells.pop()))
+        steps = np.diff(numbers)
+        if MIN_POINTS <= len(numbers) and len(numbers) in (width, width - 1):
+            return np.array(numbers) if (steps > 0).all() or (steps < 0).all() else None
+    return None
+
+
+def _is_axis(line: np.ndarray, others: np.ndarray, place: str) -> bool:
+    """Whether a line beside lines of heights, shape (n, len(line)), holds positions.
+
+    Equally spaced values, beside heights that are not, are heights where they are inclined as the others are,
+    or differ from the next line of a smooth map as little as that from the one behind it.
+    """
+    own, is_long = _unevenness(line[np.newaxis])[0] if len(line) >= MIN_POINTS else np.inf, len(line) >= LONG
+    others = others[~np.isnan(others).any(axis=1)]
+    if not np.isfinite(own) or len(others) < 2:
+        return False
+    unevenness = _unevenness(others)
+    jumps = np.sqrt(np.mean(np.diff(np.vstack([line, others]), axis=0) ** 2, axis=1))
+    usual = np.median(jumps[1:])
+    if own <= (MAX_UNEVEN if is_long else MAX_UNEVEN_OF_FEW):
+        centred = np.arange(len(line)) - 0.5 * (len(line) - 1)
+        is_inclined = (np.abs(others @ centred / (line @ centred) - 1.0) < SAME_RISE).mean() >= 0.5
+        is_next = usual < SMOOTH_JUMP * others.std() and jumps[0] <= JUMP_RATIO * usual
+        is_uneven = np.median(unevenness) > max(UNEVEN_RATIO * own, MIN_UNEVEN)
+        return bool(is_uneven) and not (is_inclined or is_next)
+    if is_long and np.isinf(unevenness).mean() > 0.5 and jumps[0] > JUMP_RATIO * usual:
+        raise ProfileError(
+            f"its first {place} rises or falls as positions do, but at unequal steps; allowed: equally "
+            "spaced positions, or heights alone"
+        )
+    return False
+
+
+def _unevenness(lines: np.ndarray) -> np.ndarray:
+    """Largest deviation of each line from equal spacing, in steps; infinite unless it rises or falls."""
+    n, steps = lines.shape[1], np.diff(lines, axis=1)
+    mean = (lines[:, -1] - lines[:, 0]) / (n - 1)
+    is_straight = (steps > 0).all(axis=1) | (steps < 0).all(axis=1)
+    even = lines[:, :1] + mean[:, np.newaxis] * np.arange(n)
+    deviations = np.abs(lines - even).max(axis=1)
+    return np.where(is_straight, deviations / np.where(is_straight, np.abs(mean), 1.0), np.inf)
+
+
+def _are_numbers(axis: np.ndarray) -> bool:
+    """Whether positions are the numbers of columns or rows, from 0 or 1 on."""
+    return bool(axis.min() in (0.0, 1.0) and (np.abs(np.diff(axis)) == 1.0).all())
+
+
+def spacings_in(header: str, shape: tuple[int, ...], x_unit: str | None) -> dict[str, float]:
+    """Distances [m] of columns, "x", and rows, "y", of a matrix by the words of a header that have a unit.
+
+    `shape`: lines and columns; a width or height is that of as many cells.
+    `x_unit`: of steps without a unit; None: they are not read.
+    """
+    found: dict[str, float] = {}
+    for name, unit_before, number, unit_behind in ENTRY.findall(header):
+        words = re.findall("[a-z]+", re.sub("d([xy])", r"d \1", name.lower()))
+        axes = [word for word in words if word in ("x", "y")]
+        rest = "".join(word for word in words if word not in ("x", "y", "of", "in"))
+        unit = UNIT_OF_NAME.get((unit_before or unit_behind).lower(), x_unit if rest in STEPS else None)
+        if unit is None or len(axes) > 1:
+            continue
+        value = UNITS[unit] * float(number.replace(",", "."))
+        if rest in STEPS:
+            found |= dict.fromkeys(axes or ("x", "y"), value)
+        elif axis := EXTENTS["".join(axes)].get(rest):
+            found.setdefault(axis, value / shape[axis == "x"])
+    return found if "x" in found else {}
+
+
+def in_metres(
+    found: TextMap, header: str, layout: Layout
+) -> tuple[np.ndarray, float, float, tuple[str, ...]]:
+    """Heights [m], distances of columns and rows [m], and notes, of a map in a text file."""
+    z, x, y, is_list = found
+    unit, x_unit = (
+        stated or next((UNIT_OF_NAME[(a or b).lower()] for a, b in pattern.findall(header)), None)
+        for stated, pattern in ((layout.unit, UNIT_OF_HEIGHTS), (layout.x_unit, UNIT_OF_X))
+    )
+    named = dict.fromkeys(units_in(header))
+    words = spacings_in(header, z.shape, layout.x_unit)
+    spacing = layout.spacing or words.get("x")
+    numbered = [
+        axis is not None and x_unit is None and not (is_list and spacing is None) and _are_numbers(axis)
+        for axis in (x, y)
+    ]
+    are_used = any(axis is not None and not number for axis, number in zip((x, y), numbered, strict=True))
+    if layout.x_unit and not (are_used or words):
+        raise ProfileError("x_unit: of x, not of spacing, which is in m; leave it out")
+    missing = ["unit"] if unit is None else ["x_unit"] if x_unit is None and are_used else []
+    others = [name for name in named if name not in ("m", unit)]
+    if missing and others:
+        raise ProfileError(
+            f"its header names {' and '.join(others)}; write {missing[0]} (unit for the heights, x_unit for "
+            "positions; spacing is in m)"
+        )
+    metres = UNITS[x_unit] if x_unit else None
+    distances, notes = [], []
+    for axis, is_number, stated, key, place in (
+        (x, numbered[0], layout.spacing, "spacing", "first line: {} of the columns"),
+        (y, numbered[1], layout.spacing_across, "spacing_across", "first column: {} of the rows"),
+    ):
+        known = [(f"{key} =", stated), ("by its header", words.get("xy"[key != "spacing"]))]
+        known = [(source, distance) for source, distance in known if distance]
+        if axis is not None and is_number:
+            notes.append(f"{place.format('numbers')}, left out")
+        elif axis is not None:
+            step = float(np.abs(axis[-1] - axis[0])) / (len(axis) - 1)
+            if metres is None and known:
+                metres = _unit_of(step, known[0][1])
+            metres = metres or UNITS[unit or "m"]
+            known.append(("by its positions", step * metres))
+            notes += [] if is_list else [f"{place.format('positions')}, {1e6 * step * metres:.4g} um apart"]
+        distances.append(_agreed(known, key, z.shape[key == "spacing"]))
+    if distances[0] is None:
+        raise ProfileError("a matrix of heights needs spacing = distance of its columns in m")
+    if x is not None and x[0] > x[-1]:
+        z = z[:, ::-1]
+    if y is not None and y[0] > y[-1]:
+        z = z[::-1]
+    return UNITS[unit or "m"] * z, distances[0], distances[1] or distances[0], tuple(notes)
+
+
+def _agreed(known: list[tuple[str, float]], key: str, count: int) -> float | None:
+    """Distance [m] by the first of its sources; ProfileError where another one gives another distance.
+
+    `count`: points, of which a width in a header may have as many cells or one less.
+    """
+    for source, distance in known[1:]:
+        if abs(distance / known[0][1] - 1.0) > AGREEMENT + 1.0 / count:
+            raise ProfileError(
+                f"{known[0][0]} {known[0][1]:g} m, {source} {distance:g} m; allowed: the same; leave {key} "
+                "out, or write x_unit for the positions"
+            )
+    return known[0][1] if known else None
+
+
+def _unit_of(step: float, distance: float) -> float | None:
+    """Unit [m] in which positions have a distance [m]; None: no unit."""
+    return next((unit for unit in UNITS.values() if abs(step * unit / distance - 1.0) <= AGREEMENT), None)

@@ -1,0 +1,256 @@
+"""Maps in text files: matrices with positions of columns and rows, lists of x y z, words of headers."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.pictures.surface import main
+from ehlpetsc.surfaces.areal_files import is_map, read_map
+from ehlpetsc.surfaces.profile_files import Layout, read_profile
+from ehlpetsc.surfaces.text_files import text_columns
+
+DX, DY = 2.5e-6, 4e-6
+X, Y = DX * np.arange(24), DY * np.arange(16)
+Z = np.round(12e-6 + 1e-7 * np.random.default_rng(3).standard_normal((16, 24)), 11)
+UM, MM = 1e6, 1e3
+
+
+def matrix(corner=None, x=None, y=None, separator="\t", z=Z):
+    """Heights in um below a line x, behind a column y; `corner`: above y."""
+    rows = [[f"{value:.5f}" for value in row] for row in UM * z]
+    if y is not None:
+        rows = [[label, *row] for label, row in zip(words(y), rows, strict=True)]
+    if x is not None:
+        rows.insert(0, ([] if corner is None else [corner]) + words(x))
+    return "\n".join(separator.join(row) for row in rows) + "\n"
+
+
+def words(values):
+    return [value if isinstance(value, str) else f"{value:.6g}" for value in values]
+
+
+def points(x=UM * X, y=UM * Y, z=UM * Z, form="{:.4f} {:.4f} {:.5f}\n", order=1):
+    every = [form.format(a, b, z[j, i]) for j, b in enumerate(y) for i, a in enumerate(x)]
+    return "".join(every[::order])
+
+
+NUMBERS_X, NUMBERS_Y = np.arange(1, 25), np.arange(1, 17)
+BOTH = {"unit": "um", "spacing": DX, "spacing_across": DY}
+MAPS = {
+    "corner of words, units": ("Z unit: um\n" + matrix("y\\x [mm]", MM * X, MM * Y), {}),
+    "corner of a word": (matrix("pos", UM * X, UM * Y, ";"), {"unit": "um"}),
+    "corner 0": (matrix("0", MM * X, MM * Y), {"unit": "um", "x_unit": "mm"}),
+    "corner of a count": (matrix("24", MM * X, MM * Y, ","), {"unit": "um", "x_unit": "mm"}),
+    "corner nan": (matrix("nan", MM * X, MM * Y), BOTH),
+    "corner empty": (matrix("", MM * X, MM * Y), BOTH),
+    "corner empty, semicolons": (matrix("", UM * X, UM * Y, ";"), {"unit": "um"}),
+    "decimal comma": (matrix("y/x", MM * X, MM * Y, ";").replace(".", ","), {"unit": "um", "x_unit": "mm"}),
+    "no corner, comment": ("# " + matrix(None, UM * X, UM * Y, " "), {"unit": "um"}),
+    "positions of the columns": (matrix(None, MM * X), BOTH),
+    "positions of the columns behind a word": (matrix("x [mm]", MM * X), BOTH),
+    "positions of the rows": (matrix(None, None, MM * Y), {"unit": "um", "spacing": DX, "x_unit": "mm"}),
+    "positions of the rows, spacings": (matrix(None, None, MM * Y), BOTH),
+    "numbers": (matrix("n", NUMBERS_X, NUMBERS_Y), BOTH),
+    "numbers from 0": (matrix("0", NUMBERS_X - 1, NUMBERS_Y - 1), BOTH),
+    "numbers of the rows": (matrix(None, None, NUMBERS_Y), BOTH),
+    "names of the rows": (matrix(None, None, [f"row{k}" for k in NUMBERS_Y], ";"), BOTH),
+    "falling positions": (
+        matrix("0", UM * X[::-1], UM * Y[::-1], z=Z[::-1, ::-1]),
+        {"unit": "um"},
+    ),
+    "positions of three decimals": (matrix("y", np.round(MM * X, 3), MM * Y), BOTH | {"x_unit": "mm"}),
+    "list": (points(), {"unit": "um"}),
+    "list, columns first": (
+        points(UM * Y, UM * X, UM * Z.T, "{1:.4f},{0:.4f},{2:.5f}\n"),
+        {"unit": "um"},
+    ),
+    "list, falling": (points(order=-1), {"unit": "um"}),
+    "list, units": ("X[mm] Y[mm] Z[um]\n" + points(MM * X, MM * Y, form="{:.6f} {:.6f} {:.5f}\n"), {}),
+    "list, empty lines between scans": (
+        "\n".join(points().splitlines()[k] for k in range(384)),
+        {"unit": "um"},
+    ),
+    "list of numbers": (points(np.arange(24), np.arange(16)), BOTH),
+    "header of Gwyddion": (
+        f"# Channel: Height\n# Width: {24 * 2.5} µm\n# Height: {16 * 4.0} µm\n# Value units: um\n" + matrix(),
+        {},
+    ),
+    "header of steps": ("X step: 2.5 um\nY step: 4 um\nZ unit: um\n" + matrix(), {}),
+    "header of spacings in brackets": ("dx [mm] = 0.0025\ndy [mm] = 0.004\nheight [um]\n" + matrix(), {}),
+    "header of a pixel size": ("Pixel size X;2,5 um\nPixel size Y;4,0 um\n" + matrix(), {"unit": "um"}),
+    "cell size without unit": (
+        "ncols 24\nnrows 16\ncellsize x 2.5\ncellsize y 4\n" + matrix(separator=" "),
+        {"unit": "um", "x_unit": "um"},
+    ),
+    "no positions": (matrix(), BOTH),
+    "every other line empty": (matrix().replace("\n", "\n\n"), BOTH),
+}
+
+
+@pytest.mark.parametrize(("text", "layout"), MAPS.values(), ids=MAPS)
+def test_layouts_give_the_same_map(tmp_path, text, layout):
+    path = tmp_path / "map.txt"
+    path.write_text(text)
+    assert is_map(path, Layout(**layout))
+    z, dx, dy, _ = read_map(path, Layout(**layout))
+    np.testing.assert_allclose(z, Z, rtol=0, atol=1e-15)
+    assert (dx, dy) == pytest.approx((DX, DY), rel=1e-3)
+
+
+def test_positions_are_noted(tmp_path):
+    (tmp_path / "map.txt").write_text(matrix("0", MM * X, MM * Y))
+    notes = read_map(tmp_path / "map.txt", Layout(unit="um", x_unit="mm")).notes
+    expected = (
+        "first line: positions of the columns, 2.5 um apart",
+        "first column: positions of the rows, 4 um apart",
+    )
+    assert notes == expected
+    (tmp_path / "map.txt").write_text(matrix("n", NUMBERS_X, NUMBERS_Y))
+    notes = read_map(tmp_path / "map.txt", Layout(**BOTH)).notes
+    assert notes == (
+        "first line: numbers of the columns, left out",
+        "first column: numbers of the rows, left out",
+    )
+
+
+def test_a_point_that_is_not_in_a_list_is_missing(tmp_path):
+    lines = points().splitlines(keepends=True)
+    (tmp_path / "map.xyz").write_text("".join(lines[:50] + lines[51:]))
+    with pytest.raises(ProfileError, match="^1 heights missing, the widest gap "):
+        read_map(tmp_path / "map.xyz", Layout(unit="um"))
+
+
+PLANE = 1e-2 * X + 2e-3 * Y[:, np.newaxis]
+SMOOTH = np.cos(X / 4e-5) * np.cos(Y[:, np.newaxis] / 4e-5) * 1e-6
+TILTED = PLANE + 0.1 * (Z - Z.mean())
+
+
+@pytest.mark.parametrize("z", [PLANE, SMOOTH, TILTED, SMOOTH[:6, :5], TILTED[:4, :4]])
+@pytest.mark.parametrize("suffix", [".txt", ".npy"])
+def test_heights_that_rise_are_no_positions(tmp_path, z, suffix):
+    path = tmp_path / f"map{suffix}"
+    np.savetxt(path, z, fmt="%.12e") if suffix == ".txt" else np.save(path, z)
+    found = read_map(path, Layout(spacing=DX))
+    np.testing.assert_allclose(found.z, z, rtol=1e-11)
+    assert found.notes == ()
+
+
+def test_heights_of_few_random_columns_are_no_positions(tmp_path):
+    random, path = np.random.default_rng(0), tmp_path / "map.npy"
+    for shape in ((8, 5), (5, 8), (6, 6), (30, 40)):
+        for _ in range(100):
+            np.save(path, random.standard_normal(shape) * 1e-7)
+            assert read_map(path, Layout(spacing=DX)).z.shape == shape
+
+
+def test_positions_in_a_binary_matrix_are_read(tmp_path):
+    np.save(tmp_path / "map.npy", np.vstack([MM * X, UM * Z]))
+    found = read_map(tmp_path / "map.npy", Layout(**BOTH))
+    np.testing.assert_allclose(found.z, Z, atol=1e-15)
+
+
+TWO = matrix() + "\n" + matrix()
+REFUSED = {
+    "second block": (TWO, BOTH, "^line 18: a second block behind an empty line; .* header_lines = 17 "),
+    "second block with a heading": (matrix() + "\nIntensity\n" + matrix(), BOTH, "^line 18: a second block "),
+    "second block of another width": (
+        matrix() + "\n\n" + matrix(z=Z[:, :9]),
+        BOTH,
+        "^line 19: a second block ",
+    ),
+    "second block with positions": (
+        matrix("y", MM * X, MM * Y) + "\n" + matrix("y", MM * X, MM * Y),
+        BOTH,
+        "^line 19: a second block ",
+    ),
+    "another spacing": (
+        matrix("y [mm]", MM * X, MM * Y),
+        {"unit": "um", "spacing": 5e-6},
+        r"^spacing = 5e-06 m, by its positions 2\.5e-06 m; allowed: the same; ",
+    ),
+    "another spacing, in no unit": (
+        matrix("y", MM * X, MM * Y),
+        {"unit": "um", "spacing": 7e-6},
+        "^spacing = 7e-06 m, by its positions ",
+    ),
+    "another spacing in the header": (
+        "dx: 2.5 um\n" + matrix(),
+        {"unit": "um", "spacing": 5e-6},
+        r"^spacing = 5e-06 m, by its header 2\.5e-06 m; ",
+    ),
+    "positions at unequal steps": (
+        matrix("y", UM * X**1.3 * 50, UM * Y),
+        {"unit": "um"},
+        "^its first line holds positions that are not equally spaced; ",
+    ),
+    "numbers at unequal steps": (
+        matrix(None, UM * X**1.3 * 50),
+        BOTH,
+        "^its first line rises or falls as positions do, but at unequal steps; ",
+    ),
+    "unit of positions": (
+        matrix("[inch]", MM * X, MM * Y),
+        {"unit": "um"},
+        "^its header names inch; write x_unit",
+    ),
+    "unit of heights": (matrix("x [mm]", MM * X, MM * Y), {}, "^its header names mm; write unit"),
+    "numbers without spacing": (
+        matrix("n", NUMBERS_X, NUMBERS_Y),
+        {"unit": "um"},
+        "^a matrix of heights needs spacing = ",
+    ),
+    "heights without spacing": (matrix(), {"unit": "um"}, "^a matrix of heights needs spacing = "),
+    "x_unit without positions": (matrix(), BOTH | {"x_unit": "mm"}, "^x_unit: of x, not of spacing, "),
+    "a point twice": (points() + "0 0 12.1\n", {"unit": "um"}, "^x y z: a point is in it twice; "),
+}
+
+
+@pytest.mark.parametrize(("text", "layout", "message"), REFUSED.values(), ids=REFUSED)
+def test_refused_map_names_the_cause(tmp_path, text, layout, message):
+    path = tmp_path / "map.txt"
+    path.write_text(text)
+    with pytest.raises(ProfileError, match=message) as caught:
+        assert is_map(path, Layout(**layout)) or "heights without" in message
+        read_map(path, Layout(**layout))
+    assert "\n" not in str(caught.value)
+
+
+NO_PROFILES = {
+    "list": (points(), Layout()),
+    "list with units": ("X[um] Y[um] Z[um]\n" + points(), Layout()),
+    "heights of a list": (points(), Layout(columns=(3,), spacing=1e-6)),
+    "x and z of a list": (points(), Layout(columns=(1, 3))),
+    "matrix with words": (matrix("y", MM * X, MM * Y), Layout()),
+    "matrix with units": (matrix("y [mm]", MM * X, MM * Y), Layout(unit="um")),
+    "matrix with a corner number": (matrix("0", MM * X, MM * Y), Layout()),
+    "matrix with numbers": (matrix("0", NUMBERS_X, NUMBERS_Y), Layout()),
+}
+
+
+@pytest.mark.parametrize(("text", "layout"), NO_PROFILES.values(), ids=NO_PROFILES)
+def test_a_map_is_no_profile(tmp_path, text, layout):
+    (tmp_path / "map.xyz").write_text(text)
+    with pytest.raises(ProfileError, match="a map of heights, not a profile; points and strips read it, "):
+        read_profile(tmp_path / "map.xyz", layout)
+
+
+def test_heights_alone_of_two_blocks_are_refused(tmp_path):
+    (tmp_path / "p.txt").write_text("1\n2\n3\n4\n\n1\n2\n3\n")
+    with pytest.raises(ProfileError, match="^line 6: a second block behind an empty line; "):
+        text_columns(tmp_path / "p.txt")
+
+
+def test_profiles_beside_each_other_are_no_map(tmp_path):
+    path = tmp_path / "p.txt"
+    np.savetxt(path, np.column_stack([UM * X, UM * Z[:4].T]), header="x [um] 1 2 3 4")
+    assert not is_map(path, Layout(unit="um"))
+    x, z, _ = read_profile(path, Layout(unit="um", columns=(1, 3)))
+    np.testing.assert_allclose(z, Z[1], rtol=1e-12)
+
+
+def test_the_command_reads_a_map_with_its_positions(tmp_path, capsys):
+    (tmp_path / "map.txt").write_text("Z unit: um\n" + matrix("y\\x [mm]", MM * X, MM * Y))
+    assert main([str(tmp_path / "map.txt"), "--no-picture", "--set", "level=false"]) == 0
+    size, *_, sq = capsys.readouterr().out.partition("\nSsk")[0].splitlines()
+    assert size.endswith("map.txt: 0.0575 x 0.06 mm, 24 x 16 points 2.5 um and 4 um apart")
+    assert float(sq.split()[1]) == pytest.approx(UM * Z.std(), abs=1e-4)
