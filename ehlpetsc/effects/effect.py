@@ -133,6 +133,13 @@ class Effect(Generic[R]):
         """
         return self.record()
 
+    def interpolated(self, record: R, scales: Scales) -> R | None:
+        """Record to begin a steady start with, from that of the same contact on other nodes; None: no use.
+
+        `scales`: of the other nodes.
+        """
+        return None
+
     def inputs(self, record: R, inputs: StepInputs, step: Step) -> StepInputs:
         """Inputs of the solve with the contribution of the effect.
 

@@ -35,6 +35,7 @@ from ehlpetsc.stepping.time_stepping import TimeStepping
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
 MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one that fails without
+MIN_HEATED_POINTS = 8  # on the half-width: coarsest mesh of a start with heat
 MANY_NODES = 20_000  # from here on a start on a coarser mesh costs less than it saves
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
@@ -269,33 +270,35 @@ class Simulation:
 
     def _started(self, watch: Watch) -> State:
         failures = []
-        for guess in self._guesses(watch):
+        for guess, records in self._guesses(watch):
             self._print_heading(f"steady start on {self.scales.grid.n} nodes")
             try:
-                return self.stepper.start(self._records, watch, guess)
+                return self.stepper.start(self._records | records, watch, guess)
             except NotConverged as error:
                 if not isinstance(error.__cause__, NoSteadyStart):
                     raise
                 failures.append(error)
         raise failures[-1]
 
-    def _guesses(self, watch: Watch) -> Iterator[Unknowns | None]:
-        """Guesses of the steady state, one after the other; None: by Hertz.
+    def _guesses(self, watch: Watch) -> Iterator[tuple[Unknowns | None, dict]]:
+        """Guesses of the steady state, one after the other, with records of effects; None: by Hertz.
 
-        The solution on a coarser mesh, if any, is the first one where there are many nodes, else the last.
+        The solution on a coarser mesh, if any, is the first one where there are many nodes, or heat, as
+        pressure spikes move by a node an iteration when the film changes; else the last.
         """
-        is_hertz = self.case.fluid is None and self.roughness is None
-        is_first = self.scales.grid.n > MANY_NODES and not is_hertz
+        case, points = self.case, self.case.mesh.points_per_half_width
+        is_hertz = case.fluid is None and self.roughness is None
+        is_heated = case.heat is not None and case.fluid is not None and points >= 2 * MIN_HEATED_POINTS
+        is_first = is_heated or self.scales.grid.n > MANY_NODES and not is_hertz
         if not is_first:
-            yield None
-        is_fine = self.case.mesh.points_per_half_width >= 2 * MIN_COARSE_POINTS
-        coarse = self._coarse_guess(watch) if is_first or is_fine else None
+            yield None, {}
+        coarse = self._coarse_guess(watch) if is_first or points >= 2 * MIN_COARSE_POINTS else None
         if coarse is not None:
             yield coarse
         if is_first:
-            yield None
+            yield None, {}
 
-    def _coarse_guess(self, watch: Watch) -> Unknowns | None:
+    def _coarse_guess(self, watch: Watch) -> tuple[Unknowns, dict] | None:
         """Steady solution on a mesh with half as many nodes per half-width; None: there is none."""
         from ehlpetsc.run.checkpoint import coarser, guess_of
 
@@ -304,7 +307,11 @@ class Simulation:
             coarse.advance(watch=watch)
         except (CaseError, NotConverged, UsageError):
             return None
-        return guess_of(coarse.dimensionless, coarse.stepper.problem, self.stepper.problem)
+        state = coarse.dimensionless
+        effects = {e.name: e for e in self.stepper.effects}
+        found = {name: effects[name].interpolated(r, coarse.scales) for name, r in state.records.items()}
+        records = {name: record for name, record in found.items() if record is not None}
+        return guess_of(state, coarse.stepper.problem, self.stepper.problem), records
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.dimensionless.step + 1} from {1e6 * self.dimensionless.time:.4f} us")

@@ -62,20 +62,20 @@ def solve_checked(
 
 
 def solve_step(
-    solver: Solver, guess: Unknowns, inputs: StepInputs, watch: Watch = None
+    solver: Solver, guess: Unknowns, inputs: StepInputs, watch: Watch = None, max_it: int | None = None
 ) -> tuple[Unknowns, int]:
     """As :func:`solve_checked`; of yielding solids, on failure, from the solution of elastic ones."""
     elastic = solver.problem.model.elastic()
     try:
-        return solve_checked(solver, guess, inputs, watch=watch)
+        return solve_checked(solver, guess, inputs, max_it, watch)
     except SolveFailed as error:
         if elastic is None:
             raise
         spent = error.iterations
     try:
-        begin, iterations = solve_checked(solver, guess, replace(inputs, contact=elastic), watch=watch)
+        begin, iterations = solve_checked(solver, guess, replace(inputs, contact=elastic), max_it, watch)
         spent += iterations
-        solution, iterations = solve_checked(solver, begin, inputs, watch=watch)
+        solution, iterations = solve_checked(solver, begin, inputs, max_it, watch)
     except SolveFailed as error:
         raise error.after(spent) from error
     return solution, spent + iterations

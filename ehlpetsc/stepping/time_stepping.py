@@ -109,15 +109,20 @@ class TimeStepping:
             before = state.records
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
-                solved, iterations = self._solve_step(again, state.unknowns, watch)
+                max_it = self.solver.start_iterations()
+                solved, iterations = self._solve_step(again, state.unknowns, watch, max_it)
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
             newton += iterations
             state = self._state(solved, end, before, newton=newton)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
-    def _solve_step(self, inputs: StepInputs, guess: Unknowns, watch: Watch) -> tuple[Solution, int]:
-        return self._inlet_first(inputs, guess, lambda i, begin: solve_step(self.solver, begin, i, watch))
+    def _solve_step(
+        self, inputs: StepInputs, guess: Unknowns, watch: Watch, max_it: int | None = None
+    ) -> tuple[Solution, int]:
+        return self._inlet_first(
+            inputs, guess, lambda i, begin: solve_step(self.solver, begin, i, watch, max_it)
+        )
 
     def _inlet_first(
         self,

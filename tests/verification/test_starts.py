@@ -185,6 +185,35 @@ def test_start_from_rest_does_not_depend_on_rounding(monkeypatch, solids):
     assert max(taken) <= 8 and max(taken) - min(taken) <= 1
 
 
+LIGHT_AND_FAST = {
+    "title": "light and fast",
+    "contact": {"radius": 9.78e-3, "load": 61.3e3, "material": "100Cr6"},
+    "fluid": {"oil": "fva3"},
+    "heat": {"bulk_temperature": 323.15},
+    "motion": {"entrainment_speed": 11.104},
+    "mesh": {"inlet": -30.0, "outlet": 2.0, "points_per_half_width": 60},
+}
+
+
+@pytest.mark.parametrize("speed, points", [(11.1, 60), (11.104, 60), (11.104, 120), (22.0, 60)])
+def test_light_fast_line_with_heat_starts_in_few_iterations(speed, points):
+    keys = {"motion.entrainment_speed": speed, "mesh.points_per_half_width": points}
+    state = Simulation(load(LIGHT_AND_FAST, keys)).advance()
+    assert state.newton <= 12 and state.load_error < 1e-8 and state.heat_error < 1e-10
+
+
+def test_start_with_heat_from_a_coarser_mesh_ends_as_the_one_from_hertz(monkeypatch):
+    """Within the accuracy of the steady temperatures; the one from Hertz takes more than 50 iterations."""
+    case = load(LIGHT_AND_FAST, {"mesh.points_per_half_width": 40})
+    nested = Simulation(case).advance()
+    monkeypatch.setattr(simulation, "MIN_HEATED_POINTS", 1000)
+    direct = Simulation(case).advance()
+    rise = direct.film_temperature_max - 323.15
+    assert nested.newton < 0.3 * direct.newton
+    assert np.abs(nested.film_temperature - direct.film_temperature).max() < 1e-4 * rise
+    np.testing.assert_allclose(nested.film_thickness, direct.film_thickness, rtol=1e-5)
+
+
 def test_start_that_fails_on_a_fine_mesh_begins_from_a_coarser_one(monkeypatch):
     keys = {"mesh.inlet": -2.0, "mesh.points_per_half_width": 200, "fluid.pressure_viscosity": 20e-9}
     expected = Simulation(load(CASES / "table1_smooth.toml", keys)).advance()

@@ -20,12 +20,13 @@ import numpy as np
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Error
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.heat.record import HeatRecord
+from ehlpetsc.effects.heat.record import HeatRecord, interpolated
 
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
     from ehlpetsc.effects.effect import Step
     from ehlpetsc.effects.heat.step import HeatStep
+    from ehlpetsc.physics.scales import Scales
 
 TEMPERATURE = ("K", 150, 2000)
 
@@ -130,6 +131,10 @@ class Heat(Effect[HeatRecord]):
         for side, bulk, body in zip("12", steps.bulk, steps.bodies, strict=True):
             cold |= {f"wall_{side}": np.full(n, bulk), f"body_{side}": body.cold()}
         return HeatRecord(**cold | {"flow": np.zeros(n + steps.rows), "heat": 0.0, "error": 0.0, "levels": 0})
+
+    def interpolated(self, record: HeatRecord, scales: Scales) -> HeatRecord | None:
+        """Temperatures on the nodes of this scene."""
+        return interpolated(record, scales.grid, self.scene.scales.grid)
 
     def inputs(self, record: HeatRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Oil at the film's temperature; the first steady solution is isothermal."""

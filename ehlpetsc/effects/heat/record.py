@@ -73,6 +73,16 @@ class HeatRecord(NamedTuple):
     levels: int
 
 
+def interpolated(record: HeatRecord, by: Grid, onto: Grid) -> HeatRecord:
+    """Record of a steady solution with its nodal fields on another grid; those of the bodies remain."""
+    nodal = (k for k, v in record._asdict().items() if isinstance(v, np.ndarray) and v.shape == (by.n,))
+    at_nodes = {name: by.interpolated(getattr(record, name), onto) for name in nodal}
+    flow = record.flow.reshape(-1, by.shape[-1] + 1)
+    per_cell = by.interpolated(0.5 * (flow[:, 1:] + flow[:, :-1]).ravel(), onto) * (by.dx / onto.dx)
+    rows = np.pad(onto.rows(per_cell), ((0, 0), (1, 1)), mode="edge")
+    return record._replace(**at_nodes, flow=0.5 * (rows[:, 1:] + rows[:, :-1]).ravel())
+
+
 def in_rows(values: np.ndarray, rows: int) -> np.ndarray:
     """Fields over all nodes, shape (fields, nodes), by rows: (rows, fields, nodes of a row), contiguous."""
     return np.ascontiguousarray(values.reshape(len(values), rows, -1).swapaxes(0, 1))

@@ -34,6 +34,7 @@ TINY = 1e-30  # m^2 K/W: bodies without response share equally
 DEPTH = 6
 ITERATIONS = 200
 ACCURACY = 1e-11  # of the maximum
+OF_CHANGE = 1e-3  # of the change between two solutions
 
 
 class Temperatures(NamedTuple):
@@ -247,7 +248,9 @@ class HeatStep:
             )
             return np.concatenate(new_fluxes)
 
-        mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]))
+        # a dry contact is solved once, an oil film and its temperatures in turn until they agree
+        of_change = OF_CHANGE if heat.isothermal else 0.0
+        mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]), of_change)
         return temperatures
 
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
@@ -276,18 +279,23 @@ def _rubbed(
     return [wall + rise for wall in walls], (first, 1.0 - first)
 
 
-def mixing(function: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
+def mixing(
+    function: Callable[[np.ndarray], np.ndarray], start: np.ndarray, of_change: float = 0.0
+) -> np.ndarray:
     r"""Fixed point :math:`x=g(x)` by Anderson's acceleration (Walker & Ni 2011).
 
-    Returns the last argument of the function.
+    Returns the last argument of the function. `of_change`: fraction of the first change that is accurate.
     """
     x: np.ndarray = start
     steps: list[np.ndarray] = []
     residuals: list[np.ndarray] = []
+    least = 0.0
     for _ in range(ITERATIONS):
         new = function(x)
         f = new - x
-        if np.abs(f).max() <= ACCURACY * max(np.abs(new).max(), 1e-300):
+        change = np.abs(f).max()
+        least = least or of_change * change
+        if change <= max(ACCURACY * max(np.abs(new).max(), 1e-300), least):
             return x
         steps, residuals = [*steps, x][-DEPTH:], [*residuals, f][-DEPTH:]
         if len(steps) == 1:
