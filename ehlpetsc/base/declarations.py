@@ -63,6 +63,8 @@ class Key:
         ``'contact.model = "mixed"'``, ``"heat.roelands_s0 left out"``.
     below
         Key of the same table below which the value must be.
+    words
+        Texts in place of a value that follows from other tables.
     equation
         In which the key appears, where it is too long for messages.
     table, variants
@@ -85,6 +87,7 @@ class Key:
     max_items: int | None = None
     needs: tuple[str, ...] = ()
     below: str = ""
+    words: Collection[str] = ()
     equation: str = ""
     is_difference: bool = False
     point_unit: str = ""

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import keyword
-import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Set
 from dataclasses import replace
-from operator import ge, gt, le, lt
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, NamedTuple
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.base.toml_file import Tables, is_plain
+from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, converted
-from ehlpetsc.case.messages import allowed, celsius, show, unknown
+from ehlpetsc.case.messages import allowed, celsius, show, similar, unknown
 from ehlpetsc.case.tables import CASE, key_of
+from ehlpetsc.case.values import NotAllowed, is_allowed, is_word, value_of
 
 NUMBERS_ONLY = {"half-widths", "boundary films"}  # units that are no units of measurement
-MAX_FLOAT = 1e308
 KINDS = (
     " in a line contact or a strip, of one radius",
     " in a point contact, of two radii",
 )  # after the allowed unit of a key
-
-# exceptions of values that follow from unchecked tables: their faults are found by the check of the keys
-FAULTY = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 
 
 class Fault(NamedTuple):
@@ -35,13 +30,12 @@ class Fault(NamedTuple):
     is_consequence: bool = False
 
 
-class _Wrong(Exception):
-    """A value is not an allowed one."""
+class _Scope(NamedTuple):
+    """Of the check of a whole case: its tables, places of known faults, whether all tables are sound."""
 
-
-def is_number(value: object) -> TypeGuard[float]:
-    """Whether a value is a finite number of TOML: an integer is one, true and false are not."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and -MAX_FLOAT < value < MAX_FLOAT
+    root: Tables
+    known: Collection[str]
+    is_sound: bool
 
 
 def in_si(data: Tables) -> list[Fault]:
@@ -69,6 +63,32 @@ def in_contact(key: Key, data: Tables) -> Key:
     return replace(key, unit=key.point_unit) if key.point_unit and is_point(data) else key
 
 
+def unsound_tables(data: Tables, known: Collection[str] = ()) -> set[str]:
+    """Names of the tables of a case with a faulty value or an unknown key: nothing may be derived from them.
+
+    What is missing, and what other keys need, may follow from other tables and counts as sound.
+    `known`: places of faults that have been found already.
+    """
+    names = {place.partition(".")[0] for place in (*known, *_faulty_places(CASE, data, "", data))}
+    return names | _meant(CASE, data)
+
+
+def _meant(table: KeyTable, data: Tables) -> set[str]:
+    """Keys of a table that unknown ones in it most likely mean."""
+    return {key for name in data if name not in table.keys for key in similar(str(name), table.keys)}
+
+
+def _faulty_places(table: KeyTable, data: Tables, where: str, root: Tables) -> Iterator[str]:
+    yield from (f"{where}{name}" for name in data if name not in table.keys)
+    for name in table.keys.keys() & data.keys():
+        key, value = in_contact(table.keys[name], root), data[name]
+        inner = _table_of(key, value)
+        if inner and isinstance(value, dict):
+            yield from _faulty_places(inner, value, f"{where}{name}.", root)
+        elif value is not None and not (is_word(key, value) or is_allowed(key, value)):
+            yield where + name
+
+
 def _entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key | None, str]]:
     """Values in tables: their table or list, their key in it, the key of the case, the place."""
     for name, key in table.keys.items():
@@ -91,30 +111,37 @@ def _series_entries(series: object) -> Iterator[tuple[Any, Any, Key | None, str]
 
 
 def check(
-    table: KeyTable, data: Tables, where: str = "", root: Tables | None = None, known: Collection[str] = ()
+    table: KeyTable,
+    data: Tables,
+    where: str = "",
+    root: Tables | None = None,
+    known: Collection[str] = (),
+    is_sound: bool = True,
 ) -> tuple[Any, list[Fault]]:
     """Checked values of a table, None with faults, and its faults.
 
     `where`: dotted name of the table with a dot at its end, "" for the whole case. `root`: tables of the
-    whole case, by default `data`. `known`: places of faults that have been found already.
+    whole case, by default `data`. `known`: places of faults that have been found already. `is_sound`:
+    whether the case has no unsound table; what keys need may otherwise be missing as a consequence.
     """
-    root = data if root is None else root
+    scope = _Scope(data if root is None else root, known, is_sound)
     values: Tables = {}
     faults: list[Fault] = []
+    others = [str(name) for name in data if name not in table.keys]
+    misspelt = _meant(table, data) | {f"[{name}]" for name in _meant(CASE, scope.root)}
     for name, declared in table.keys.items():
-        place, value, key = where + name, data.get(name), in_contact(declared, root)
+        place, value, key = where + name, data.get(name), in_contact(declared, scope.root)
         if place in known:
             faults.append(Fault(place, ""))
         elif value is None and not (key.table and key.table.always):
-            faults += _missing(place, key, data, root)
+            faults += _missing(place, key, data, scope.root, misspelt & {name, *key.replaced_by})
             values[attribute(name)] = key.default
         else:
             given = {} if value is None else value
-            values[attribute(name)], found = _checked(place, key, given, data, root, known)
+            values[attribute(name)], found = _checked(place, table, key, given, data, scope)
             faults += found
-    for name in data:
-        if name not in table.keys:
-            faults.append(Fault(f"{where}{name}", unknown(where, str(name), data[name], table.keys)))
+    for name in others:
+        faults.append(Fault(f"{where}{name}", unknown(where, name, data[name], table.keys)))
     if faults:
         return None, [fault for fault in faults if fault.text]
     result = table.values(values)
@@ -132,37 +159,45 @@ def values_of(table: KeyTable, data: Tables) -> Any:
     return values
 
 
-def _missing(place: str, key: Key, data: Tables, root: Tables) -> list[Fault]:
+def _missing(place: str, key: Key, data: Tables, root: Tables, misspelt: Set[str]) -> list[Fault]:
+    """Fault of a required key; a consequence where it follows from others, or if one of them is misspelt."""
     if not key.required:
         return []
     given = [name for name in key.replaced_by if (root.get(name[1:-1]) if name[0] == "[" else data.get(name))]
     text = f"{place} is missing" + (f", and does not follow from {given[0]}" if given else "")
     instead = "".join(f", or {name}" for name in key.replaced_by if not given)
-    return [Fault(place, f"{text}; allowed: {allowed(key)}{instead}", bool(given))]
+    return [Fault(place, f"{text}; allowed: {allowed(key)}{instead}", bool(given or misspelt))]
 
 
 def _checked(
-    place: str, key: Key, value: object, data: Tables, root: Tables, known: Collection[str]
+    place: str,
+    table: KeyTable,
+    key: Key,
+    value: object,
+    data: Tables,
+    scope: _Scope,
 ) -> tuple[Any, list[Fault]]:
-    """Value of a key and its faults."""
+    """Value of a key of a table and its faults."""
     inner = _table_of(key, value)
     if inner and isinstance(value, dict):
-        unmet = [need for need in inner.needs if not _holds(need, root)]
-        result, faults = check(inner, value, f"{place}.", root, known)
-        needs = [Fault(place, f"{place}: needs {' and '.join(unmet)}")] if unmet else []
+        unmet = [need for need in inner.needs if not _holds(need, scope.root)]
+        result, faults = check(inner, value, f"{place}.", *scope)
+        needs = [Fault(place, f"{place}: needs {' and '.join(unmet)}", not scope.is_sound)] if unmet else []
         return result, needs + faults
     try:
-        result = _value(key, value)
-        if key.below and is_number(limit := data.get(key.below)) and result >= limit:
-            raise _Wrong
-    except _Wrong:
+        result = value_of(key, value)
+        limit = data.get(key.below) if key.below else None
+        if limit is not None and is_allowed(table.keys[key.below], limit) and result >= limit:
+            raise NotAllowed
+    except NotAllowed:
         if isinstance(value, dict) and key.kind is not dict:
             return None, [Fault(place, f"{place}: a table here; allowed: {allowed(key)}")]
         hint = celsius(key, value)
-        return None, [Fault(place, f"{place} = {show(value)}: allowed: {allowed(key)}{hint}")]
-    unmet = [need for need in key.needs if result != key.default and not _holds(need, root)]
+        text = f"{place} = {show(value)}: allowed: {allowed(key)}{hint}"
+        return None, [Fault(place, text, is_word(key, value) and not scope.is_sound)]
+    unmet = [need for need in key.needs if result != key.default and not _holds(need, scope.root)]
     of_need = f"{place} = {show(value)}: needs {' and '.join(unmet)} ({plain(key.text)})"
-    return (None, [Fault(place, of_need)]) if unmet else (result, [])
+    return (None, [Fault(place, of_need, not scope.is_sound)]) if unmet else (result, [])
 
 
 def _table_of(key: Key, value: object) -> KeyTable | None:
@@ -171,60 +206,6 @@ def _table_of(key: Key, value: object) -> KeyTable | None:
         kind = value.get("kind")
         return key.variants.get(kind) if isinstance(kind, str) else None
     return key.table
-
-
-def _value(key: Key, value: object) -> Any:
-    """Value with the type of the key."""
-    if key.kind is dict:
-        if key.table or key.variants or not isinstance(value, dict):
-            raise _Wrong
-        return dict(value)
-    if key.many == "both" and not isinstance(value, list | tuple):
-        value = [value, value]
-    if not key.many or key.many == "axes" and not isinstance(value, list | tuple):
-        return _item(key, value)
-    if key.many == "list or matrix" and isinstance(value, list | tuple) and value:
-        key = replace(key, many="list")
-        if isinstance(value[0], list | tuple):
-            rows = [_value(key, row) for row in value]
-            if len(rows) < key.min_items or len(set(map(len, rows))) > 1:
-                raise _Wrong
-            return rows
-    shortest, longest = (
-        (2, 2) if key.many in ("both", "two", "axes") else (key.min_items, key.max_items or math.inf)
-    )
-    if not isinstance(value, list | tuple) or not shortest <= len(value) <= longest:
-        raise _Wrong
-    items = _numbers(key, value) if key.kind is float else [_item(key, item) for item in value]
-    return items if key.many == "list" else tuple(items)
-
-
-def _numbers(key: Key, values: list | tuple) -> list[float]:
-    """Items of a list of numbers, of which a measured map has a million."""
-    if not set(map(type, values)) <= {int, float}:
-        return [_item(key, value) for value in values]
-    extremes = (min(values), max(values)) if len(values) > 2 and all(map(math.isfinite, values)) else values
-    for value in extremes:
-        _item(key, value)
-    return [float(value) for value in values]
-
-
-def _item(key: Key, value: object) -> Any:
-    if key.kind is object:
-        return value
-    if key.kind in (int, float):
-        if not is_number(value) or key.kind is int and not isinstance(value, int):
-            raise _Wrong
-        bounds = ((ge, key.ge), (gt, key.gt), (le, key.le), (lt, key.lt))
-        if not all(bound is None or holds(value, bound) for holds, bound in bounds):
-            raise _Wrong
-        return key.kind(value)
-    if not isinstance(value, key.kind) or key.choices and value not in key.choices:
-        raise _Wrong
-    longest = key.max_items if key.max_items and not key.many else math.inf
-    if isinstance(value, str) and not (is_plain(value) and 0 < len(value) <= longest):
-        raise _Wrong
-    return value
 
 
 def _holds(need: str, root: Tables) -> bool:

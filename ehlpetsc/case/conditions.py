@@ -6,9 +6,8 @@ contact and the fastest entrainment. It is filled in under the keys of constant 
 
 from __future__ import annotations
 
-import contextlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,10 +17,11 @@ from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import FAULTY, check, in_contact, is_number, is_point
+from ehlpetsc.case.checking import check, in_contact, is_point
 from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
+from ehlpetsc.case.values import is_number
 from ehlpetsc.physics.geometry import GEOMETRIES
 from ehlpetsc.physics.scales import reduced_modulus
 
@@ -80,10 +80,10 @@ def _factors(heading: str, units: Mapping[str, str], names: Columns) -> dict[str
 MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
 
 
-def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
-    """Conditions over time from the unchecked tables of a case in a folder; raises `ProfileError`.
+def conditions_of(tables: Tables, folder: Path, unsound: Set[str] = frozenset()) -> ConditionsTable | None:
+    """Conditions over time from the tables of a case in a folder; raises `ProfileError`.
 
-    None: constant conditions, or a table with faults that the check of the keys reports.
+    None: constant conditions, or unsound tables, whose faults the check of the keys reports.
     """
     gears, operation = tables.get("gears"), tables.get("operation")
     if gears is not None and isinstance(operation, dict):
@@ -98,9 +98,9 @@ def conditions_of(tables: Tables, folder: Path) -> ConditionsTable | None:
         return None
     if values.file is not None:
         columns = read_table(folder / values.file, units_in(tables, OPERATION), COLUMNS)
-        return _table(columns, tables, values.repeat)
-    columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
-    return _table(columns, tables, values.repeat)
+    else:
+        columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
+    return _table(columns, tables, values.repeat, unsound)
 
 
 FILES = {"operation": ("file", OPERATION, COLUMNS), "gears": ("load_file", GEARS, PATH_COLUMNS)}
@@ -143,8 +143,13 @@ def of_gears(path: ContactPath) -> ConditionsTable:
     )
 
 
-def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> ConditionsTable:
-    """Conditions of the columns, for missing ones the constants of the case; raises `ProfileError`."""
+def _table(
+    columns: dict[str, list[float]], tables: Tables, repeat: int, unsound: Set[str]
+) -> ConditionsTable | None:
+    """Conditions of the columns, for missing ones the constants of the case; raises `ProfileError`.
+
+    None: the constants are in unsound tables.
+    """
     if "time" not in columns:
         raise ProfileError("no column time; allowed: one, increasing")
     if len(columns) == 1:
@@ -164,6 +169,8 @@ def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> Cond
     refuse("time", np.append(False, np.diff(values["time"]) <= 0.0), "increasing times")
     for key in {"load", "radius"} & set(values):
         refuse(key, values[key] <= 0.0, "above 0")
+    if unsound & {"contact", "motion"}:
+        return None
     constants = _constants(tables)
     missing = [key for key in COLUMNS if key not in values and key not in constants]
     if missing:
@@ -181,57 +188,46 @@ def _table(columns: dict[str, list[float]], tables: Tables, repeat: int) -> Cond
 
 def _constants(tables: Tables) -> dict[str, float]:
     """Constant conditions in the other tables of a case."""
-    constants: dict[str, float] = {}
-    for key in ("load", "radius"):
-        with contextlib.suppress(*FAULTY):
-            value = tables["contact"][key]
-            value = value[0] if key == "radius" and is_point(tables) else value
-            constants |= {key: float(value)} if value > 0.0 else {}
-    with contextlib.suppress(*FAULTY):
-        motion = tables["motion"]
-        u, xi = float(motion["entrainment_speed"]), float(motion.get("slide_roll_ratio", 0.0))
+    contact, motion = tables.get("contact", {}), tables.get("motion", {})
+    constants = {key: contact[key] for key in ("load", "radius") if key in contact}
+    if is_point(tables):
+        constants["radius"] = contact["radius"][0]
+    if "entrainment_speed" in motion:
+        u, xi = motion["entrainment_speed"], motion.get("slide_roll_ratio", 0.0)
         constants |= {"speed_1": u * (1.0 + xi / 2.0), "speed_2": u * (1.0 - xi / 2.0)}
-    return constants
+    return {key: float(value) for key, value in constants.items()}
 
 
 def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Tables:
-    """Tables of a case with the reference state of its conditions filled in."""
-    named = ("contact", "motion", "time")
-    if table is None or any(not isinstance(tables.get(name, {}), dict) for name in named):
-        return tables  # constant conditions, or faults that the check of the keys reports
-    contact, motion, time = (tables.get(name, {}) for name in named)
+    """Tables of a case, none of them unsound, with the reference state of its conditions filled in."""
+    if table is None:
+        return tables
+    contact, motion, time = (tables.get(name, {}) for name in ("contact", "motion", "time"))
     load, radius, u, xi = table.reference()
     kind = "point" if is_point(tables) else "line"
     radii, ratio = _radii(contact.get("radius"), radius)
-    replaced = {"load": load, "radius": radii}
-    wrong = {key: contact[key] for key in replaced if isinstance(contact.get(key), str | bool | dict)}
-    contact, constants = contact | replaced | wrong, _constants(tables)  # what is wrong is reported
+    contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
     if any((speed != constants.get(key)).any() for key, speed in speeds.items()):
         motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
-    if isinstance(tables.get("gears"), dict) and "pass_shift" not in time:
+    if "gears" in tables and "pass_shift" not in time:
         time = time | {"pass_shift": check(GEARS, tables["gears"])[0].pair.hunting_shift}
     if "travel" not in time:
         time = time | {"travel": 1.0}
-        with contextlib.suppress(*FAULTY):
-            given = (contact[key] for key in ("youngs_modulus", "poisson_ratio"))
-            modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in given))
+        elastic = [contact.get(key) for key in ("youngs_modulus", "poisson_ratio")]
+        if None not in elastic:
+            modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
             half_width = GEOMETRIES[kind].half_width(load, radius, modulus, ratio)
             time["travel"] = float(table.swept_length() / half_width)
     return tables | {"contact": contact, "motion": motion, "time": time}
 
 
 def _radii(given: Any, radius: float) -> tuple[Any, float]:
-    """Radii of a contact with one along [m], in the ratio of those given, and this ratio.
-
-    A pair that has no ratio is returned as given, with nan; of a line the ratio is infinite.
-    """
+    """Radii with one along [m], in the ratio of those given, and this ratio, infinite of a line."""
     if not isinstance(given, list | tuple):
         return radius, math.inf
-    if len(given) == 2 and all(is_number(value) and value > 0.0 for value in given):
-        along, across = given
-        return [radius, across * (radius / along)], across / along
-    return given, math.nan
+    along, across = given
+    return [radius, across * (radius / along)], across / along
 
 
 def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:

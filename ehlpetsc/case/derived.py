@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
+from collections.abc import Set
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,8 +13,7 @@ from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.base.toml_file import Tables
-from ehlpetsc.case.checking import FAULTY, Fault, check, values_of
-from ehlpetsc.case.combinations import keys_of
+from ehlpetsc.case.checking import Fault, check, unsound_tables, values_of
 from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.law import STANDARD_TEMPERATURE
@@ -33,25 +32,27 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
+    from ehlpetsc.surfaces.samples import Samples
+    from ehlpetsc.surfaces.topography import Topography
 
+MAX_VISCOSITY = 1e12  # mm^2/s
 MEASURED_KEY = "asperity_height"
 DIGITS = 6  # of a measured asperity height
 
 
-def with_derived(tables: Tables) -> Tables:
-    """Tables of a case with the constants of its steels and of its oil.
-
-    Tables with faults, which are found by the check of the keys, do not change.
-    """
-    for derived in (_with_material, _with_grade, _with_oil):
-        with contextlib.suppress(*FAULTY):
+def with_derived(tables: Tables, unsound: Set[str]) -> Tables:
+    """Tables of a case with the constants of its steels and of its oil, except those of unsound tables."""
+    for derived, sources in DERIVATIONS:
+        if not unsound & sources:
             tables = derived(tables)
     return tables
 
 
 def _with_material(tables: Tables) -> Tables:
     """Elastic constants of the steels, and their flow pressure for ``yield_pressure = "material"``."""
-    contact = tables["contact"]
+    contact = tables.get("contact", {})
+    if "material" not in contact:
+        return tables
     steels = named_steels(contact["material"])
     elastic = ("youngs_modulus", "poisson_ratio")
     filled = {key: [getattr(steel, key) for steel in steels] for key in elastic} | contact
@@ -64,8 +65,8 @@ def _with_material(tables: Tables) -> Tables:
 
 def _with_grade(tables: Tables) -> Tables:
     """Viscosity by Walther's equation (ASTM D341) times the density, and alpha by Gold et al. (2001)."""
-    fluid, heat = tables["fluid"], tables.get("heat", {})
-    grade, temperature = fluid["grade"], _oil_temperature(fluid, heat)
+    fluid, heat = tables.get("fluid", {}), tables.get("heat", {})
+    grade, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
     if isinstance(grade, str):
         named = GRADES[grade]
         density = named.density if temperature is None else named.density_at(temperature)
@@ -75,7 +76,10 @@ def _with_grade(tables: Tables) -> Tables:
     oil = check(GRADE, grade)[0] if isinstance(grade, dict) else None
     if oil is None or temperature is None or not 200.0 < temperature < 700.0:
         return tables
-    nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])  # mm^2/s
+    with np.errstate(all="ignore"):
+        nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])  # mm^2/s
+    if not 0.0 < nu < MAX_VISCOSITY:  # far from 40 and 100 degrees C
+        return tables
     properties = {"viscosity": nu / 1e6 * oil.density} | fluid
     alpha = _slope(gold_pressure_viscosity(nu), properties)
     tables = tables | {"fluid": {"pressure_viscosity": alpha} | properties}
@@ -93,7 +97,9 @@ def _slope(secant: float, fluid: Tables) -> float:
 
 def _with_oil(tables: Tables) -> Tables:
     """Constants of a measured oil; a case that gives a stress of a shear law has none of the oil's."""
-    fluid, heat = tables["fluid"], tables.get("heat", {})
+    fluid, heat = tables.get("fluid", {}), tables.get("heat", {})
+    if "oil" not in fluid:
+        return tables
     oil, temperature = OILS[fluid["oil"]], _oil_temperature(fluid, heat) or STANDARD_TEMPERATURE
     if not 200.0 < temperature < 700.0:
         return tables
@@ -105,6 +111,13 @@ def _with_oil(tables: Tables) -> Tables:
     return tables | {"heat": oil.heat | heat} if heat else tables
 
 
+DERIVATIONS = (  # function, tables that it reads
+    (_with_material, {"contact", "post"}),
+    (_with_grade, {"fluid", "heat"}),
+    (_with_oil, {"fluid", "heat"}),
+)
+
+
 def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:
     """Temperature at which `viscosity` holds [K], None if there is none."""
     bulk = heat.get("bulk_temperature")
@@ -114,23 +127,26 @@ def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:
     return next((value for value in given if value is not None), None)
 
 
-def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
+def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[Fault]:
     r"""Replace ``asperity_height = "measured"`` in the tables of a case by a number; returns the faults.
 
     .. math:: \sigma^2=\sum_{surfaces}\overline{(z-z_S)^2},
 
     z_S the profile or map after the S-filter (`short_cutoff`), both with the scale of the case.
+
+    `known`: places of faults that have been found already.
     """
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
         return []
-    varied: list[object] = []
-    with contextlib.suppress(*FAULTY):
-        varied = [*keys_of(data["series"])]
-    if any(isinstance(name, str) and name.startswith("surface.") for name in varied):
+    unresolved = [Fault(place, f'{place} = "measured": the surfaces have faults', is_consequence=True)]
+    if unsound_tables(data, known) & {"contact", "surface", "series"}:
+        return unresolved
+    series, surface = data.get("series", {}), data.get("surface", {})
+    varied = [series["key"]] if "key" in series else series.get("keys", [])
+    if any(name.startswith("surface.") for name in varied):
         return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
-    surface = data["surface"] if isinstance(data.get("surface"), dict) else {}
-    tables = [table for table in surface.values() if isinstance(table, dict) and "short_cutoff" in table]
+    tables = [table for table in surface.values() if "short_cutoff" in table]
     if not tables:
         return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
     try:
@@ -138,8 +154,7 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
         before = [_heights(folder, profile.copy({"short_cutoff": None})) for profile in profiles]
         after = [_heights(folder, profile) for profile in profiles]
     except (ProfileError, CaseError):  # reported by the checks of the profiles
-        contact[MEASURED_KEY] = None
-        return []
+        return unresolved
     removed = [float((z - z_s).std()) for z, z_s in zip(before, after, strict=True)]
     contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
     return []
@@ -147,12 +162,17 @@ def resolve_measured_layer(folder: Path, data: Tables) -> list[Fault]:
 
 def _heights(folder: Path, surface: Values) -> np.ndarray:
     """Heights of a profile or of a map as used [m]."""
+    return measured_samples(folder, surface).z
+
+
+def measured_samples(folder: Path, surface: Values) -> Samples | Topography:
+    """Profile or map of a surface, whichever it gives; raises `ProfileError`."""
     from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
     from ehlpetsc.surfaces.samples import samples
 
     if surface.synthetic is None and holds_map(folder, surface):
-        return areal_samples(folder, surface, math.inf, is_strip=False).z
-    return samples(folder, surface).z
+        return areal_samples(folder, surface, math.inf, is_strip=False)
+    return samples(folder, surface)
 
 
 def with_layer_stiffness(case: Case) -> Case:
@@ -186,7 +206,6 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     from ehlpetsc.gears.standards import Rating
     from ehlpetsc.physics.flash_temperature import STEEL, Solid
     from ehlpetsc.physics.laws import reference_temperature, viscosity
-    from ehlpetsc.surfaces.samples import samples
 
     if case.gears is None or case.fluid is None:
         return None
@@ -200,7 +219,7 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     missing = dict.fromkeys(("roelands_s0", "viscosity_temperature", "reference_temperature"))
     thermal = heat or Values(missing | {"oil_inlet_temperature": reference})
     profiles = [case.surface.side(side) for side in ("1", "2")]
-    deviations = [samples(folder, profile).z for profile in profiles if profile]
+    deviations = [measured_samples(folder, profile).z for profile in profiles if profile]
     roughness = sum(float(np.abs(z - z.mean()).mean()) for z in deviations) / 2.0
 
     def relative(temperature: np.ndarray) -> np.ndarray:

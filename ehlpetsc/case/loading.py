@@ -13,14 +13,21 @@ from typing import TYPE_CHECKING, Any, cast
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import Tables, parse_toml, plain, read_text
-from ehlpetsc.case.checking import Fault, check, in_si, is_number
+from ehlpetsc.case.checking import Fault, check, in_si, unsound_tables
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
-from ehlpetsc.case.derived import rating_of, resolve_measured_layer, with_derived, with_layer_stiffness
+from ehlpetsc.case.derived import (
+    measured_samples,
+    rating_of,
+    resolve_measured_layer,
+    with_derived,
+    with_layer_stiffness,
+)
 from ehlpetsc.case.kinds import LINE, faults_of_kind, given_by_gears
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.case.values import is_number
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
@@ -76,7 +83,7 @@ def load(
     written, folder = copy.deepcopy(data), Path(path).parent
     faults = _override(data, overrides)
     faults += in_si(data)
-    faults += resolve_measured_layer(folder, data)
+    faults += resolve_measured_layer(folder, data, {fault.place for fault in faults})
     base = copy.deepcopy(data) if "series" in data else data  # each member has bulk temperatures of its own
     checked, found = _with_profiles(folder, base, {fault.place for fault in faults})
     lines = _lines(path, faults + found)
@@ -142,16 +149,18 @@ def _checked(
     faults, conditions = [], None
     if wrong := given_by_gears(data):
         return None, wrong
-    data = with_derived(data)
+    unsound = unsound_tables(data, known)
+    data = with_derived(data, unsound)
     try:
         data = with_columns(data, folder, ("gears",))
-        conditions = conditions_of(data, folder)
+        conditions = conditions_of(data, folder, unsound)
     except ProfileError as error:
         faults = [] if is_stored else [_file_fault(data, error)]
-    data = with_reference_state(data, conditions)
+    if not unsound:
+        data = with_reference_state(data, conditions)
     if "motion" not in data and ("fluid" in data or "time" in data):
-        faults.append(Fault("motion", SPEEDS, "gears" in data or "operation" in data))
-    case, found = check(CASE, data, known=known)
+        faults.append(Fault("motion", SPEEDS, bool(unsound) or "gears" in data or "operation" in data))
+    case, found = check(CASE, data, known=known, is_sound=not unsound and not faults)
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
@@ -191,7 +200,10 @@ def _checked_with_losses(folder: Path, data: Tables, known: Collection[str]) -> 
         return None, faults
     from ehlpetsc.gears.standards import bulk_temperatures
 
-    bulk = bulk_temperatures(rating_of(case, folder), heat_transfer=case.gears.heat_transfer)
+    try:
+        bulk = bulk_temperatures(rating_of(case, folder), heat_transfer=case.gears.heat_transfer)
+    except ProfileError:  # of a surface, reported by its check
+        return None, []
     heat["bulk_temperature"] = [round(value, 1) for value in bulk]
     return _checked(folder, data, known)
 
@@ -220,7 +232,7 @@ def _lines(path: str | PathLike, faults: list[Fault]) -> list[str]:
 def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> tuple[Any, list[Fault]]:
     """As :func:`_checked`, with the faults of the files or heights of both surfaces.
 
-    Without a case, as other tables have faults, the profiles are not compared with the contact.
+    Without a case, as other tables have faults, they are read alone, as profiles or maps.
     """
     case, faults = _checked(folder, data, known)
     surface = data.get("surface")
@@ -229,44 +241,36 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     whole = case if case and case.contact and case.mesh else None  # or their faults are reported
     of_kind = faults_of_kind(whole, data, specs) if whole else []
     for side, spec in specs.items():
-        table = tables[side]
-        if whole and whole.kind != LINE:
-            faults += _map_faults(folder, spec, whole, f"surface.{side}") if not of_kind else []
-            continue
-        if spec is None or spec.synthetic or of_kind:  # smooth, or its faults are reported with its keys
+        if spec is None or of_kind:  # smooth, or its faults are reported with its keys
             continue
         try:
-            _check_profile(folder, spec, case)
+            _check_surface(folder, spec, whole)
         except ProfileError as error:
-            key = "z" if "z" in table else "file"
-            faults.append(Fault("", f"surface.{side}.{key} = {show(table[key])}: {error}"))
+            key = "z" if "z" in tables[side] else "file"
+            of_map = whole and whole.kind != LINE  # of several keys
+            given = "" if of_map else f".{key} = {show(tables[side][key])}"
+            faults.append(Fault("", f"surface.{side}{given}: {error}"))
     return case, faults + of_kind
 
 
-def _map_faults(folder: Path, spec: Values | None, case: Case, place: str) -> list[Fault]:
-    """Faults of a surface on a contact in the plane."""
-    from ehlpetsc.surfaces.areal_samples import areal_samples
+def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:
+    """Raise `ProfileError` for a surface that cannot be used in a case; None: in any kind of contact."""
+    if case is not None and case.kind != LINE:
+        from ehlpetsc.surfaces.areal_samples import areal_samples
 
-    if spec is None:
-        return []
-    grid = Scales.of(case).grid
-    try:
+        grid = Scales.of(case).grid
         width = grid.spacings[0] * grid.shape[0]
         if spec.synthetic:
             areal_samples(folder, spec, width, grid.periodic)
         else:
             _check_plausible(areal_samples(folder, spec, width, False), case)  # with its own spacings
-    except ProfileError as error:
-        return [Fault("", f"{place}: {error}")]
-    return []
+    elif not spec.synthetic:
+        from ehlpetsc.surfaces.samples import samples
 
-
-def _check_profile(folder: Path, spec: Values, case: Case | None) -> None:
-    from ehlpetsc.surfaces.samples import samples  # smooth surfaces need none
-
-    given = samples(folder, spec)
-    if case and case.contact:  # their faults are reported with their keys
-        _check_plausible(given, case)
+        if case is None:
+            measured_samples(folder, spec)
+        else:
+            _check_plausible(samples(folder, spec), case)
 
 
 def _check_plausible(given: Samples | Topography, case: Case) -> None:

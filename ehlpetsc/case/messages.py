@@ -66,7 +66,7 @@ def shortened(text: str) -> str:
 def unknown(where: str, name: str, value: object, names: Iterable[str]) -> str:
     """Fault of a key that does not exist, with a hint to another one."""
     place = where + shortened(name)
-    hint = nearest(shortened(name), names) or f"allowed: {', '.join(names)}"
+    hint = nearest(name, names) or f"allowed: {', '.join(names)}"
     if isinstance(value, dict):
         return f"[{place}]: unknown table; {hint}"
     return f"{place} = {show(value)}: unknown key; {hint}"
@@ -74,5 +74,9 @@ def unknown(where: str, name: str, value: object, names: Iterable[str]) -> str:
 
 def nearest(name: str, names: Iterable[str]) -> str:
     """Hint to the most similar name, "" without one."""
-    close = difflib.get_close_matches(name, list(names), n=1)
-    return f'did you mean "{close[0]}"?' if close else ""
+    return "".join(f'did you mean "{close}"?' for close in similar(name, names))
+
+
+def similar(name: str, names: Iterable[str]) -> list[str]:
+    """The most similar name in a list, an empty list without one."""
+    return difflib.get_close_matches(shortened(name), list(names), n=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Required, Values
@@ -81,6 +82,7 @@ KEYS = {
         'rms height of the roughness finer than the mesh; "measured": that which short_cutoff removes',
         *("m", 1e-11, 1e-6),
         needs=(MIXED,),
+        words=("measured",),
         equation="`p_c = beta E* (exp(3 (h - h_a)/(0.5 sigma)) - 1 + (beta E*/H)^3)^(-1/3)`, `E* = E'/2`, "
         "`sigma = asperity_height`, `h_a = adsorbed_film`, `H = asperity_hardness`",
     ),
@@ -114,6 +116,7 @@ KEYS = {
         *("Pa", 1e6, 1e18),
         many="both",
         needs=(MIXED,),
+        words=("material",),
         equation="`p <= p_y`, `d >= 0`, `(p_y - p) d = 0`, `d` the increment of plastic deformation",
     ),
 }
@@ -141,7 +144,7 @@ GRADE = KeyTable(
 )
 KEYS = {
     "viscosity": Required("at ambient pressure", "Pa s", 1e-6, 1e4, replaced_by=("grade", "oil")),
-    "grade": GRADE.key,
+    "grade": replace(GRADE.key, words=tuple(GRADES)),
     "oil": Key(
         "measured oil: its keys of [fluid] and [heat], which the case overrides",
         choices=tuple(OILS),

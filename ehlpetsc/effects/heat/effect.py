@@ -46,7 +46,10 @@ def _of_bodies(text: str, unit: str, ge: float, le: float, default: float) -> Ke
 
 KEYS = {
     "bulk_temperature": Required(
-        'of the bodies far from the contact; "losses": of gears, by their losses', *TEMPERATURE, many="both"
+        'of the bodies far from the contact; "losses": of gears, by their losses',
+        *TEMPERATURE,
+        many="both",
+        words=("losses",),
     ),
     "inlet_temperature": Key("of the oil that enters; left out: mean of both bodies", *TEMPERATURE),
     "conductivity": _of_bodies("conductivity", "W/(m K)", 1e-3, 1e4, 46.0),

@@ -1,0 +1,102 @@
+"""One fault of a case, whatever its kind of contact and whatever else it gives, is one message about it."""
+
+import copy
+import tomllib
+from functools import partial
+
+import pytest
+
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.loading import load
+
+ROWS = "[[0, 1e-8, 0, 2e-8, 1e-8], [1e-8, 0, 0, 1e-8, 0], [0, 0, 1e-8, 0, 0], [0, 1e-8, 0, 0, 0]]"
+POINT = f"""
+title = "a map given as rows"
+contact = {{ radius = [0.01, 0.01], load = 10, material = "100Cr6", model = "mixed" }}
+fluid = {{ oil = "fva3", temperature = 313.0 }}
+mesh = {{ inlet = -2, outlet = 2, points_per_half_width = 8 }}
+motion = {{ entrainment_speed = 1 }}
+time = {{ travel = 1 }}
+wear = {{ coefficient = 1e-17 }}
+surface.1 = {{ z = {ROWS}, spacing = 1e-5 }}
+"""
+STRIP = POINT.replace("[0.01, 0.01], load = 10", "0.01, load = 1e5").replace(
+    "outlet = 2", "outlet = 2, width = 0.5"
+)
+LAYER = STRIP.replace(
+    '"mixed"', '"mixed", asperity_height = "measured", yield_pressure = "material"'
+).replace("spacing = 1e-5", "spacing = 1e-5, short_cutoff = 2e-5, cutoff = 3e-5")
+TABLE = "operation = { time = [0, 1e-4], load = [10, 20], speed_1 = [1, 1], speed_2 = [1, 1] }"
+OPERATION = POINT.replace("load = 10, ", "").replace("motion = { entrainment_speed = 1 }", TABLE)
+OPERATION = OPERATION.replace("time = { travel = 1 }\n", "").replace(
+    'oil = "fva3"', 'grade = "ISO VG 100", law = "roelands", density = "dowson-higginson"'
+)
+PAIR = "gears = { module = 4.5e-3, teeth = [16, 24], profile_shift = [0.18, 0.17], face_width = 14e-3, "
+PAIR += "torque = 302, speed = 2250 }"
+GEARS = STRIP.replace("radius = 0.01, load = 1e5, ", "").replace("motion = { entrainment_speed = 1 }", PAIR)
+GEARS = GEARS.replace("time = { travel = 1 }", 'heat = { bulk_temperature = "losses" }')
+BASES = {"point": POINT, "strip": STRIP, "layer": LAYER, "operation": OPERATION, "gears": GEARS}
+
+
+def places(tables, above=()):
+    """Paths of all tables and keys."""
+    for name, value in tables.items():
+        yield (*above, name)
+        if isinstance(value, dict):
+            yield from places(value, (*above, name))
+
+
+def wrong_value(table, name):
+    table[name] = "no such value"
+
+
+def misspelt(table, name):
+    table[name + name[-1]] = table.pop(name)
+
+
+@pytest.mark.parametrize("fault", [wrong_value, misspelt])
+@pytest.mark.parametrize("base", BASES)
+def test_any_fault_of_a_key_is_one_message(base, fault):
+    """Tracebacks of maps, maps called profiles, values missing that follow from the faulty one."""
+    tables = tomllib.loads(BASES[base])
+    assert load(copy.deepcopy(tables)).surface.body_1.z is not None
+    for *above, name in places(tables):
+        if name == "title" and fault is wrong_value or name in ("1", "z"):
+            continue
+        faulty = copy.deepcopy(tables)
+        table = faulty
+        for key in above:
+            table = table[key]
+        fault(table, name)
+        with pytest.raises(CaseError) as refused:
+            load(faulty)
+        (line,) = refused.value.faults
+        assert ".".join((*above, name)) in line
+
+
+def test_a_file_that_no_contact_can_use_is_reported_beside_other_faults(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "map.txt").write_text("\n".join(["0 1 0 2 1 0"] * 6))
+    faulty = tomllib.loads(POINT) | {
+        "surface": {"1": {"file": "no.txt"}, "2": {"file": "map.txt", "spacing": 1e-5}}
+    }
+    with pytest.raises(CaseError) as refused:
+        load(faulty, ["mesh.inlet=4"])
+    heads = sorted(line.split(": ")[1].split(" = ")[0] for line in refused.value.faults)
+    assert heads == ["mesh.inlet", "surface.1.file"]
+
+
+def test_bulk_temperature_of_losses_with_a_map_and_without_its_file(tmp_path, monkeypatch):
+    """The roughness of maps of gears was taken for that of profiles: a traceback."""
+    monkeypatch.chdir(tmp_path)
+    assert load(tomllib.loads(GEARS)).heat.bulk_temperature[0] > 313.0
+    with pytest.raises(CaseError, match="surface.1.* no such file") as refused:
+        load(tomllib.loads(GEARS), {"surface.1": {"file": "no.txt", "spacing": 1e-5}})
+    assert len(refused.value.faults) == 1
+
+
+def test_a_bound_by_another_key_is_not_checked_against_a_faulty_one():
+    heights = partial(load, tomllib.loads(LAYER.replace("cutoff = 3e-5", "cutoff = -1")))
+    with pytest.raises(CaseError) as refused:
+        heights()
+    assert len(refused.value.faults) == 1
