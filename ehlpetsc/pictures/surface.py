@@ -3,12 +3,14 @@
 FILE is a profile or map as in ``[surface.1]``, whose keys ``--set unit=um``, ``--set cutoff=0.8e-3`` and so
 on set. The least-squares line or plane is subtracted, except with ``--set level=false``. Without a cutoff the
 parameters are those of the primary profile. ``--csv FILE.csv`` writes the power spectral density, of a map
-those along and across its rows.
+those along and across its rows. ``-o FILE.gsf``, ``.x3p`` or ``.vti`` writes the surface as used, in place of
+the picture.
 """
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +27,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import areal_surface, style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
+from ehlpetsc.surfaces.exports import WRITERS, GridField
 from ehlpetsc.surfaces.parameters import (
     MIN_POINTS,
     CoreParameters,
@@ -45,7 +48,9 @@ def arguments() -> CommandParser:
     """Parse the command line."""
     parser = CommandParser("surface", __doc__)
     parser.add_argument("file", help="profile or map")
-    parser.add_argument("-o", "--output", help="picture [FILE.surface.png]")
+    parser.add_argument(
+        "-o", "--output", help="picture [FILE.surface.png]; .gsf, .x3p, .vti: the surface as used"
+    )
     parser.add_argument("--no-picture", action="store_true", help="the parameters alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="power spectral density over the wavenumber")
     parser.add_argument(
@@ -64,7 +69,10 @@ def run(chosen: argparse.Namespace) -> None:
     """Print the parameters, write picture and spectrum."""
     path, spec = Path(chosen.file), _spec(chosen.file, chosen.set)
     target = None if chosen.no_picture else Path(chosen.output or path.with_suffix(".surface.png"))
-    for file, endings, option in ((target, PICTURES, "-o"), (chosen.csv, (".csv", ".txt"), "--csv")):
+    for file, endings, option in (
+        (target, (*PICTURES, *WRITERS), "-o"),
+        (chosen.csv, (".csv", ".txt"), "--csv"),
+    ):
         if file is not None:
             check_derived(Path(file), [path], endings, option)
     try:
@@ -82,9 +90,18 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv({"": spectrum}).encode())
         print(chosen.csv)
-    if target is not None:
-        style.save(draw(path.name, profile, parameters, spectrum), target)
-        print(target)
+    _write(target, GridField(z[np.newaxis], dx, dx), lambda: draw(path.name, profile, parameters, spectrum))
+
+
+def _write(target: Path | None, heights: GridField, picture: Callable[[], Figure]) -> None:
+    """Write heights or, by the ending of the target, their picture."""
+    if target is None:
+        return
+    if write := WRITERS.get(target.suffix.lower()):
+        atomic_write(target, write(heights))
+    else:
+        style.save(picture(), target)
+    print(target)
 
 
 def _run_map(chosen: argparse.Namespace, surface: Topography, target: Path | None) -> None:
@@ -92,9 +109,8 @@ def _run_map(chosen: argparse.Namespace, surface: Topography, target: Path | Non
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(areal_surface.spectra(surface)).encode())
         print(chosen.csv)
-    if target is not None:
-        style.save(areal_surface.draw(Path(chosen.file).name, surface), target)
-        print(target)
+    heights = GridField(surface.z, surface.dx, surface.dy)
+    _write(target, heights, lambda: areal_surface.draw(Path(chosen.file).name, surface))
 
 
 def _spec(file: str, overrides: list[str]) -> Values:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from functools import cached_property
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,8 @@ import numpy as np
 
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
+from ehlpetsc.results.output_guard import atomic_write, check_derived, file_path
+from ehlpetsc.surfaces.exports import WRITERS, GridField
 
 if TYPE_CHECKING:
     from xarray import Dataset, Variable
@@ -222,6 +225,24 @@ class Result:
         if name not in self:
             return None
         return self[f"{name}/s"][:], self[f"{name}/z"][:], float(self._file[name].attrs["speed"])
+
+    def export(self, path: str | PathLike, name: str, frame: int = -1) -> None:
+        """Write a field of a stored frame, or heights ``surface/1`` over s, as .gsf, .x3p (heights) or .vti.
+
+        `frame`: index; negative ones count from the end.
+        """
+        target = file_path(path)
+        check_derived(target, [self.path], tuple(WRITERS), "export")
+        if name in ("surface/1", "surface/2"):
+            x, values, unit = self[f"{name}/s"][:], self[f"{name}/z"][:], "m"
+        else:
+            x, values, unit = self.x, self.frame(name, frame), self.unit(name)
+        y = self.x[:2] if self.y is None else self.y
+        steps, origin = (float(axis[1] - axis[0]) for axis in (x, y)), (float(x[0]), 0.0)
+        if self.y is not None:
+            origin = origin[0], float(y[0])
+        field = GridField(np.atleast_2d(values), *steps, name.replace("/", "_"), unit, origin)
+        atomic_write(target, WRITERS[target.suffix.lower()](field))
 
 
 class Row:
