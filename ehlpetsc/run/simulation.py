@@ -35,7 +35,7 @@ from ehlpetsc.stepping.time_stepping import TimeStepping
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
 MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one that fails without
-MIN_HEATED_POINTS = 8  # on the half-width: coarsest mesh of a start with heat
+MIN_HEATED_POINTS = 8  # on the half-width of the start: coarsest mesh of one with heat
 MANY_NODES = 20_000  # from here on a start on a coarser mesh costs less than it saves
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
@@ -288,7 +288,8 @@ class Simulation:
         """
         case, points = self.case, self.case.mesh.points_per_half_width
         is_hertz = case.fluid is None and self.roughness is None
-        is_heated = case.heat is not None and case.fluid is not None and points >= 2 * MIN_HEATED_POINTS
+        resolved = points * self.scales.size(self.operation.at(0.0))
+        is_heated = case.heat is not None and case.fluid is not None and resolved >= 2 * MIN_HEATED_POINTS
         is_first = is_heated or self.scales.grid.n > MANY_NODES and not is_hertz
         if not is_first:
             yield None, {}
