@@ -18,7 +18,7 @@ from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
-from ehlpetsc.physics.oils import OILS
+from ehlpetsc.physics.oils import OIL_SHEAR, OILS
 from ehlpetsc.physics.rheology import SHEAR_LAWS
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.physics.viscosity_laws import (
@@ -96,7 +96,7 @@ def _slope(secant: float, fluid: Tables) -> float:
 
 
 def _with_oil(tables: Tables) -> Tables:
-    """Constants of a measured oil; a case that gives a stress of a shear law has none of the oil's."""
+    """Constants of a measured oil; a case with another shear law than the oil's has none of its shear law."""
     fluid, heat = tables.get("fluid", {}), tables.get("heat", {})
     if "oil" not in fluid:
         return tables
@@ -104,8 +104,9 @@ def _with_oil(tables: Tables) -> Tables:
     if not 200.0 < temperature < 700.0:
         return tables
     of_fluid = oil.at(temperature)
-    if any(key in fluid for law in SHEAR_LAWS.values() for key in list(law.keys)[:1]):
-        of_shear = {key for law in SHEAR_LAWS.values() for key in law.keys}
+    of_shear = SHEAR_LAWS[OIL_SHEAR].keys
+    stresses = {next(iter(law.keys)) for law in SHEAR_LAWS.values() if law.keys}  # the one given chooses
+    if stresses & fluid.keys() - of_shear.keys():
         of_fluid = {key: value for key, value in of_fluid.items() if key not in of_shear}
     tables = tables | {"fluid": of_fluid | fluid}
     return tables | {"heat": oil.heat | heat} if heat else tables

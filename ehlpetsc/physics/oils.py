@@ -21,6 +21,7 @@ CONDUCTIVITY = {  # W/(m K), 1/Pa, 1/Pa: at ambient pressure, rise with pressure
     NAPHTHENIC: (0.118, 1.54e-9, 0.33e-9),
     MINERAL: (0.134, 1.72e-9, 0.54e-9),
 }  # Larsson & Andersson, Proc. IMechE J 214 (2000) 337; ambient value of the mineral oil: Wingertszahn 2023
+OIL_SHEAR = "eyring"  # shear law of all oils, whose stress grows with pressure
 
 
 @dataclass(frozen=True)

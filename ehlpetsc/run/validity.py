@@ -21,11 +21,13 @@ from ehlpetsc.physics.film_formulas import (
     points_for_opening,
     rolling_left_by_inlet,
 )
-from ehlpetsc.physics.laws import TABLES, names_in_use, viscosity
+from ehlpetsc.physics.laws import TABLES, names_in_use, reference_temperature, viscosity
+from ehlpetsc.physics.oils import OIL_SHEAR, OILS
+from ehlpetsc.physics.rheology import shear_law
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.case.tables.contact import Contact, Fluid
+    from ehlpetsc.case.tables.contact import Contact
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.roughness import Roughness
 
@@ -105,7 +107,7 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
 
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
-    notes = [*_scene_warnings(case, scales), *_oil_warnings(case.fluid), *domain_warnings(case, scales)]
+    notes = [*_scene_warnings(case, scales), *_oil_warnings(case), *domain_warnings(case, scales)]
     if case.surface.body_1 or case.surface.body_2:
         from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
         from ehlpetsc.surfaces.roughness import Roughness
@@ -173,10 +175,18 @@ def _rolling_warnings(case: Case, scales: Scales) -> list[str]:
     return [note] if left < MIN_ROLLING_FRICTION else []
 
 
-def _oil_warnings(fluid: Fluid | None) -> Iterator[str]:
-    """Oil constants that none of the case's laws uses."""
-    if fluid is None:
+def _oil_warnings(case: Case) -> Iterator[str]:
+    """Oil constants that none of the case's laws uses, and a shear law in place of that of a measured oil."""
+    if (fluid := case.fluid) is None:
         return
+    if fluid.oil and (law := shear_law(fluid)) != OIL_SHEAR:
+        rise = OILS[fluid.oil].at(reference_temperature(fluid, case.heat))["eyring_stress_pressure"]
+        if rise > 0.0:
+            yield (
+                f"the stress of the {law} law takes the place of the Eyring stress of "
+                f'fluid.oil = "{fluid.oil}": '
+                f"it is constant, and that grows by {1e9 * rise:.3g} of itself per GPa"
+            )
     of_laws = {name: key for laws in TABLES for law in laws.values() for name, key in law.keys.items()}
     given = {name for name, key in of_laws.items() if getattr(fluid, attribute(name)) != key.default}
     in_use = [laws[name] for laws, name in zip(TABLES, names_in_use(fluid), strict=True)]

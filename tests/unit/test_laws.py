@@ -15,7 +15,9 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables import FLUID
 from ehlpetsc.physics import laws, oils, rheology, viscosity_laws
 from ehlpetsc.physics.law import n_constants
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.validity import warnings
 
 STEP = 1e-20
 CASE = CASES / "table1_smooth.toml"
@@ -169,8 +171,27 @@ def test_eyring_stress_of_bair_and_winer():
     under_pressure = fluid.eyring_stress * (1.0 + 1e9 * fluid.eyring_stress_pressure)
     assert under_pressure == pytest.approx(2.0 * 0.047 / secant, rel=1e-12)
     assert under_pressure == pytest.approx(7.19e6, rel=2e-3)
-    own = of_oil("m100", **{"fluid.carreau_stress": 5e6, "fluid.carreau_exponent": 0.5}).fluid
-    assert own.eyring_stress is None
+
+
+def test_another_stress_of_a_measured_oil_grows_with_pressure_as_its_own():
+    """The growth was dropped: 1.3 times the stress lowered the friction by 8 %."""
+    stress = of_oil("m100").fluid.eyring_stress
+    own = of_oil("m100", **{"fluid.eyring_stress": 1.3 * stress}).fluid
+    assert own.eyring_stress == 1.3 * stress
+    assert own.eyring_stress_pressure == of_oil("m100").fluid.eyring_stress_pressure > 0.0
+    heated = {"heat.bulk_temperature": "60 degC", "fluid.eyring_stress": 5e6}
+    assert of_oil("m100", **heated).fluid.eyring_stress_pressure > 0.0
+    assert of_oil("m100", **{"fluid.eyring_stress_pressure": 0.0}).fluid.eyring_stress_pressure == 0.0
+
+
+def test_another_shear_law_of_a_measured_oil_is_warned_of():
+    case = of_oil("m100", **{"fluid.carreau_stress": 5e6, "fluid.carreau_exponent": 0.5})
+    assert case.fluid.eyring_stress is None and case.fluid.eyring_stress_pressure is None
+    rise = 1e9 * of_oil("m100").fluid.eyring_stress_pressure
+    (note,) = (line for line in warnings(case, Scales.of(case)) if "carreau law" in line)
+    assert f"it is constant, and that grows by {rise:.3g} of itself per GPa" in note
+    plain = of_oil("m100")
+    assert not any("takes the place" in line for line in warnings(plain, Scales.of(plain)))
 
 
 def test_constants_of_shc_320_are_fitted_to_its_measured_viscosities():
