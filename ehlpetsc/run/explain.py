@@ -16,6 +16,7 @@ from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, l
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.domain import domain_faults
 from ehlpetsc.run.forecast import (
     START_SECONDS,
     file_size,
@@ -26,7 +27,7 @@ from ehlpetsc.run.forecast import (
     wave_lines,
     work_time,
 )
-from ehlpetsc.run.validity import domain_faults, load_unit, warnings
+from ehlpetsc.run.validity import load_unit, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 if TYPE_CHECKING:

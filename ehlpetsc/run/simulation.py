@@ -25,8 +25,8 @@ from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.domain import domain_faults
 from ehlpetsc.run.stop import StopRequest
-from ehlpetsc.run.validity import domain_faults
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State

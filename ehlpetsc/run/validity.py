@@ -1,11 +1,10 @@
-"""Validity of the model: warnings about a case before it runs, faults of its domain, limits of its result.
+"""Validity of the model: warnings about a case before it runs, limits of its result.
 
 The `limits` follow from the totals over all steps, are printed at the end of a run and stored in its file.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -13,17 +12,11 @@ import numpy as np
 
 from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM, STEP_SCALARS, unit_in
 from ehlpetsc.case.checking import attribute
-from ehlpetsc.discretisation.contact import smallest_film
-from ehlpetsc.physics.film_formulas import (
-    expected_film,
-    film_left_by_inlet,
-    inlet_opening,
-    points_for_opening,
-    rolling_left_by_inlet,
-)
+from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.laws import TABLES, names_in_use, reference_temperature, viscosity
 from ehlpetsc.physics.oils import OIL_SHEAR, OILS
 from ehlpetsc.physics.rheology import shear_law
+from ehlpetsc.run.domain import domain_warnings, rolling_warnings, strip_warnings
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -31,14 +24,6 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.roughness import Roughness
 
-MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
-MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
-MIN_ROLLING_FRICTION = 0.9  # over that of a flooded contact
-PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
-MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
-MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
-MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
-MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
 LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
 MAX_EHL_FILM = 0.1  # half-widths: films of EHL contacts are at most a hundredth of a half-width
 MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a straight line counts as tilted
@@ -52,59 +37,6 @@ FLATTENED = 0.01  # film over the rms height of the layer: below it the mesh doe
 MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
 
 
-def domain_warnings(case: Case, scales: Scales) -> list[str]:
-    """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure."""
-    if case.fluid is None:
-        return []
-    notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
-    film = _smallest_expected_film(case, scales)
-    opening = inlet_opening(film, case.mesh.points_per_half_width)
-    if MESH_MARGIN * MAX_FILM_SLOPE < opening:
-        notes.append(_coarse(case, film, opening, ": the film comes out too thin"))
-    return notes
-
-
-def domain_faults(case: Case, scales: Scales) -> list[str]:
-    """Faults of the domain that make the result meaningless, one message each; checked before a run."""
-    if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
-        return []
-    film, points = _smallest_expected_film(case, scales), case.mesh.points_per_half_width
-    opening = inlet_opening(film, points)
-    if opening <= MAX_OPENING:
-        return []
-    where = f"{case.path}: mesh.points_per_half_width = {points}"
-    return [f"{where}: {_coarse(case, film, opening, ', which leaves no film')}"]
-
-
-def _smallest_expected_film(case: Case, scales: Scales) -> float:
-    """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
-    return max(expected_film(case, scales), smallest_film(case.contact, scales))
-
-
-def _coarse(case: Case, film: float, opening: float, consequence: str) -> str:
-    other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
-    return (
-        f"the mesh is too coarse for the inlet: beside the contact the gap opens by {opening:.2g} films from "
-        f"one node to the next{consequence}; try mesh.points_per_half_width = "
-        f"{math.ceil(points_for_opening(film, MAX_FILM_SLOPE))}{other}"
-    )
-
-
-def _near_inlet(case: Case, scales: Scales) -> list[str]:
-    film, inlet = expected_film(case, scales), -case.mesh.inlet
-    ratio = film_left_by_inlet(film, inlet)
-    if ratio >= MIN_FILM_RATIO:
-        return []
-    proposed = inlet
-    while proposed < MAX_INLET and film_left_by_inlet(film, proposed) < PROPOSED_FILM_RATIO:
-        proposed += 0.1
-    return [
-        f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * ratio:.0f} % "
-        f"of the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * proposed) / 10.0:g} leaves "
-        f"{100 * PROPOSED_FILM_RATIO:g} %"
-    ]
-
-
 def warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings before a run, one message each."""
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case), *domain_warnings(case, scales)]
@@ -114,8 +46,8 @@ def warnings(case: Case, scales: Scales) -> list[str]:
 
         profiles = Roughness.of(case, scales)
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
-        notes += mesh_warnings(profiles, scales)
-    return notes + _rolling_warnings(case, scales) + heat_warnings(case, scales)
+        notes += [*mesh_warnings(profiles, scales), *strip_warnings(case, scales)]
+    return notes + rolling_warnings(case, scales) + heat_warnings(case, scales)
 
 
 def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
@@ -163,16 +95,6 @@ def heat_warnings(case: Case, scales: Scales) -> list[str]:
         sliding = scales.u1 - scales.u2
         friction = expected_friction(case.fluid, scales.load_per_length, scales.a, sliding, film)
     return list(isothermal(case, scales, friction))
-
-
-def _rolling_warnings(case: Case, scales: Scales) -> list[str]:
-    """Rolling friction that the oil before the mesh would add, where no sliding hides it."""
-    if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
-        return []
-    left = rolling_left_by_inlet(expected_film(case, scales), -case.mesh.inlet)
-    missing = f"up to {100.0 * (1.0 - left):.0f} % of the rolling friction"
-    note = f"mesh.inlet = {case.mesh.inlet:g}: {missing} arise before it and are not computed"
-    return [note] if left < MIN_ROLLING_FRICTION else []
 
 
 def _oil_warnings(case: Case) -> Iterator[str]:

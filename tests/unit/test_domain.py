@@ -5,6 +5,7 @@ import pytest
 from support import CASES
 
 import ehlpetsc
+from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.film_formulas import (
     expected_film,
@@ -15,8 +16,10 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.validity import domain_faults, domain_warnings, warnings
+from ehlpetsc.run.domain import domain_faults, domain_warnings, strip_warnings
+from ehlpetsc.run.validity import warnings
 from ehlpetsc.stepping.convergence_check import check_ends
+from ehlpetsc.surfaces.roughness import Roughness
 
 SMOOTH = CASES / "table1_smooth.toml"
 SLOW = {"contact.load": 2.1e6, "motion.entrainment_speed": 0.005}
@@ -24,7 +27,7 @@ SLOW = {"contact.load": 2.1e6, "motion.entrainment_speed": 0.005}
 
 def of(overrides, case=SMOOTH, about=domain_warnings):
     case = load(case, overrides)
-    return about(case, Scales.of(case))
+    return list(about(case, Scales.of(case)))
 
 
 def test_cases_have_no_domain_warning():
@@ -32,6 +35,55 @@ def test_cases_have_no_domain_warning():
         case = load(path)
         found = domain_warnings(case, Scales.of(case)) + domain_faults(case, Scales.of(case))
         assert not found, path
+
+
+STRIP = {
+    "title": "ground across",
+    "contact": {"radius": 0.01, "load": 1e5, "youngs_modulus": 206e9, "poisson_ratio": 0.3},
+    "fluid": {"oil": "fva3", "temperature": 343.15},
+    "motion": {"entrainment_speed": 2.0, "slide_roll_ratio": 0.1},
+    "mesh": {"inlet": -4.0, "outlet": 1.5, "width": 0.5, "points_per_half_width": 16},
+    "surface": {"1": {"synthetic": {"kind": "ground", "ra": 1e-7, "seed": 3, "correlation": 40e-6}}},
+    "time": {"travel": 0.2, "start": "rough"},
+}
+ACROSS = {"surface.1.synthetic.correlation_across": 150e-6}
+AFFINE = {
+    "kind": "self-affine",
+    "sq": 1e-7,
+    "hurst": 0.8,
+    "roll_off": 100e-6,
+    "short_cutoff": 30e-6,
+    "seed": 1,
+}
+
+
+@pytest.mark.parametrize(
+    ("overrides", "words", "width"),
+    [
+        (ACROSS, "4 correlation lengths across, 0.6 mm", 5.7),
+        (ACROSS | {"surface.1.direction": 90.0}, "across, 0.16 mm", 1.6),
+        ({"surface.1.synthetic": AFFINE}, "the roll-off wavelength across, 0.1 mm", 1.0),
+        ({"surface.1.synthetic": AFFINE | {"peklenik": 0.25}}, "across, 0.4 mm", 3.8),
+    ],
+)
+def test_a_strip_too_narrow_for_its_roughness_has_ridges(overrides, words, width):
+    """They were computed without a word; at the needed width about half of the variance is uniform."""
+    (line,) = of(overrides, STRIP, strip_warnings)
+    assert words in line and f"mesh.width = {width:g} or more" in line
+    wide = load(STRIP, overrides | {"mesh.width": width})
+    assert list(strip_warnings(wide, Scales.of(wide))) == []
+    uniform = []
+    for case in (load(STRIP, overrides), wide):
+        z = Roughness.of(case, Scales.of(case)).surface_1.given.z
+        uniform.append(z.mean(axis=0).var() / z.var())
+    assert uniform[1] < 0.51 < 0.8 < uniform[0]
+
+
+def test_cases_and_templates_are_wide_enough(tmp_path):
+    (tmp_path / "strip.toml").write_text(template("strip"))
+    for path in [*CASES.glob("*.toml"), tmp_path / "strip.toml"]:
+        assert of({}, path, strip_warnings) == []
+    assert of({}, STRIP, strip_warnings) == []  # ridges by intention
 
 
 def film(**overrides):

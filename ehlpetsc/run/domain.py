@@ -1,0 +1,126 @@
+"""Domain of a contact: a near inlet, a mesh too coarse for it, a strip too narrow for its roughness."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ehlpetsc.discretisation.contact import smallest_film
+from ehlpetsc.physics.film_formulas import (
+    expected_film,
+    film_left_by_inlet,
+    inlet_opening,
+    points_for_opening,
+    rolling_left_by_inlet,
+)
+
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+    from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.scales import Scales
+
+MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
+MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
+MIN_ROLLING_FRICTION = 0.9  # over that of a flooded contact
+PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
+MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
+MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
+MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
+MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
+CORRELATION_LENGTHS = 4.0  # across a strip of random roughness; of its variance .45 is then uniform across
+
+
+def domain_warnings(case: Case, scales: Scales) -> list[str]:
+    """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure."""
+    if case.fluid is None:
+        return []
+    notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
+    film = _smallest_expected_film(case, scales)
+    opening = inlet_opening(film, case.mesh.points_per_half_width)
+    if MESH_MARGIN * MAX_FILM_SLOPE < opening:
+        notes.append(_coarse(case, film, opening, ": the film comes out too thin"))
+    return notes
+
+
+def domain_faults(case: Case, scales: Scales) -> list[str]:
+    """Faults of the domain that make the result meaningless, one message each; checked before a run."""
+    if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
+        return []
+    film, points = _smallest_expected_film(case, scales), case.mesh.points_per_half_width
+    opening = inlet_opening(film, points)
+    if opening <= MAX_OPENING:
+        return []
+    where = f"{case.path}: mesh.points_per_half_width = {points}"
+    return [f"{where}: {_coarse(case, film, opening, ', which leaves no film')}"]
+
+
+def _smallest_expected_film(case: Case, scales: Scales) -> float:
+    """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
+    return max(expected_film(case, scales), smallest_film(case.contact, scales))
+
+
+def _coarse(case: Case, film: float, opening: float, consequence: str) -> str:
+    other = "" if case.contact.has_contact_pressure else '; or contact.model = "mixed"'
+    return (
+        f"the mesh is too coarse for the inlet: beside the contact the gap opens by {opening:.2g} films from "
+        f"one node to the next{consequence}; try mesh.points_per_half_width = "
+        f"{math.ceil(points_for_opening(film, MAX_FILM_SLOPE))}{other}"
+    )
+
+
+def _near_inlet(case: Case, scales: Scales) -> list[str]:
+    film, inlet = expected_film(case, scales), -case.mesh.inlet
+    ratio = film_left_by_inlet(film, inlet)
+    if ratio >= MIN_FILM_RATIO:
+        return []
+    proposed = inlet
+    while proposed < MAX_INLET and film_left_by_inlet(film, proposed) < PROPOSED_FILM_RATIO:
+        proposed += 0.1
+    return [
+        f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * ratio:.0f} % "
+        f"of the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * proposed) / 10.0:g} leaves "
+        f"{100 * PROPOSED_FILM_RATIO:g} %"
+    ]
+
+
+def rolling_warnings(case: Case, scales: Scales) -> list[str]:
+    """Rolling friction that the oil before the mesh would add, where no sliding hides it."""
+    if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
+        return []
+    left = rolling_left_by_inlet(expected_film(case, scales), -case.mesh.inlet)
+    missing = f"up to {100.0 * (1.0 - left):.0f} % of the rolling friction"
+    note = f"mesh.inlet = {case.mesh.inlet:g}: {missing} arise before it and are not computed"
+    return [note] if left < MIN_ROLLING_FRICTION else []
+
+
+def strip_warnings(case: Case, scales: Scales) -> Iterator[str]:
+    """Warnings of random roughness that hardly varies across a strip, as its period is too short."""
+    if case.kind != "strip":
+        return
+    width = scales.grid.breadth * scales.a
+    for side in ("1", "2"):
+        spec = case.surface.side(side)
+        made = spec.synthetic if spec else None
+        lengths = made and _lengths(made)
+        if not lengths:
+            continue
+        turn = math.radians(spec.direction or 0.0)
+        along, across, words = lengths
+        needed = 1.0 / math.hypot(math.sin(turn) / along, math.cos(turn) / across)
+        if width < needed * (1.0 - 1e-9):
+            yield (
+                f"surface.{side}: the strip is {1e3 * width:.3g} mm wide, less than {words} across, "
+                f"{1e3 * needed:.3g} mm: its roughness is ridges, which hardly vary across; mesh.width = "
+                f"{math.ceil(10.0 * needed / scales.a) / 10.0:g} or more holds its waves"
+            )
+
+
+def _lengths(made: Values) -> tuple[float, float, str] | None:
+    """Widths that hold the waves of a random map along and across its rows [m], in words; None: no map."""
+    if made.kind == "self-affine":
+        return made.roll_off, made.roll_off / made.peklenik, "the roll-off wavelength"
+    if made.kind != "ground" or made.correlation_across is None:
+        return None
+    of_both = (CORRELATION_LENGTHS * length for length in (made.correlation, made.correlation_across))
+    return *of_both, f"{CORRELATION_LENGTHS:g} correlation lengths"
