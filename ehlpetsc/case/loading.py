@@ -23,6 +23,7 @@ from ehlpetsc.case.derived import (
     with_derived,
     with_layer_stiffness,
 )
+from ehlpetsc.case.digests import file_digests
 from ehlpetsc.case.kinds import LINE, faults_of_kind, given_by_gears
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
@@ -93,7 +94,12 @@ def load(
         raise CaseError(lines)
     stored = with_columns(data, folder)
     text = text if stored == written else None
-    return checked.copy({"_path": Path(path), "_tables": stored, "_text": text})
+    return _of_files(checked.copy({"_path": Path(path), "_tables": stored, "_text": text}))
+
+
+def _of_files(case: Case) -> Case:
+    """The case with the digests of its surface files."""
+    return case.copy({"_digests": file_digests(case)})
 
 
 def stored_case(text: str, overrides: Overrides = None) -> Case:
@@ -120,7 +126,7 @@ def members(case: Case | str | PathLike | Tables) -> list[tuple[Any, Case]]:
         tables = member_tables(data, settings)
         member, _ = _checked(case.path.parent, tables)
         values = tuple(value for _, value in settings)
-        member = member.copy({"_path": case.path, "_tables": tables, "_text": None})
+        member = _of_files(member.copy({"_path": case.path, "_tables": tables, "_text": None}))
         result.append((values[0] if case.series.key else values, member))
     return result
 

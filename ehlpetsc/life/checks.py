@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.case.digests import changed_files
 from ehlpetsc.case.tables import Case
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
@@ -62,8 +63,11 @@ def _tables_of_surfaces(text: str) -> dict:
 def stored_or_new(case: Case, path: Path, overwrite: bool) -> LifeHistory:
     """Life stored at `path`, or a new one; OutputError if it is the life of another case."""
     if overwrite or not path.exists():
-        return LifeHistory(case.text, case.title)
+        return LifeHistory(case.text, case.title, digests=case.digests)
     history = read_life(path)
     if _tables_of_surfaces(history.case) != _tables_of_surfaces(case.text):
         raise OutputError(f"{path}: the life of another case; give another -o, or --overwrite to lose it")
+    if changed := changed_files(history.digests, case.digests):
+        reason = f"{changed} changed since it was written"
+        raise OutputError(f"{path}: {reason}; give another -o, or --overwrite to lose it")
     return replace(history, case=case.text)  # which may extend the life

@@ -8,6 +8,7 @@ its last complete row.
 from __future__ import annotations
 
 import contextlib
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -77,6 +78,7 @@ class LifeFile:
         with replacing(self.path) as temporary:
             file = self._file = open_hdf5(temporary, "w", libver=LIBVER)
             attributes = {"kind": KIND, "case": history.case, "title": history.title}
+            attributes |= {"digests": json.dumps(history.digests)}
             status = np.array(b"running", "S16")  # of fixed length, to be overwritten at the end
             file.attrs.update(attributes | {"format_version": FORMAT, "status": status})
             _lay_out(file, history)
@@ -129,9 +131,9 @@ def _lay_out(file: h5py.File, history: LifeHistory) -> None:
 class LifeHistory:
     """All solved rounds of a life.
 
-    `case`: its text. `rows`: figures of each round: "passes" done after its jump, "jump", "solved" passes of
-    it, "pits_1", "ra_1", "friction" ... `bodies`: after each jump. `plastic`: record of the plastic
-    deformation after each jump, flat; empty without.
+    `case`: its text. `digests`: of its surface files. `rows`: figures of each round: "passes" done after its
+    jump, "jump", "solved" passes of it, "pits_1", "ra_1", "friction" ... `bodies`: after each jump.
+    `plastic`: record of the plastic deformation after each jump, flat; empty without.
     """
 
     case: str
@@ -139,6 +141,7 @@ class LifeHistory:
     rows: list[dict] = field(default_factory=list)
     bodies: list[tuple[LifeBody, ...]] = field(default_factory=list)
     plastic: list[dict] = field(default_factory=list)
+    digests: dict[str, str] = field(default_factory=dict)
 
     @property
     def done(self) -> int:
@@ -188,7 +191,8 @@ def read_life(path: str | Path) -> LifeHistory:
 
 
 def _read(file: h5py.File) -> LifeHistory:
-    life = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]))
+    digests = json.loads(plain(file.attrs.get("digests", "{}")))
+    life = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]), digests=digests)
     count = len(file[f"figures/{COMMIT_DATASET}"])
     figures = {name: dataset[:count] for name, dataset in file["figures"].items()}
     groups = [file[f"surface/{k}"] for k in (1, 2)]

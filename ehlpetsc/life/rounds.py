@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from ehlpetsc.base.errors import NotConverged, OutputError, PostError, Stopped, UsageError
+from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.jumps import Rates
@@ -19,7 +19,7 @@ from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 if TYPE_CHECKING:
     from ehlpetsc.run.stop import StopRequest
 
-FAULTS = (NotConverged, OutputError, PostError, Stopped, UsageError)
+FAULTS = (CaseError, NotConverged, OutputError, PostError, Stopped, UsageError)
 
 
 class Ranks:
@@ -47,7 +47,7 @@ class Ranks:
             try:
                 return solve(position, group, stop)
             except FAULTS as fault:
-                return type(fault)(str(fault))
+                return type(fault)(fault.args[0])
 
         queue = WorkQueue(
             self.comm, self.each, positions, lambda report: outcomes.update([report]), self._group

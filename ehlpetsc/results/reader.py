@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -12,6 +13,7 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError, OutputError
+from ehlpetsc.case.digests import changed_files
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 from ehlpetsc.results.output_guard import atomic_write, check_derived, file_path
 from ehlpetsc.surfaces.exports import WRITERS, GridField
@@ -48,10 +50,11 @@ def open_result(path: Path, **options: Any) -> h5py.File:
     return file
 
 
-def is_done(path: Path, case_text: str) -> bool:
-    """Whether a file is the complete result of a case."""
+def is_done(path: Path, case_text: str, digests: dict[str, str] | None = None) -> bool:
+    """Whether a file is the complete result of a case, of surface files with these digests."""
     with contextlib.suppress(OutputError, OSError), read_result(path) as result:
-        return (result.attrs["case"], result.attrs["status"]) == (case_text, "done")
+        same = (result.attrs["case"], result.attrs["status"]) == (case_text, "done")
+        return same and not changed_files(json.loads(result.attrs.get("digests", "{}")), digests or {})
     return False
 
 

@@ -8,16 +8,21 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.toml_file import plain
+from ehlpetsc.case.digests import changed_files
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.loading import Case
 
 VERSION = 6  # of the format
 HEADER_BYTES = 512
@@ -51,15 +56,30 @@ def load_restart(path: Path) -> dict[str, Any]:
         return {name: file[name][()] for name in file} | plain(dict(file.attrs))
 
 
-def is_restart_of(path: Path, case_text: str) -> bool:
-    """Whether a file is an undamaged restart file of a case."""
+def is_restart_of(path: Path, case: Case) -> bool:
+    """Whether a file is an undamaged restart file of a case; an OutputError if a surface file has changed."""
     try:
-        return load_restart(path)["case"] == case_text
+        values = load_restart(path)
     except OutputError:
         return False
+    return _is_of_same(path, values, case)
 
 
-def restart_of_same(path: Path, restart: Path, case_text: str) -> Path | None:
+def _is_of_same(path: Path, values: dict[str, Any], case: Case) -> bool:
+    if values["case"] != case.text:
+        return False
+    check_surfaces(path, values, case.digests)
+    return True
+
+
+def check_surfaces(path: Path, values: dict[str, Any], digests: dict[str, str]) -> None:
+    """Refuse values of a restart file of surface files with another content: OutputError."""
+    if changed := changed_files(json.loads(values.get("digests", "{}")), digests):
+        reason = f"{changed} changed since it was written, and the surface would jump"
+        raise OutputError(f"{path}: {reason}; put the file back, {OVERWRITE_ADVICE}")
+
+
+def restart_of_same(path: Path, restart: Path, case: Case) -> Path | None:
     """Restart file from which the same command continues an unfinished run; None: it begins at time 0.
 
     A run begins at time 0 if the result of the same case is complete, or if the run was killed before its
@@ -70,17 +90,18 @@ def restart_of_same(path: Path, restart: Path, case_text: str) -> Path | None:
         try:
             with open_for_reading(path) as file:
                 attrs = attributes(file)
-            status, case = attrs["status"], attrs["case"]
+            status, text = attrs["status"], attrs["case"]
         except (OutputError, KeyError):
             raise OutputError(f"{path}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}") from None
-        if case != case_text:
+        if text != case.text:
             raise OutputError(f"{path}: holds a run of another case, or of other --set; {OVERWRITE_ADVICE}")
     if status == "done" or not restart.exists():
         return None
     try:
-        same = load_restart(restart)["case"] == case_text
+        values = load_restart(restart)
     except OutputError as error:
         raise OutputError(f"{error}; remove it, {OVERWRITE_ADVICE}") from None
+    same = _is_of_same(restart, values, case)
     if not same or status is None:
         kind = "whose result is gone" if same else "of another case, or of other --set"
         advice = f"continue with --restart {restart}, {OVERWRITE_ADVICE}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,7 +14,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.results.index import flat_keys
-from ehlpetsc.results.restart_file import load_restart, save_restart
+from ehlpetsc.results.restart_file import check_surfaces, load_restart, save_restart
 from ehlpetsc.stepping.state import State, TimeLevel
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: 
     values: dict[str, Any] = {"contact_count": contact_count}
     values |= {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
     values |= {"baseline_q": baseline_q, "baseline_w": baseline_w, "pass_number": simulation.pass_number}
-    values |= {"case": case.text, "contact_law": case.contact.law}
+    values |= {"case": case.text, "digests": json.dumps(case.digests), "contact_law": case.contact.law}
     values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
     values |= {name: value for name in OF_STATE if (value := getattr(state, name)) is not None}
     for number, level in enumerate(state.earlier):
@@ -84,7 +85,10 @@ def load(path: Path, case: Case, scales: Scales) -> tuple[Checkpoint, list[str]]
     earlier = tomllib.loads(values["case"])
     if misfit := _misfit(values, earlier, case, scales):
         raise OutputError(f"{path}: {misfit}")
-    return _checkpoint(values), changed_keys(earlier, tomllib.loads(case.text))
+    changes = changed_keys(earlier, tomllib.loads(case.text))
+    named = " ".join(changes)  # a change of the file that a key names is reported
+    check_surfaces(path, values, {key: one for key, one in case.digests.items() if key not in named})
+    return _checkpoint(values), changes
 
 
 def pass_of(path: Path) -> int:

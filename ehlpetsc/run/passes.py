@@ -73,12 +73,15 @@ class Passes:
 
     def _unfinished(self) -> Path | None:
         """Restart file of the last unfinished pass; None if there is none."""
-        noted, text = {row["pass"] for row in self.index.stored_rows()}, self.case.text
+        noted, of_case = (
+            {row["pass"] for row in self.index.stored_rows()},
+            (self.case.text, self.case.digests),
+        )
         passes = range(1, self.case.time.passes + 1)
-        begun = next((n for n in passes if n not in noted or not is_done(self.file(n), text)), 0)
+        begun = next((n for n in passes if n not in noted or not is_done(self.file(n), *of_case)), 0)
         for number in range(begun, 0, -1):
             restart = self.file(number).with_suffix(".restart.h5")
-            if self.file(number).exists() and is_restart_of(restart, text):
+            if self.file(number).exists() and is_restart_of(restart, self.case):
                 return restart
         return None
 

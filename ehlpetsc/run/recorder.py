@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import sys
 import time as clock
 from collections.abc import Iterator
@@ -147,7 +148,7 @@ class Recorder:
         check_output_path(self.restart, inputs)
         self._lock = Lock(self.output)
         self._lock.acquire()
-        return restart if restart or overwrite else restart_of_same(self.output, self.restart, case.text)
+        return restart if restart or overwrite else restart_of_same(self.output, self.restart, case)
 
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
@@ -209,6 +210,7 @@ class Recorder:
         attributes |= {
             "title": case.title,
             "case": case.text,
+            "digests": json.dumps(case.digests),
             "h_scale": scales.h,
             "ranks": self.comm.size,
             "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),

@@ -170,7 +170,7 @@ class Series:
         try:
             on_root(self.world, self.index.write)
         except OutputError as error:  # its folder is lost with the members
-            raise OutputLost(error) if self._status() is ExitStatus.OUTPUT_LOST else error from error
+            raise OutputLost(str(error)) if self._status() is ExitStatus.OUTPUT_LOST else error from error
 
     def _show_progress(self, missing: list[int]) -> None:
         """Begin the line of progress, on a terminal, which the first rank writes."""
@@ -193,7 +193,7 @@ class Series:
         """Numbers of the members without a complete result, the longest first; prints the opening."""
         missing = []
         for number, member in enumerate(self.members):
-            if is_done(member.output, member.case.text):
+            if is_done(member.output, member.case.text, member.case.digests):
                 self.index.rows[number]["state"] = ExitStatus.DONE.words
             else:
                 missing.append(number)

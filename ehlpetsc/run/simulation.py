@@ -14,6 +14,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
+from ehlpetsc.case.digests import check_unchanged
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
@@ -26,6 +27,7 @@ from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.domain import domain_faults
+from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
@@ -140,6 +142,7 @@ class Simulation:
         self.comm = comm or MPI.COMM_SELF
         self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}), case.kind)
         self._options = options
+        on_root(self.comm, check_unchanged, case)
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
         self.pass_number: int = pass_number or (after.pass_number + 1 if after else 1)

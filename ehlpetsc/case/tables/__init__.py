@@ -59,6 +59,11 @@ class Case(Values):
         return self._path
 
     @property
+    def digests(self) -> dict[str, str]:
+        """Digests of the surface files as read, see `ehlpetsc.case.digests`; {} of a stored case."""
+        return vars(self).get("_digests", {})
+
+    @property
     def kind(self) -> str:
         """Kind of contact, a key of `physics.geometry.GEOMETRIES`."""
         if self.contact.radius_across is not None:
