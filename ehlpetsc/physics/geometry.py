@@ -14,6 +14,7 @@ import numpy as np
 
 from ehlpetsc.physics.film_formulas import (
     MIN_OVER_CENTRAL_FILM,
+    brewe_rigid_film,
     hamrock_dowson_films,
     moes_central_film,
     nijenbanning_central_film,
@@ -167,10 +168,11 @@ def line_films(
 def point_films(
     viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, ratio: float
 ) -> tuple[float, float, float]:
-    """Films by the fit of Nijenbanning, Venner and Moes, see :class:`Geometry`."""
+    """Films by the fit of Nijenbanning, Venner and Moes, rigid limit computed, see :class:`Geometry`."""
     M, L = point_groups(viscosity, speed, alpha, load, radius, modulus)
     two_u = 2.0 * viscosity * speed / (modulus * radius)
-    central = radius * math.sqrt(two_u) * nijenbanning_central_film(M, L, ratio)
+    film = nijenbanning_central_film(M, L, ratio, brewe_rigid_film(M, ratio))
+    central = radius * math.sqrt(two_u) * film
     of_hamrock = hamrock_dowson_films(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
     return central, of_hamrock[1] / of_hamrock[0], hertz_ellipse(load, radius, radius * ratio, modulus).p0
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
     film_left_by_inlet,
+    film_on_mesh,
     inlet_opening,
     points_for_opening,
     rolling_left_by_inlet,
@@ -28,6 +29,7 @@ MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the fil
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
 MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
 MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
+MAX_OUTSIDE, PROPOSED_OUTSIDE = 0.05, 0.02  # of the load of a point contact, outside the mesh
 CORRELATION_LENGTHS = 4.0  # across a strip of random roughness; of its variance .45 is then uniform across
 
 
@@ -35,7 +37,7 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure."""
     if case.fluid is None:
         return []
-    notes = [] if case.fluid.inlet_film is not None else _near_inlet(case, scales)
+    notes = [] if case.fluid.inlet_film is not None else NEAR_EDGES[case.kind](case, scales)
     film = _smallest_expected_film(case, scales)
     opening = inlet_opening(film, case.mesh.points_per_half_width)
     if MESH_MARGIN * MAX_FILM_SLOPE < opening:
@@ -69,6 +71,26 @@ def _coarse(case: Case, film: float, opening: float, consequence: str) -> str:
     )
 
 
+def _near_edges(case: Case, scales: Scales) -> list[str]:
+    """Warning of a point contact with much of its load outside the mesh; otherwise of a near inlet."""
+    inlet, half_width = -case.mesh.inlet, scales.grid.axes[0][-1]
+    share, left = film_on_mesh(case, scales, scales.a * inlet, scales.a * half_width)
+    if share < MAX_OUTSIDE and left >= MIN_FILM_RATIO:
+        return _near_inlet(case, scales)
+    factor, found = 1.0, share
+    while found > PROPOSED_OUTSIDE and factor * inlet < MAX_INLET:
+        factor = min(1.1 * factor, MAX_INLET / inlet)
+        found, _ = film_on_mesh(case, scales, *(factor * scales.a * size for size in (inlet, half_width)))
+    width = 2.0 * half_width * scales.a / scales.b
+    return [
+        f"mesh.inlet = {case.mesh.inlet:g} and mesh.width = {width:.3g} are too near for this light contact, "
+        f"M = {scales.moes_m:.2g}: flooded, it carries about {100 * share:.0f} % of its load outside them; "
+        f"they leave {100 * left:.0f} % of its film, under a higher pressure; "
+        f"mesh.inlet = {-math.ceil(factor * inlet):g} and mesh.width = {math.ceil(factor * width):g} leave "
+        f"{100 * found:.0f} % of the load outside"
+    ]
+
+
 def _near_inlet(case: Case, scales: Scales) -> list[str]:
     film, inlet = expected_film(case, scales), -case.mesh.inlet
     ratio = film_left_by_inlet(film, inlet)
@@ -82,6 +104,13 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
         f"of the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * proposed) / 10.0:g} leaves "
         f"{100 * PROPOSED_FILM_RATIO:g} %"
     ]
+
+
+NEAR_EDGES: dict[str, Callable[[Case, Scales], list[str]]] = {
+    "line": _near_inlet,
+    "strip": _near_inlet,
+    "point": _near_edges,
+}
 
 
 def rolling_warnings(case: Case, scales: Scales) -> list[str]:

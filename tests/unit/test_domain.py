@@ -8,11 +8,15 @@ import ehlpetsc
 from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.film_formulas import (
+    brewe_rigid_film,
     expected_film,
     film_left_by_inlet,
+    film_on_mesh,
     inlet_opening,
+    load_outside,
     points_for_opening,
     rolling_left_by_inlet,
+    smooth_films,
 )
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
@@ -113,6 +117,60 @@ def test_rolling_friction_before_the_mesh_is_that_of_a_farther_inlet():
     (line,) = (line for line in warnings(near, Scales.of(near)) if "rolling" in line)
     assert line.startswith("mesh.inlet = -3: up to 44 % of the rolling friction ")
     assert not any("rolling" in line for line in warnings(far, Scales.of(far)))
+
+
+def light_ball(size, **keys):
+    """Ball with M = 0.87, L = 15 on a mesh of `size` half-widths before and beside it."""
+    ball = {
+        "title": "light ball",
+        "contact": {"radius": [0.01, 0.01], "load": 0.5, "youngs_modulus": 206e9, "poisson_ratio": 0.3},
+        "fluid": {"oil": "fva3", "temperature": 313.15},
+        "motion": {"entrainment_speed": 1.0},
+        "mesh": {"inlet": -size, "outlet": 1.5, "width": 2.0 * size, "points_per_half_width": 4},
+    }
+    return load(ball, {key.replace("__", "."): value for key, value in keys.items()})
+
+
+def test_film_of_a_light_ball_on_a_mesh_that_is_too_small_equals_the_solver_result():
+    """Of the width nothing was said, 63 % of the film for 20 %, and a flooded film that is 20 % too high."""
+    films, left = [], []
+    for size in (8.0, 32.0):
+        case = light_ball(size)
+        scales = Scales.of(case)
+        x, y = scales.grid.axes[1], scales.grid.axes[0]
+        with ehlpetsc.solve(case) as result:
+            film = result.film_thickness[-1].reshape(scales.grid.shape)
+        films.append(film[np.abs(y).argmin(), np.abs(x).argmin()])
+        left.append(film_on_mesh(case, scales, size * scales.a, size * scales.b)[1])
+    assert films[0] / films[1] == pytest.approx(left[0] / left[1], rel=0.2)
+    assert smooth_films(scales, case.fluid, scales.conditions)[0] == pytest.approx(
+        films[1] / left[1], rel=0.12
+    )
+
+
+def test_light_point_contacts_are_warned_of_inlet_and_width():
+    (line,) = of({}, light_ball(8.0)._tables)
+    assert "mesh.inlet = -8 and mesh.width = 16 are too near" in line and "leave 25 % of its film" in line
+    (line,) = of({"contact.load": 2.0}, light_ball(8.0)._tables)  # central pressure 122 MPa, far out 44
+    inlet = float(line.split("mesh.inlet = ")[2].split()[0])
+    width = float(line.split("mesh.width = ")[2].split()[0])
+    far = {"contact.load": 2.0, "mesh.inlet": inlet, "mesh.width": width}
+    assert -90.0 < inlet < -70.0 and of(far, light_ball(8.0)._tables) == []
+    assert of(far | {"mesh.width": 8.0}, light_ball(8.0)._tables) != []
+    heavy = {"contact.load": 30.0, "mesh.inlet": -4.0, "mesh.width": 5.0, "mesh.points_per_half_width": 16}
+    assert of(heavy, light_ball(8.0)._tables) == []
+
+
+def test_rigid_films_and_loads_of_ellipses_by_their_sources():
+    """128 alpha (phi L U/W)^2 of the article; all of Kapitza's load lies outside a mesh without extent."""
+    for ratio in (0.5, 1.0, 4.0):
+        case = light_ball(8.0, contact__radius=[0.01, 0.01 * ratio])
+        scales = Scales.of(case)
+        film = scales.R * np.sqrt(2.0 * scales.eta0 * scales.u / (scales.E * scales.R))
+        film *= brewe_rigid_film(scales.moes_m, ratio)
+        load_of_it = load_outside(scales, film, 1e-9, 1e-9)
+        assert load_of_it == pytest.approx(0.5, rel=1e-3)
+        assert load_outside(scales, film, 1e-3, 1e-3) < 0.9 * load_of_it
 
 
 def test_near_inlet_warning_gives_film_and_sufficient_inlet():
