@@ -44,7 +44,8 @@ class Solid(NamedTuple):
 
 
 STEEL = Solid(46.0, 7850.0, 470.0)
-MAX_ISOTHERMAL_FLASH = 20.0  # K: above it a case should not be isothermal
+OIL_CONDUCTIVITY = 0.25  # W/(m K), of a mineral oil at about 0.6 GPa
+MAX_ISOTHERMAL_RISE = 20.0  # K, of the film over the bodies: above it a case should not be isothermal
 TINY = 1e-300  # surfaces at rest do not slide
 MAX_FRICTION = 0.1  # coefficient: isothermal Newtonian estimates have no bound
 
@@ -101,3 +102,19 @@ def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Soli
     effusivities = [solid.effusivity for solid in solids]
     conditions = scales.load_per_length, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
     return blok_flash_temperature(friction, *conditions, effusivities)
+
+
+def film_rise(friction: float, scales: Scales, film: float) -> float:
+    r"""Mean temperature across the film over that of its walls [K], :math:`\tau|u_1-u_2|h/(12k)`.
+
+    Of heat generated evenly across, by the mean Hertz pressure of the middle row.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction, :math:`\tau/p`.
+    film
+        h [m], 0 of a dry contact.
+    """
+    stress = friction * scales.load_per_length / (2.0 * scales.a)
+    return stress * abs(scales.u1 - scales.u2) * film / (12.0 * OIL_CONDUCTIVITY)

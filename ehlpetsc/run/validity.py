@@ -32,6 +32,8 @@ ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
+MAX_STEEL = 800.0, "hardened steel softens"  # K: temperature above which
+MAX_OIL = 700.0, "oils crack"  # K
 MIN_SHARE_OF_SOLIDS = 0.01  # of the load: with more their coefficient of friction matters
 FLATTENED = 0.01  # film over the rms height of the layer: below it the mesh does not resolve the film
 MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
@@ -168,6 +170,7 @@ def limits(
         *_of_default_friction(case, scales, totals),
         *mesh,
         *heat,
+        *_of_temperatures(totals),
         *of_oil,
     ]
 
@@ -202,17 +205,31 @@ def _of_default_friction(case: Case, scales: Scales, totals: dict[str, float]) -
 
 
 def isothermal(case: Case, scales: Scales, friction: float | None) -> Iterator[str]:
-    """Note on an isothermal case with a high flash temperature by its coefficient of friction, if known."""
+    """Note on an isothermal case with a hot film by its coefficient of friction, if known."""
     if friction is None or case.heat is not None or case.motion is None:
         return
-    from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_FLASH, flash_temperature
+    from ehlpetsc.physics.flash_temperature import MAX_ISOTHERMAL_RISE, film_rise, flash_temperature
 
     flash = flash_temperature(abs(friction), scales)
-    if flash > MAX_ISOTHERMAL_FLASH:
+    film = expected_film(case, scales) * scales.h if case.fluid else 0.0
+    rise = film_rise(abs(friction), scales, film)
+    if flash + rise > MAX_ISOTHERMAL_RISE:
+        hotter = f" and the film {rise:.0f} K hotter" if rise >= 1.0 else ""
         yield (
             f"the case is isothermal, but its flash temperature by Blok's formula is about {flash:.0f} K "
-            f"(steel, coefficient of friction {friction:.3f}); [heat] computes with temperatures"
+            f"(steel, coefficient of friction {friction:.3f}){hotter}; [heat] computes with temperatures"
         )
+
+
+def _of_temperatures(totals: dict[str, float]) -> Iterator[str]:
+    """Temperatures at which neither the oil nor hard steel exists any longer."""
+    walls = max(totals.get(f"temperature_{side}_max", 0.0) for side in ("1", "2"))
+    for name, found, (limit, words) in (
+        ("surfaces", walls, MAX_STEEL),
+        ("film", totals.get("film_temperature_max", 0.0), MAX_OIL),
+    ):
+        if found > limit:
+            yield f"temperature: up to {found:.4g} K in the {name}, but {words} above about {limit:g} K"
 
 
 def _of_oil(case: Case, totals: dict[str, float], boundary_friction: float) -> Iterator[str]:

@@ -16,7 +16,7 @@ from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.explain import explain
 from ehlpetsc.run.forecast import file_size, work_time
-from ehlpetsc.run.validity import limits, warnings
+from ehlpetsc.run.validity import heat_warnings, limits, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 POINT, STRIP = (tomllib.loads(template(kind)) for kind in ("point", "strip"))
@@ -169,6 +169,27 @@ def test_flash_temperature_of_a_long_ellipse_is_that_of_the_line():
     found = ellipse(force)
     assert found.p0 == pytest.approx(line.p0, rel=1e-9) and found.b > 50 * found.a
     assert flash_temperature(0.05, found) == pytest.approx(flash_temperature(0.05, line), rel=0.01)
+
+
+def test_film_of_a_sliding_ball_is_warned_of_with_its_rise_over_the_walls():
+    """With [heat] 18.6 and 23.4 K in the surfaces, 31.7 K in the film on a/16: not said below 20 K."""
+    contact = {"radius": [9.525e-3, 9.525e-3], "load": 30.0, "material": "100Cr6"}
+    motion = {"entrainment_speed": 2.0, "slide_roll_ratio": 0.6}
+    mesh = {"inlet": -2.5, "outlet": 1.5, "width": 3.5, "points_per_half_width": 16}
+    fluid = {"oil": "fva3", "temperature": 313.15}
+    case = load({"title": "ball", "contact": contact, "fluid": fluid, "motion": motion, "mesh": mesh})
+    (line,) = heat_warnings(case, Scales.of(case))
+    flash, film = (float(word) for word in re.findall(r"(\d+) K", line))
+    assert flash == pytest.approx(21.0, abs=3.0) and flash + film == pytest.approx(31.7, abs=4.0)
+    slower = load(case._tables, {"motion.slide_roll_ratio": 0.2})
+    assert heat_warnings(slower, Scales.of(slower)) == []
+    heated = load(case._tables, {"heat.bulk_temperature": 313.15})
+    totals = {"p_max": 1e9, "h_min": 1e-7, "oil_pressure": 1e9, "mass_error": 0.0, "nodes_below_1nm": 0}
+    hot = totals | {"temperature_1_max": 500.0, "temperature_2_max": 6787.0, "film_temperature_max": 900.0}
+    scales = Scales.of(heated)
+    lines = [line for line in limits(heated, scales, None, hot) if line.startswith("temperature: ")]
+    assert ["6787 K in the surfaces" in lines[0], "900 K in the film" in lines[1]] == [True, True]
+    assert not any(line.startswith("temperature") for line in limits(heated, scales, None, totals))
 
 
 def test_limits_of_a_point():
