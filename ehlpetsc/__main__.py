@@ -87,8 +87,16 @@ def _start_command(name: str, words: list[str]) -> int:
     place, needs, _ = COMMANDS[name]
     if lacks := packages.missing(needs):
         return refuse(packages.advice(lacks, [name, *words]))
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, _interrupt)
     module, _, function = place.partition(":")
     return getattr(importlib.import_module(module), function or "main")(words)
+
+
+def _interrupt(*_: object) -> None:
+    """End a command as Ctrl-C does, which removes temporary files."""
+    raise KeyboardInterrupt
 
 
 def _start_ranks(words: list[str]) -> int:

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 import h5py
 
 from ehlpetsc.base import environment
-from ehlpetsc.base.errors import CaseError, ExitStatus
+from ehlpetsc.base.errors import CaseError, ExitStatus, UsageError
 from ehlpetsc.results import reader
+from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path
 from ehlpetsc.results.reader import Section, open_result
 
 if TYPE_CHECKING:
@@ -34,13 +35,29 @@ class Result(reader.Result):
     """Result from a file or in memory, see :class:`ehlpetsc.results.reader.Result`."""
 
     def plot(
-        self, step: int | None = None, time: float | None = None, window: tuple[float, float] | None = None
+        self,
+        path: str | PathLike | None = None,
+        step: int | None = None,
+        time: float | None = None,
+        window: tuple[float, float] | None = None,
     ) -> Figure:
         """Pressure and film over x/a at the frame nearest to a step or a time [s], contacts marked.
 
         Of a point contact or strip maps and sections.
 
-        By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`; `window` limits x/a.
+        Parameters
+        ----------
+        path
+            Picture that is also written, replaced if it exists: ``"film.png"``, ``.svg``, ``.pdf`` ...
+        step, time
+            By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`.
+        window
+            Limits of x/a.
+
+        Raises
+        ------
+        UsageError, OutputError
+            `path` is no name, not that of a picture, or cannot be written.
 
         Examples
         --------
@@ -49,11 +66,24 @@ class Result(reader.Result):
         >>> [axes.get_ylabel() for axes in figure.axes]
         ['pressure [GPa]', 'gap [µm]']
         """
+        from ehlpetsc.pictures import frames, style
+
+        if path is not None:
+            if not isinstance(path, str | PathLike):
+                raise UsageError(
+                    f"plot: path = {path!r}: allowed: the name of a picture; a step is step={path!r}"
+                )
+            check_derived(file_path(path), [self.path], PICTURES, "plot")
+        figure = self._figure(frames.choose_frames([self], step, time), window)
+        if path is not None:
+            style.save(figure, path)
+        return figure
+
+    def _figure(self, indices: list[int], window: tuple[float, float] | None) -> Figure:
         from matplotlib import pyplot
 
         from ehlpetsc.pictures import frames, style
 
-        indices = frames.choose_frames([self], step, time)
         if self.y is not None:
             from ehlpetsc.pictures.plane import fill_figure
 

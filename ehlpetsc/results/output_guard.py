@@ -98,15 +98,18 @@ def inputs_of(case: Case) -> list[Path]:
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Context manager of an empty temporary file beside `path`: renamed at the end, removed after an error.
+    """Context manager of a temporary file beside `path`: renamed at the end, removed after an error.
 
-    An error of the system becomes an OutputError. What a killed process left is overwritten.
+    It is created within, as a killed process would leave an empty one; that it can be is checked first. An
+    error of the system becomes an OutputError. What a killed process left is overwritten.
     """
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".tmp.{target.name}")
     try:
         temporary.touch()
+        temporary.unlink()
         yield temporary
+        temporary.touch()
         os.replace(temporary, target)
     except BaseException as error:
         with contextlib.suppress(OSError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.sax.saxutils import escape, quoteattr
 
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.reader import Result, read_result
@@ -42,8 +43,9 @@ def _field(result: Result, name: str, index: int, shape: str) -> str:
     kind = "UChar" if data.dtype.kind == "u" else "Float"
     all_frames = " ".join(map(str, data.shape))
     return (
-        f'<Attribute Name="{name}" Center="Node"><DataItem ItemType="HyperSlab" Dimensions="{shape}">'
+        f'<Attribute Name={quoteattr(name)} Center="Node">'
+        f'<DataItem ItemType="HyperSlab" Dimensions="{shape}">'
         f'<DataItem Dimensions="3 3" Format="XML">{index} 0 0 1 1 1 {shape}</DataItem>'
         f'<DataItem Dimensions="{all_frames}" NumberType="{kind}" Precision="{data.dtype.itemsize}" '
-        f'Format="HDF">{result.path.name}:/{name}</DataItem></DataItem></Attribute>'
+        f'Format="HDF">{escape(f"{result.path.name}:/{name}")}</DataItem></DataItem></Attribute>'
     )

@@ -5,11 +5,14 @@ import os
 import re
 import resource
 import shutil
+import signal
 
 import pytest
 from support import CASES, COARSE_LIFE, ROOT, is_line_with, refused
+from support.made_loads import Scene, write
 from support.made_results import make_result
 
+from ehlpetsc.__main__ import main as program
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.gears.command import main as gears
@@ -70,6 +73,35 @@ def test_temporary_file_is_removed_after_an_error(tmp_path):
         assert beside.suffix == ".png" and beside.parent == tmp_path
         raise OSError(28, "No space left on device")
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+
+
+def test_temporary_file_exists_only_while_it_has_content(tmp_path):
+    """A kill cannot be answered: what it leaves is at least not an empty file."""
+    with replacing(tmp_path / "a.png") as beside:
+        assert list(tmp_path.iterdir()) == []
+        beside.write_text("new")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+    with (
+        pytest.raises(OutputError, match="none/a.png: not written, No such"),
+        replacing(tmp_path / "none" / "a.png"),
+    ):
+        raise AssertionError("the folder is checked first")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+@pytest.mark.parametrize("command", ["post", "plot", "plot --report"])
+def test_interrupted_command_leaves_no_temporary_file(tmp_path, monkeypatch, capsys, number, command):
+    result, replace, (name, *words) = tmp_path / "one.h5", os.replace, command.split()
+    write(result, Scene(per_width=10, travel=11.0)) if name == "post" else make_result(result, steps=3)
+
+    def interrupted(*paths):
+        os.kill(os.getpid(), number)
+        return replace(*paths)
+
+    monkeypatch.setattr(os, "replace", interrupted)  # when the new file is complete
+    assert program([name, str(result), *words]) == 4
+    assert capsys.readouterr().err.splitlines()[-1] == "ehlpetsc: stopped; files written before are complete"
+    assert [path.name for path in tmp_path.iterdir()] == ["one.h5"]
 
 
 def sentence(capsys, command, *words):

@@ -1,5 +1,7 @@
 """Results of points and strips: files, sections, comparison, restart, XDMF."""
 
+from xml.etree import ElementTree
+
 import h5py
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
 from ehlpetsc.pictures import over_time
+from ehlpetsc.results.xdmf import write_xdmf
 from ehlpetsc.run.recorder import Recorder
 
 BALL = {
@@ -159,6 +162,14 @@ def test_restart_on_another_width_is_refused(tmp_path):
     wider = ehlpetsc.load(BALL, {"mesh.width": 3.5})
     with pytest.raises(OutputError, match=r"has 49 nodes across, the case 57; \[mesh\] must be as it was"):
         ehlpetsc.solve(wider, output=tmp_path / "b.h5", restart=tmp_path / "a.restart.h5")
+
+
+@pytest.mark.parametrize("name", ["a&b.h5", "a<b>'c'.h5", 'a"&amp;".h5'])
+def test_xdmf_of_any_name_is_xml(path, tmp_path, name):
+    (tmp_path / name).write_bytes(path.read_bytes())
+    root = ElementTree.parse(write_xdmf(tmp_path / name))
+    items = [item.text for item in root.iter("DataItem") if item.get("Format") == "HDF"]
+    assert f"{name}:/pressure" in items and all(item.startswith(f"{name}:/") for item in items)
 
 
 def test_xdmf_opens_in_vtk(path):

@@ -14,6 +14,7 @@ from support.running import PYTHON, called
 
 import ehlpetsc
 from ehlpetsc import Simulation, UsageError
+from ehlpetsc.base.errors import OutputError
 
 QUICK = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40, "time.travel": 0.05}
 
@@ -208,6 +209,22 @@ def test_picture_shows_the_requested_frame(result):
     figure = result.plot(step=3)
     drawn = next(line for line in figure.axes[0].lines if len(line.get_xdata()) == len(result.x)).get_ydata()
     np.testing.assert_allclose(drawn, 1e-9 * result.pressure[3])
+
+
+def test_picture_is_written_to_a_file_of_its_name(result, tmp_path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    for name, begin in (("film.png", b"\x89PNG"), ("film.pdf", b"%PDF")):
+        result.plot(tmp_path / name, step=1)
+        assert (tmp_path / name).read_bytes().startswith(begin)
+    with pytest.raises(OutputError, match=r"film\.txt: allowed for plot: a name that ends in \.png"):
+        result.plot(str(tmp_path / "film.txt"))
+    with pytest.raises(OutputError, match=r"none/film\.png: not written, No such file"):
+        result.plot(tmp_path / "none" / "film.png")
+    with pytest.raises(UsageError, match="path = 3: allowed: the name of a picture; a step is step=3"):
+        result.plot(3)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["film.pdf", "film.png"]
 
 
 LIGHT = """
