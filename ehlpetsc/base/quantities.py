@@ -37,8 +37,12 @@ SCENES: dict[str, Callable[[Case], bool]] = {
     "mixed": lambda case: case.contact.has_contact_pressure,
     "compliant": lambda case: case.contact.asperity_height is not None,
     "variable": lambda case: case.conditions is not None,
+    "mixed row": lambda case: SCENES["mixed"](case) and case.kind != "point",
+    "mixed point": lambda case: SCENES["mixed"](case) and case.kind == "point",
+    "compliant row": lambda case: SCENES["compliant"](case) and case.kind != "point",
+    "compliant point": lambda case: SCENES["compliant"](case) and case.kind == "point",
 }
-"""Whether a case has what a quantity needs."""
+"""Whether a case has what a quantity needs; rows: lines and strips, of which integrals are per width."""
 
 FIELDS = {
     "pressure": Field("Pa", "pressure"),
@@ -60,6 +64,33 @@ AtEnd = partial(StepScalar, over_run="last", summary=".4g")
 Compared = partial(StepScalar, compared=True)
 Integral = partial(StepScalar, integrated=True, compared=True)
 Condition = partial(StepScalar, only="variable")
+
+
+def _extents(noun: str, contact: str) -> dict[str, StepScalar]:
+    """Length, or area of a point contact, where solids carry and where the film is thin, by name."""
+    extent = partial(Integral, "m^2")
+    mixed, compliant = f"mixed {contact}", f"compliant {contact}"
+    return {
+        f"contact_{noun}": extent(
+            f"{noun} where solids carry; of a compliant layer, integral of the real area fraction",
+            only=mixed,
+            of=lambda o: o.cell * o.model.real_area_fraction(o.loads).sum(),
+        ),
+        f"contact_{noun}_10mpa": extent(
+            f"{noun} where asperities carry more than 10 MPa",
+            only=compliant,
+            of=lambda o: o.cell * o.loads.contact_mask.sum(),
+        ),
+        f"contact_{noun}_100mpa": extent(
+            f"{noun} where asperities carry more than 100 MPa",
+            only=compliant,
+            of=lambda o: o.cell * (o.loads.contact_pressure > HIGH_PRESSURE / o.scene.scales.p0).sum(),
+        ),
+        f"thin_{noun}": extent(
+            f"{noun} where the film is thin", only=mixed, of=lambda o: o.cell * o.thin.sum()
+        ),
+    }
+
 
 STEP_SCALARS = {
     "step": StepScalar(
@@ -153,27 +184,8 @@ STEP_SCALARS = {
         only="mixed",
         of=lambda o: o.loads.contact_pressure.sum() / o.loads.pressure.sum(),
     ),
-    "contact_length": Integral(
-        "m^2",
-        "length where solids carry; of a compliant layer, integral of the real area fraction",
-        only="mixed",
-        of=lambda o: o.cell * o.model.real_area_fraction(o.loads).sum(),
-    ),
-    "contact_length_10mpa": Integral(
-        "m^2",
-        "length where asperities carry more than 10 MPa",
-        only="compliant",
-        of=lambda o: o.cell * o.loads.contact_mask.sum(),
-    ),
-    "contact_length_100mpa": Integral(
-        "m^2",
-        "length where asperities carry more than 100 MPa",
-        only="compliant",
-        of=lambda o: o.cell * (o.loads.contact_pressure > HIGH_PRESSURE / o.scene.scales.p0).sum(),
-    ),
-    "thin_length": Integral(
-        "m^2", "length where the film is thin", only="mixed", of=lambda o: o.cell * o.thin.sum()
-    ),
+    **_extents("length", "row"),
+    **_extents("area", "point"),
     "thin_share": Compared(
         "1",
         "share of the load where the film is thin",

@@ -176,9 +176,8 @@ def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> No
 def draw_contact(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the means of the load fraction of the solids and of the contact length or area."""
     factor, word, unit = MEASURES[result.case.kind][0]
-    share, length = (
-        np.array([row.get(name) for row in rows], float) for name in ("contact_share", "contact_length")
-    )
+    names = "contact_share", "contact_area" if result.case.kind == "point" else "contact_length"
+    share, length = (np.array([row.get(name) for row in rows], float) for name in names)
     axes.plot(*_over_passes(axes, share), ".-", color=LAST)
     axes.set_ylabel("share of the load on solids", color=LAST)
     length_axes = axes.twinx()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 SHIFTED_IN_A_ROW = 10  # consecutive run-in passes required with shifted surfaces
 RUN_IN = 0.01  # of the volume added by the first pass: surfaces are run in if a pass adds less
-MEANS = ("contact_share", "contact_length", "thin_share", "friction_coefficient")
+MEANS = ("contact_share", "contact_length", "contact_area", "thin_share", "friction_coefficient")
 
 
 def pass_summary(result: Result) -> dict[str, Any]:

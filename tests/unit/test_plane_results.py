@@ -44,10 +44,9 @@ def test_point_has_fields_over_time_y_and_x(path):
         assert np.allclose(
             pressure, pressure[::-1], rtol=0.0, atol=1e-6 * pressure.max()
         )  # symmetric about y = 0
-        units = {
-            name: file[f"steps/{name}"].attrs["units"] for name in ("load", "contact_length", "friction")
-        }
-        assert units == {"load": "N", "contact_length": "m^2", "friction": "N"}
+        units = {name: file[f"steps/{name}"].attrs["units"] for name in ("load", "contact_area", "friction")}
+        assert units == {"load": "N", "contact_area": "m^2", "friction": "N"}
+        assert not any("length" in name for name in file["steps"])  # areas were called so
         assert (file["steps/gmres"][:] >= file["steps/newton"][:]).all()
         assert file["pressure"].id.get_storage_size() < 0.9 * file["pressure"].size * 8
 
