@@ -154,6 +154,10 @@ class Effect(Generic[R]):
         """
         return record
 
+    def mixed(self, pairs: Sequence[tuple[R, R]]) -> R:
+        """Record before the next solve of a steady start, from those before and after the ones so far."""
+        return pairs[-1][1]
+
     def is_settled(self, before: R | None, after: R) -> bool:
         """Whether a steady solution is consistent with the record after it; otherwise it is solved again."""
         return True

@@ -209,6 +209,7 @@ class NewtonSolver:
                 self._renew()
             snes = self._unconstrained_snes if unconstrained else self.snes
             self._unconstrained, self._share, self._before = unconstrained, share, None
+            snes.setForceIteration(inputs.history is None)  # so that it follows small changes of the oil
             self._run(snes, limit - spent)
             taken = snes.getIterationNumber()
             spent += taken + 1

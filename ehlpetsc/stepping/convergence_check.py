@@ -53,11 +53,21 @@ class Solver(Protocol):
 def solve_checked(
     solver: Solver, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
 ) -> tuple[Unknowns, int]:
-    """Solution that passes the check, and the number of iterations; raise `SolveFailed` without one."""
+    """Solution that passes the check, and the number of iterations; raise `SolveFailed` without one.
+
+    Without flow any void fraction is steady: oil at rest is solved for as if flooded, and the gap beyond the
+    oil film of the inlet then void.
+    """
+    oil = inputs.inlet_film if inputs.rests else None
+    if oil is not None:
+        guess, inputs = guess._replace(q=np.maximum(guess.q, 0.0)), replace(inputs, inlet_film=None)
     solution, iterations = solver.solve(guess, inputs, max_it=max_it, watch=watch)
     fault = find_fault(solver.problem, solution, solver.residual(), solver.tolerance)
     if fault:
         raise SolveFailed("solution check:", fault, iterations)
+    if oil is not None:
+        h = solver.problem.model.state(solution.q, solution.w).film
+        solution = solution._replace(q=np.where(h > oil, oil / np.maximum(h, oil) - 1.0, solution.q))
     return solution, iterations
 
 

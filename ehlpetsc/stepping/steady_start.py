@@ -16,6 +16,7 @@ first kind and did not always converge.
 A starved inlet needs another guess, because the meniscus moves one node per iteration: void where the gap is
 wider than the oil film. The flooded solution decides whether the contact starves: if it carries more oil than
 the inlet supplies, the contact is starved; otherwise the flooded solution holds except at the first node.
+At rest the oil film of the inlet is everywhere, with voids where the gap is wider.
 
 If the Hertz pressure exceeds the yield pressure, the guess is the dry contact of
 :func:`.first_guess.bounded_start`.

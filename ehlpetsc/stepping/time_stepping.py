@@ -103,10 +103,13 @@ class TimeStepping:
     def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
         """Steady solution consistent with the records of the effects, by repeated solves."""
         end, newton = self._step_end(), state.newton
+        pairs: dict[str, list] = {e.name: [] for e in self.effects}
         for _ in range(MAX_STEADY_SOLUTIONS):
             if all(e.is_settled(before[e.name], state.records[e.name]) for e in self.effects):
                 return state
-            before = state.records
+            for name, of_effect in pairs.items():
+                of_effect.append((before[name], state.records[name]))
+            before = {e.name: e.mixed(pairs[e.name]) for e in self.effects}
             again = replace(self._with_effects(self._inputs_of(end), before, end), phi=inputs.phi)
             try:
                 max_it = self.solver.start_iterations()

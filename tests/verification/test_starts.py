@@ -185,6 +185,55 @@ def test_start_from_rest_does_not_depend_on_rounding(monkeypatch, solids):
     assert max(taken) <= 8 and max(taken) - min(taken) <= 1
 
 
+STRIP_FROM_REST = {
+    "title": "strip from rest",
+    "contact": {
+        "radius": 0.03768,
+        "load": 84290.0,
+        "youngs_modulus": 206e9,
+        "poisson_ratio": 0.3,
+        "model": "mixed",
+        "boundary_film": 16.57e-9,
+    },
+    "fluid": {
+        "viscosity": 0.001224,
+        "law": "roelands",
+        "pressure_viscosity": 12.67e-9,
+        "density": "dowson-higginson",
+        "eyring_stress": 9.088e6,
+    },
+    "mesh": {"inlet": -2.0, "outlet": 1.7, "points_per_half_width": 6, "width": 1.07},
+    "surface": {
+        "1": {
+            "synthetic": {
+                "kind": "sine",
+                "amplitude": 56e-9,
+                "wavelength": 1.25e-4,
+                "wavelength_across": 2e-4,
+            }
+        }
+    },
+    "time": {"courant": 2.0},
+    "operation": {"time": [0.0, 1.4e-4], "speed_1": [0.0, 1.17], "speed_2": [0.0, 1.8]},
+    "motion": {"entrainment_speed": 1.483, "slide_roll_ratio": -0.427},
+}
+
+
+@pytest.mark.parametrize("film", [2e-6, 0.3e-6])
+@pytest.mark.parametrize(
+    "case, solids", [(STRIP_FROM_REST, {}), (FROM_REST, RESTING_SOLIDS[0]), (FROM_REST, RESTING_SOLIDS[3])]
+)
+def test_start_from_rest_with_an_oil_film(case, solids, film):
+    """The oil film of the inlet is everywhere where the gap is wider, and steps can begin from there."""
+    simulation = Simulation(load(case, solids | {"fluid.inlet_film": film}))
+    state = simulation.advance()
+    assert state.contact_share == pytest.approx(1.0, abs=1e-9) and state.load_error < 1e-7
+    oil = state.film_thickness * (1.0 - state.void_fraction)
+    np.testing.assert_allclose(oil, np.minimum(state.film_thickness, film), rtol=1e-12)
+    later = [simulation.advance() for _ in range(3)]
+    assert max(s.newton for s in later) < 12 and sum(s.retries for s in later) == 0
+
+
 LIGHT_AND_FAST = {
     "title": "light and fast",
     "contact": {"radius": 9.78e-3, "load": 61.3e3, "material": "100Cr6"},
@@ -200,6 +249,14 @@ def test_light_fast_line_with_heat_starts_in_few_iterations(speed, points):
     keys = {"motion.entrainment_speed": speed, "mesh.points_per_half_width": points}
     state = Simulation(load(LIGHT_AND_FAST, keys)).advance()
     assert state.newton <= 12 and state.load_error < 1e-8 and state.heat_error < 1e-10
+
+
+@pytest.mark.parametrize("speed, load_, ratio, points", [(21.5, 95.9e3, 1.0, 30), (20.1, 285.7e3, 0.0, 60)])
+def test_fast_warm_line_starts(speed, load_, ratio, points):
+    """In turn, film and temperatures oscillate by 20 K, or do not settle in 60 solves."""
+    keys = {"motion.entrainment_speed": speed, "motion.slide_roll_ratio": ratio, "contact.load": load_}
+    state = Simulation(load(LIGHT_AND_FAST, keys | {"mesh.points_per_half_width": points})).advance()
+    assert state.newton <= 30 and state.load_error < 1e-8 and state.heat_error < 1e-10
 
 
 def test_start_with_heat_from_a_coarser_mesh_ends_as_the_one_from_hertz(monkeypatch):

@@ -11,6 +11,7 @@ fraction it is one state.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,7 @@ import numpy as np
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Error
 from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.heat.mixing import mixed_record
 from ehlpetsc.effects.heat.record import HeatRecord, interpolated
 
 if TYPE_CHECKING:
@@ -175,6 +177,10 @@ class Heat(Effect[HeatRecord]):
             error=error,
             levels=record.levels + 1,
         )
+
+    def mixed(self, pairs: Sequence[tuple[HeatRecord, HeatRecord]]) -> HeatRecord:
+        """Record for the next steady solve, by Anderson's acceleration."""
+        return mixed_record(pairs, self._steps.inlet)
 
     def is_settled(self, before: HeatRecord | None, after: HeatRecord) -> bool:
         """Whether a steady solution and its temperatures agree."""

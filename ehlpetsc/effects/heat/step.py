@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,7 @@ from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows,
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
+from ehlpetsc.effects.heat.mixing import mixing
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken_in_rows, transport_in_rows
 from ehlpetsc.physics.flash_temperature import Solid
@@ -31,9 +32,6 @@ MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the m
 MIN_RESPONSE = 0.01  # of the maximum
 MIN_TEMPERATURE_RISE = 1e-3  # K
 TINY = 1e-30  # m^2 K/W: bodies without response share equally
-DEPTH = 6
-ITERATIONS = 200
-ACCURACY = 1e-11  # of the maximum
 OF_CHANGE = 1e-3  # of the change between two solutions
 
 
@@ -277,32 +275,3 @@ def _rubbed(
     first = (responses[1] + TINY) / (responses[0] + responses[1] + 2.0 * TINY)
     rise = responses[0] * first * rubbing
     return [wall + rise for wall in walls], (first, 1.0 - first)
-
-
-def mixing(
-    function: Callable[[np.ndarray], np.ndarray], start: np.ndarray, of_change: float = 0.0
-) -> np.ndarray:
-    r"""Fixed point :math:`x=g(x)` by Anderson's acceleration (Walker & Ni 2011).
-
-    Returns the last argument of the function. `of_change`: fraction of the first change that is accurate.
-    """
-    x: np.ndarray = start
-    steps: list[np.ndarray] = []
-    residuals: list[np.ndarray] = []
-    least = 0.0
-    for _ in range(ITERATIONS):
-        new = function(x)
-        f = new - x
-        change = np.abs(f).max()
-        least = least or of_change * change
-        if change <= max(ACCURACY * max(np.abs(new).max(), 1e-300), least):
-            return x
-        steps, residuals = [*steps, x][-DEPTH:], [*residuals, f][-DEPTH:]
-        if len(steps) == 1:
-            x = new
-            continue
-        differences = np.diff(np.array(residuals), axis=0).T
-        gamma = np.linalg.lstsq(differences, f, rcond=1e-12)[0]
-        moved = np.diff(np.array(steps), axis=0).T
-        x = new - (moved + differences) @ gamma
-    return x
