@@ -209,7 +209,7 @@ STRIP_FROM_REST = {
                 "kind": "sine",
                 "amplitude": 56e-9,
                 "wavelength": 1.25e-4,
-                "wavelength_across": 2e-4,
+                "wavelength_across": 0.00020224807411789976,  # the width
             }
         }
     },
