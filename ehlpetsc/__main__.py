@@ -18,6 +18,7 @@ import ehlpetsc.base.environment as packages
 from ehlpetsc import __version__
 from ehlpetsc.base.environment import NUMERICS, READING
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.base.toml_file import is_plain
 from ehlpetsc.run.stop import StopRequest
 
 MAX_RANKS = 99999
@@ -67,6 +68,9 @@ def main(words: list[str] | None = None) -> int:
 def _start(words: list[str]) -> int:
     """Start the command of the first word, otherwise run a case; returns the exit status."""
     first = words[0] if words else ""
+    for word in words:
+        if "=" not in word and not is_plain(word):  # messages and result files have paths in one line
+            return refuse(f"ehlpetsc: {ascii(word)}: allowed: a name without line breaks; rename the file")
     if "--version" in words[:1]:
         return _print(f"ehlpetsc {__version__}")
     if words in (["-h"], ["--help"], ["-help"]):

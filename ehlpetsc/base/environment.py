@@ -77,9 +77,13 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
             f"{reason}type: ./run_mpi.sh {command}   (installs what is missing on Debian 12 and newer and "
             f"runs Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {command}"
         )
+    of_petsc = (
+        "   (builds PETSc from source if that is missing), or take Debian's packages and a virtual "
+        "environment with --system-site-packages"
+    )
     return (
-        f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}   (builds PETSc from source if "
-        "that is missing), or take Debian's packages and a virtual environment with --system-site-packages; "
+        f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}"
+        f"{of_petsc if set(lacks) & set(SOLVER) else ''}; "
         "the section Install of the page README.md lists all ways"
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import os
 import re
@@ -18,11 +19,15 @@ Tables = dict[str, Any]
 
 def read_text(path: str | os.PathLike) -> str:
     """Text of a case file; raises `CaseError`."""
+    if not is_plain(os.fspath(path)):  # messages and result files have it in one line
+        raise CaseError([f"{ascii(os.fspath(path))}: allowed: a name without line breaks; rename the file"])
     try:
         with open(path, "rb") as file:  # a device has no size and no end
             content = file.read(MAX_BYTES + 1)
         if len(content) > MAX_BYTES:
             raise CaseError([f"{path}: larger than {MAX_BYTES >> 20} MB; allowed: a TOML file of a case"])
+        if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) or b"\0" in content[:2]:
+            raise CaseError([f"{path}: UTF-16 text; allowed: UTF-8, to be chosen where the editor saves it"])
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
@@ -36,7 +41,16 @@ def parse_toml(path: str | os.PathLike, text: str) -> Tables:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # some errors of number conversions pass tomllib
-        raise CaseError([f"{path}: not valid TOML: {error}"]) from None
+        raise CaseError([f"{path}: not valid TOML: {error}{_decimal_comma(text, str(error))}"]) from None
+
+
+def _decimal_comma(text: str, message: str) -> str:
+    """Hint to a number with a decimal comma in the line of a fault of TOML, "" without one."""
+    at, lines = re.search(r"at line (\d+)", message), text.splitlines()
+    line = lines[int(at[1]) - 1] if at and int(at[1]) <= len(lines) else ""
+    number = re.search(r"=\s*([+-]?\d+,\d+)|([+-]?0,0\d+)", line.partition("#")[0])  # or a list [1,2]
+    found = number and (number[1] or number[2])
+    return f'; "{found}" is written {found.replace(",", ".")}' if found else ""
 
 
 def is_plain(text: str) -> bool:

@@ -120,6 +120,13 @@ def _checkpoint(values: dict[str, Any]) -> Checkpoint:
 
 def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -> str | None:
     """Reason why a file does not fit the case; None if it fits."""
+    now_table = tomllib.loads(case.text)
+    if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
+        changes = changed_keys(*({"contact": tables.get("contact", {})} for tables in (earlier, now_table)))
+        return (
+            f"of another load, radius or elasticity{': ' * bool(changes)}{', '.join(changes)}; "
+            "what changes with time is in [operation]"
+        )
     for axis, now in axes_of(scales).items():
         x, where = values.get(axis, np.zeros(1)) / values["a"], " across" if axis == "y" else ""
         if len(x) != len(now):
@@ -130,9 +137,7 @@ def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -
             )
     if ("fluid" in earlier) != (case.fluid is not None) or values["contact_law"] != case.contact.law:
         return "of another contact model, or of oil where there is none now; both must be as they were"
-    if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
-        return "of another load, radius or elasticity; what changes with time is in [operation]"
-    now_table, start = tomllib.loads(case.text), earlier.get("time", {}).get("start", "smooth")
+    start = earlier.get("time", {}).get("start", "smooth")
     if case.time.start != start:
         return f'time.start was "{start}"; it must be as it was, or the profiles would jump'
     if any(now_table.get(name) != earlier.get(name) for name in SPEEDS):

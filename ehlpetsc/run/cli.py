@@ -138,7 +138,9 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
     """Run a case file on all ranks; with -help print PETSc's options."""
     from ehlpetsc.base.compiled import announce_compilation
     from ehlpetsc.case.loading import load
+    from ehlpetsc.physics.scales import Scales
     from ehlpetsc.results.output_guard import file_path
+    from ehlpetsc.run.domain import has_passes, refusals
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.simulation import Simulation
 
@@ -150,17 +152,15 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
         return ExitStatus.DONE
     output = file_path(f"{Path(case.path).stem}.h5" if chosen.output is None else chosen.output)
     restart, overwrite = chosen.restart, chosen.overwrite
-    has_passes = case.time is not None and case.time.passes > 1
-    if case.series and has_passes:
-        allowed = "one of them at a time; a member: --set KEY=VALUE -o NAME.h5"
-        raise CaseError([f"{case.path}: [series] and time.passes: {allowed}"])
     if case.series:
+        if faults := refusals(case, Scales.of(case)):
+            raise CaseError(faults)
         from ehlpetsc.run.series import Series
 
         if restart:
             raise UsageError("--restart with a [series]: leave it out: unfinished members are continued")
         return Series(comm, case, output, stop, overwrite).run()
-    if has_passes:
+    if has_passes(case):
         from ehlpetsc.run.passes import Passes
 
         return Passes(comm, case, output, stop).run(restart, overwrite)
@@ -178,5 +178,5 @@ def _print_heading(simulation: Simulation) -> None:
 
     case, scales = simulation.case, simulation.scales
     print(*banner(case, scales, simulation.roughness, simulation.comm.size), sep="\n")
-    for line in warnings(case, scales):
+    for line in warnings(case, scales, simulation.roughness):
         print(f"warning: {line}", flush=True)

@@ -57,6 +57,19 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
     return [f"{where}: {_coarse(case, film, opening, ', which leaves no film')}"]
 
 
+def refusals(case: Case, scales: Scales) -> list[str]:
+    """Reasons why a run refuses a checked case, one message each."""
+    if case.series:
+        allowed = "one of them at a time; a member: --set KEY=VALUE -o NAME.h5"
+        return [f"{case.path}: [series] and time.passes: {allowed}"] * has_passes(case)
+    return domain_faults(case, scales)
+
+
+def has_passes(case: Case) -> bool:
+    """Whether a case has more than one pass."""
+    return case.time is not None and case.time.passes > 1
+
+
 def _smallest_expected_film(case: Case, scales: Scales) -> float:
     """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
     return max(expected_film(case, scales), smallest_film(case.contact, scales))

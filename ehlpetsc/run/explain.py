@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import argparse
+import math
+import sys
 import tomllib
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.command_line import CommandParser, duration, exit_status, put
+from ehlpetsc.base.command_line import CommandParser, ProgressLine, duration, exit_status, put
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
@@ -16,7 +20,7 @@ from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, l
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oils import OILS
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.domain import domain_faults
+from ehlpetsc.run.domain import refusals
 from ehlpetsc.run.forecast import (
     START_SECONDS,
     file_size,
@@ -93,16 +97,33 @@ def main(words: list[str]) -> int:
     parser = CommandParser("explain", "Summary of a case before its run: film, lambda ratio, run time.")
     parser.add_argument("case", metavar="CASE.toml")
     chosen = parser.parse_args(words)
-    return exit_status("explain", lambda: put(explain(load(chosen.case, chosen.set)), chosen))
+    return exit_status("explain", lambda: _explain(chosen))
 
 
-def explain(case: Case) -> str:
+def _explain(chosen: argparse.Namespace) -> None:
+    """Print the summary; raise `CaseError` for a case that a run refuses."""
+    progress = ProgressLine(
+        "explain: surfaces", 3.0, sys.stderr
+    )  # of large maps, which take most of the time
+    progress.reach(0.0)
+    case = load(chosen.case, chosen.set)
+    progress.reach(1.0)
+    rough = Roughness.of(case, Scales.of(case))
+    progress.reach(2.0)
+    text = explain(case, rough)
+    progress.clear()
+    put(text, chosen)
+    if faults := refusals(case, Scales.of(case)):
+        raise CaseError(faults)
+
+
+def explain(case: Case, rough: Roughness | None = None) -> str:
     """Text summary of a case: conditions, surfaces, mesh, run time.
 
-    Raises :class:`ehlpetsc.base.errors.ProfileError`.
+    `rough`: surfaces of the case; None: read here. Raises :class:`ehlpetsc.base.errors.ProfileError`.
     """
     scales = Scales.of(case)
-    rough = Roughness.of(case, scales)
+    rough = rough or Roughness.of(case, scales)
     sections = [
         [case.title],
         _series(case) if case.series else [],
@@ -114,8 +135,7 @@ def explain(case: Case) -> str:
         surface_lines(case, scales, rough),
         KINDS[case.kind].lay * bool(rough),
         _size(case, scales, rough),
-        [f"Warning: {line}" for line in warnings(case, scales)],
-        [f"Refused: {line}" for line in domain_faults(case, scales)],
+        [f"Warning: {line}" for line in warnings(case, scales, rough)],
     ]
     return "\n".join(line for section in sections for line in section)
 
@@ -175,7 +195,22 @@ def _motion(case: Case, s: Scales) -> list[str]:
         f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
         f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
         *["Start: rough, after a ramp before time 0"] * (case.time.start == "rough"),
+        *_post(case, s),
     ]
+
+
+def _post(case: Case, s: Scales) -> list[str]:
+    """Line on body points none of which passes the whole mesh, as post-processing needs; [] if some do."""
+    width = (s.x[-1] - s.x[0]) * s.a
+    short = {side: speed for side, speed in (("1", s.u1), ("2", s.u2)) if abs(speed) * s.duration < width}
+    slowest = min(map(abs, short.values()), default=0.0)
+    if not short:
+        return []
+    needed = "which rests"
+    if slowest:
+        needed = f"as post needs for it; time.travel = {math.ceil(width / s.a * s.u_max / slowest)} is enough"
+    of = "either surface" if len(short) == 2 else f"surface {next(iter(short))}"
+    return [f"Post-processing: no point of {of} passes the whole mesh, {width / s.a:g} a, {needed}"]
 
 
 def _variable(case: Case, s: Scales) -> list[str]:
@@ -212,7 +247,7 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
         *wave_lines(case, s),
         f"Expected run time on one rank: about {duration(seconds)}; "
         f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}; "
-        f"memory: about {1e-6 * memory(s):.0f} MB",
+        f"memory: about {1e-6 * memory(s, rough):.0f} MB",
     ]
 
 

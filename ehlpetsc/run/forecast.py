@@ -29,6 +29,7 @@ PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.1, 0.15, 0.
 # its growth with the nodes, and what does not grow [s]; steady start in steps
 GROWTH, STEP_SECONDS, PLANE_START = 1.0, 0.015, 10
 START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
+POINT_MEMORY = 70  # of a measured map, while it is read, for each point [bytes]
 COMPRESSED = 0.6  # of the size of the fields
 # keys of the waves of a surface
 WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
@@ -68,9 +69,11 @@ WORK_TIMES: dict[str, Callable[[Case, Scales, Roughness | None], float]] = {
 }
 
 
-def memory(s: Scales) -> float:
-    """Expected memory of a run on one rank [bytes]."""
-    return START_MEMORY + NODE_MEMORY * s.grid.n
+def memory(s: Scales, rough: Roughness | None) -> float:
+    """Expected memory of a run on one rank [bytes], while it reads the largest measured map or profile."""
+    given = [surface.given for surface in (rough.sides.values() if rough else ())]
+    points = max((samples.z.size for samples in given if samples.measured), default=0)
+    return START_MEMORY + NODE_MEMORY * s.grid.n + POINT_MEMORY * points
 
 
 def _is_mixed(case: Case, s: Scales, rough: Roughness | None) -> bool:

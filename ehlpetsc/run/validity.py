@@ -39,14 +39,14 @@ FLATTENED = 0.01  # film over the rms height of the layer: below it the mesh doe
 MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits
 
 
-def warnings(case: Case, scales: Scales) -> list[str]:
-    """Warnings before a run, one message each."""
+def warnings(case: Case, scales: Scales, rough: Roughness | None = None) -> list[str]:
+    """Warnings before a run, one message each; `rough`: surfaces of the case, None: read here."""
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case), *domain_warnings(case, scales)]
     if case.surface.body_1 or case.surface.body_2:
         from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
         from ehlpetsc.surfaces.roughness import Roughness
 
-        profiles = Roughness.of(case, scales)
+        profiles = rough or Roughness.of(case, scales)
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
         notes += [*mesh_warnings(profiles, scales), *strip_warnings(case, scales)]
     return notes + rolling_warnings(case, scales) + heat_warnings(case, scales)

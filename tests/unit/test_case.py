@@ -194,6 +194,36 @@ def test_invalid_toml_is_refused_with_its_line(tmp_path):
     assert is_line_with(fault(path), f"{path}: ", "TOML", "line 2")
 
 
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_utf_16_is_named(tmp_path, encoding):
+    path = tmp_path / "case.toml"
+    path.write_bytes(SMOOTH.read_text().encode(encoding))
+    assert is_line_with(fault(path), f"{path}: UTF-16 text; allowed: UTF-8")
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("a = 0,0191", '; "0,0191" is written 0.0191'),
+        ("a = -12,5  # x", '; "-12,5" is written -12.5'),
+        ("a = [0,0191, 0,02]", '; "0,0191" is written 0.0191'),
+        ("a = [16,24", ""),
+        ("a = 1.5 # 2,5\nb = ", ""),
+    ],
+)
+def test_a_decimal_comma_is_named(tmp_path, line, hint):
+    path = tmp_path / "case.toml"
+    path.write_text(f"title = 'x'\n{line}\n")
+    assert fault(path).endswith(f"){hint}")
+
+
+def test_names_of_files_are_one_line(tmp_path):
+    """Messages and summaries of a result had two lines."""
+    path = tmp_path / "a\nb.toml"
+    path.write_text(SMOOTH.read_text())
+    assert is_line_with(fault(path), r"a\nb.toml", "without line breaks; rename the file")
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [

@@ -4,13 +4,13 @@ import re
 
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, is_line_with
 
 from ehlpetsc.api import solve
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run import forecast
-from ehlpetsc.run.explain import explain
+from ehlpetsc.run.explain import explain, main
 from ehlpetsc.run.forecast import file_size
 from ehlpetsc.run.validity import warnings
 from ehlpetsc.surfaces.roughness import Roughness
@@ -20,6 +20,10 @@ MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
 
 def lines(name, *overrides):
     return explain(case.load(CASES / name, overrides)).splitlines()
+
+
+def of(settings):
+    return [f"{key}={value}" for key, value in settings.items()]
 
 
 def starting(found, word):
@@ -139,3 +143,41 @@ def test_mesh_within_ten_percent_has_no_warning():
     needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
     c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
     assert not any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c)))
+
+
+def test_memory_of_a_large_map_is_that_of_reading_it(tmp_path, monkeypatch):
+    """A map of 5,000 x 5,000 took 1.9 GB, and 250 MB were expected."""
+    monkeypatch.chdir(tmp_path)
+    np.save("map.npy", np.random.default_rng(0).normal(0.0, 1e-8, (400, 500)))
+    tables = case.load(CASES / "ball.toml", {"surface.1": None})._tables
+    expected = []
+    for surface in ({}, {"1": {"file": "map.npy", "spacing": 1e-6}}):
+        ball = case.load(tables | {"surface": surface})
+        scales = Scales.of(ball)
+        expected.append(forecast.memory(scales, Roughness.of(ball, scales)))
+    assert expected[1] - expected[0] == pytest.approx(70 * 400 * 500)
+    assert f"memory: about {1e-6 * expected[1]:.0f} MB" in explain(ball)
+
+
+def test_explain_refuses_what_a_run_refuses(capsys):
+    """It printed a line and ended with status 0."""
+    coarse = ["contact.load=2.1e6", "motion.entrainment_speed=0.005"]
+    words = [word for key in coarse for word in ("--set", key)]
+    assert main([str(CASES / "table1_smooth.toml"), *words]) == 2
+    out, err = capsys.readouterr()
+    assert "Mesh: " in out and is_line_with(err, "which leaves no film")
+    series = ["series.key='fluid.viscosity'", "series.values=[0.01, 0.02]", "time.passes=2"]
+    words = [word for key in series for word in ("--set", key)]
+    assert main([str(CASES / "table1_rough.toml"), *words]) == 2
+    assert is_line_with(capsys.readouterr().err, "[series] and time.passes: ", "one of them at a time")
+
+
+def test_explain_states_the_travel_that_post_processing_needs():
+    short = {"time.travel": 3.0, "mesh.inlet": -2.5, "mesh.outlet": 1.5, "motion.slide_roll_ratio": 0.5}
+    (line,) = (line for line in lines("table1_rough.toml", *of(short)) if line.startswith("Post-processing"))
+    assert "no point of either surface passes the whole mesh, 4 a" in line and "time.travel = 7 is" in line
+    (line,) = (
+        line for line in lines("table1_rough.toml", *of(short | {"time.travel": 5.0})) if "Post-" in line
+    )
+    assert "no point of surface 2 passes" in line
+    assert not any("Post-" in line for line in lines("table1_rough.toml", *of(short | {"time.travel": 7.0})))

@@ -161,6 +161,10 @@ def test_restart_on_another_width_is_refused(tmp_path):
     wider = ehlpetsc.load(BALL, {"mesh.width": 3.5})
     with pytest.raises(OutputError, match=r"has 49 nodes across, the case 57; \[mesh\] must be as it was"):
         ehlpetsc.solve(wider, output=tmp_path / "b.h5", restart=tmp_path / "a.restart.h5")
+    x, y = case.contact.radius, 1.7 * case.contact.radius_across
+    longer = ehlpetsc.load(BALL, {"contact.radius": [x, y]})  # with other rows: it was [mesh] that differed
+    with pytest.raises(OutputError, match=r"another load, radius or elasticity: contact\.radius was \["):
+        ehlpetsc.solve(longer, output=tmp_path / "b.h5", restart=tmp_path / "a.restart.h5")
 
 
 @pytest.mark.parametrize("name", ["a&b.h5", "a<b>'c'.h5", 'a"&amp;".h5'])

@@ -93,3 +93,13 @@ def test_ranks_are_started_by_the_script_of_a_clone(monkeypatch, capsys):
 def test_advice_of_an_installed_package_names_the_page(monkeypatch):
     monkeypatch.setattr(environment, "SCRIPT", ROOT / "none")
     assert "the section Install of the page README.md" in environment.advice(["petsc4py"], [])
+    assert "builds PETSc from source" in environment.advice(["petsc4py"], [])
+    assert "PETSc" not in environment.advice(
+        ["matplotlib"], ["plot", "result.h5"]
+    )  # which plot does not need
+    assert "-m pip install matplotlib; " in environment.advice(["matplotlib"], ["plot", "result.h5"])
+
+
+def test_words_with_line_breaks_are_refused(capsys):
+    assert main(["plot", "a\nb.h5"]) == main(["case.toml", "-o", "a\nb.h5"]) == 2
+    assert capsys.readouterr().err.count("\n") == 2
