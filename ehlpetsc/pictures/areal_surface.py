@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Rectangle
 
 from ehlpetsc.pictures import style
+from ehlpetsc.surfaces.areal_parameters import SurfaceParameters
 from ehlpetsc.surfaces.parameters import (
     CORRELATION_THRESHOLD,
     ArealParameters,
@@ -44,24 +45,34 @@ def lines(file: str, surface: Topography) -> list[str]:
         f"{file}: {size}, {points}",
         *surface.notes,
         *doubts(surface),
-        *rows(surface.parameters, core_parameters(surface.z)),
+        *rows(
+            surface.parameters,
+            core_parameters(surface.z),
+            SurfaceParameters.of(surface.z, surface.dx, surface.dy),
+        ),
     ]
 
 
-def rows(found: ArealParameters, core: CoreParameters) -> list[str]:
+def rows(found: ArealParameters, core: CoreParameters, more: SurfaceParameters) -> list[str]:
     """Parameters with unit and meaning, a line each."""
     um = 1e6
     table = (
         ("Sa", um * found.sa, "um", "arithmetic mean height"),
         ("Sq", um * found.sq, "um", "root mean square height"),
+        ("Sz", um * more.sz, "um", "maximum height"),
+        ("S10z", um * more.s10z, "um", "ten-point height, of peaks and pits of more than 5% of Sz"),
         ("Ssk", found.ssk, "", "skewness"),
         ("Sku", found.sku, "", "kurtosis"),
         ("Spk", um * core.rpk, "um", "reduced peak height"),
         ("Sk", um * core.rk, "um", f"core height, from {core.mr1:.1%} to {core.mr2:.1%} of material"),
         ("Svk", um * core.rvk, "um", "reduced valley depth"),
+        ("Vmp", um * more.vmp, "um", "volume of the peaks above 10% of material, per area"),
+        ("Vvv", um * more.vvv, "um", "volume of the valleys below 80% of material, per area"),
         ("Sdq", found.sdq, "", "root mean square gradient"),
+        ("Sdr", 100.0 * more.sdr, "%", "developed interfacial area ratio"),
         ("Sal", um * found.sal, "um", "autocorrelation length, 0.2 in the direction of its fastest decay"),
         ("Str", found.str, "", "texture aspect ratio: 0 a lay, 1 isotropic"),
+        ("Std", more.std, "°", "direction of the lay against the rows, towards Y"),
     )
     return parameter_lines(
         table, f"stays above {CORRELATION_THRESHOLD:g} up to half the map in some direction"
@@ -76,7 +87,7 @@ def parameter_lines(table: tuple[tuple[str, float, str, str], ...], correlated: 
     smooth = any(np.isnan(value) for name, value, *_ in table if name[1:] == "ku")
     reason = "none: no height differs" if smooth else f"none: the autocorrelation {correlated}"
     return [
-        f"{name:3s} {value:10.4f} {unit:2s}  {text}{f'; {reason}' if np.isnan(value) else ''}"
+        f"{name:4s}{value:10.4f} {unit:2s}  {text}{f'; {reason}' if np.isnan(value) else ''}"
         for name, value, unit, text in table
     ]
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.pictures.surface import main
+from ehlpetsc.surfaces.areal_parameters import SurfaceParameters, peaks
 from ehlpetsc.surfaces.parameters import (
     ArealParameters,
     ProfileParameters,
@@ -45,6 +46,47 @@ def test_gradient_of_few_points_a_wave(points):
 def test_gradient_of_fewer_rows_than_the_formula_has():
     z = 1e-3 * X[:40] + 2e-3 * STEP * np.arange(4)[:, np.newaxis]
     assert ArealParameters.of(z, STEP, STEP).sdq == pytest.approx(np.hypot(1e-3, 2e-3), rel=1e-9)
+
+
+def test_volumes_and_extremes_of_heights_that_are_as_frequent():
+    z = 3e-6 * np.random.default_rng(1).permutation(np.linspace(0.0, 1.0, 10_000)).reshape(100, 100)
+    found = SurfaceParameters.of(z, STEP, STEP)
+    assert found.sz == pytest.approx(3e-6, rel=1e-12)
+    assert (found.vmp, found.vvv) == pytest.approx((3e-6 * 0.1**2 / 2, 3e-6 * 0.2**2 / 2), rel=3e-3)
+
+
+@pytest.mark.parametrize("shape", [(40, 50), (4, 50), (40, 5), (7, 7)])
+def test_developed_area_of_a_plane(shape):
+    z = 0.3 * STEP * np.arange(shape[1]) + 0.4 * STEP * np.arange(shape[0])[:, np.newaxis]
+    assert SurfaceParameters.of(z, STEP, STEP).sdr == pytest.approx(np.sqrt(1.25) - 1.0, rel=1e-12)
+
+
+def test_developed_area_of_waves_is_half_the_squared_gradient():
+    found = SurfaceParameters.of(waves(), STEP, STEP)
+    assert found.sdr == pytest.approx(ArealParameters.of(waves(), STEP, STEP).sdq ** 2 / 2, rel=1e-2)
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0, 90.0, 135.0, 172.0])
+@pytest.mark.parametrize("stretch", [1.0, 2.0])
+def test_texture_direction_is_that_of_the_lay(angle, stretch):
+    normal, y = np.radians(angle + 90.0), stretch * STEP * np.arange(200)[:, np.newaxis]
+    z = np.cos(2 * np.pi / (8 * STEP) * (np.cos(normal) * X[:300] + np.sin(normal) * y))
+    found = SurfaceParameters.of(z, STEP, stretch * STEP).std
+    assert abs((found - angle + 90.0) % 180.0 - 90.0) <= 1.0
+
+
+def test_ten_point_height_of_bumps_and_pits():
+    """Six bumps and three pits, a summit divided from a bump by less than 5 %, and ripple."""
+    y, x = np.mgrid[:120, :160]
+    z = 1e-3 * np.cos(x) * np.cos(y)
+    centres = [(20, 20), (20, 80), (20, 140), (60, 20), (100, 80), (100, 140), (60, 80), (60, 140), (100, 20)]
+    heights = [10.0, 9.0, 8.0, 7.0, 6.0, 5.0, -10.0, -8.0, -3.0]
+    for (row, column), height in zip(centres, heights, strict=True):
+        z += height * np.exp(-((y - row) ** 2 + (x - column) ** 2) / 40.0)
+    z[20, 26] = z[20, 25] + 0.3  # a summit, no hill of its own
+    found = SurfaceParameters.of(z, 1.0, 1.0)
+    assert found.s10z == pytest.approx((10 + 9 + 8 + 7 + 6) / 5 + (10 + 8 + 3) / 3, rel=2e-3)
+    assert len(peaks(z, 1.0)) == 6 and len(peaks(z, 0.1)) == 7
 
 
 def test_texture_of_a_product_of_cosines():
@@ -106,10 +148,10 @@ SMOOTH = {
 def test_the_command_gives_the_reason_for_parameters_of_a_smooth_map(tmp_path, capsys, z, words):
     np.save(tmp_path / "map.npy", z)
     assert main([str(tmp_path / "map.npy"), "--set", f"spacing={STEP!r}", *words]) == 0
-    _, note, *shown = capsys.readouterr().out.splitlines()[:12]
+    _, note, *shown = capsys.readouterr().out.splitlines()[:18]
     assert note == "all heights are equal, or on the form subtracted: smooth"
     values = {line.split()[0]: line.split()[1] for line in shown}
-    assert [name for name, value in values.items() if value == "nan"] == ["Ssk", "Sku", "Sal", "Str"]
+    assert [name for name, value in values.items() if value == "nan"] == ["Ssk", "Sku", "Sal", "Str", "Std"]
     assert all(("; none: no height differs" in line) == ("nan" in line) for line in shown)
     assert values["Sk"] == values["Sq"] == "0.0000"
 
@@ -117,8 +159,9 @@ def test_the_command_gives_the_reason_for_parameters_of_a_smooth_map(tmp_path, c
 def test_the_command_gives_the_reason_for_a_missing_aspect_ratio(tmp_path, capsys):
     np.save(tmp_path / "map.npy", np.broadcast_to(np.cos(2 * np.pi * X / WAVE), (64, len(X))))
     assert main([str(tmp_path / "map.npy"), "--set", f"spacing={STEP!r}", "--no-picture"]) == 0
-    last = capsys.readouterr().out.splitlines()[-1]
-    assert last.startswith("Str        nan ") and last.endswith(
+    *_, shown, direction = capsys.readouterr().out.splitlines()
+    assert direction.split()[:2] == ["Std", "90.0000"]
+    assert shown.startswith("Str        nan ") and shown.endswith(
         "; none: the autocorrelation stays above 0.2 up to half the map in some direction"
     )
 
