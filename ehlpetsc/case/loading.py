@@ -23,11 +23,10 @@ from ehlpetsc.case.derived import (
     with_derived,
     with_layer_stiffness,
 )
-from ehlpetsc.case.digests import file_digests
 from ehlpetsc.case.kinds import LINE, faults_of_kind, given_by_gears
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
-from ehlpetsc.case.tables.surface import PROFILE, SIDES
+from ehlpetsc.case.tables.surface import PROFILE, SIDES, file_digests
 from ehlpetsc.case.values import is_number
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ehlpetsc.base.errors import CaseError, OutputError
-from ehlpetsc.case.digests import changed_files
 from ehlpetsc.case.tables import Case
+from ehlpetsc.case.tables.surface import changed_files
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.results.output_guard import check_derived, check_output_path, inputs_of

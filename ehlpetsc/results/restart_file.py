@@ -17,7 +17,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.toml_file import plain
-from ehlpetsc.case.digests import changed_files
+from ehlpetsc.case.tables.surface import changed_files
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
 

@@ -14,8 +14,8 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
-from ehlpetsc.case.digests import check_unchanged
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.case.tables.surface import check_unchanged
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene

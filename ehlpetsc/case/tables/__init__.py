@@ -60,7 +60,7 @@ class Case(Values):
 
     @property
     def digests(self) -> dict[str, str]:
-        """Digests of the surface files as read, see `ehlpetsc.case.digests`; {} of a stored case."""
+        """Digests of the surface files as read, see `ehlpetsc.case.tables.surface`; {} of a stored case."""
         return vars(self).get("_digests", {})
 
     @property

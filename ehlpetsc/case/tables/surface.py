@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from array import array
-from hashlib import sha256
-from typing import Any
+from hashlib import file_digest, sha256
+from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.base.errors import CaseError
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
 
 UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
 SIDES = ("1", "2")
@@ -146,6 +150,31 @@ def with_digests(tables: dict[str, Any]) -> dict[str, Any]:
             kept = {key: value for key, value in table.items() if key not in ("x", "y", "z")}
             surfaces[side] = {"file": f"heights_{digest}.npy"} | kept
     return tables | {"surface": surfaces} if surfaces else tables
+
+
+def file_digests(case: Case) -> dict[str, str]:
+    """SHA-256 of the present surface files of a case by their keys; "" of a missing one."""
+    digests = {}
+    for side in SIDES:
+        table = case.surface.side(side)
+        if table and table.file:
+            try:
+                with open(case.path.parent / table.file, "rb") as file:
+                    digests[f"surface.{side}.file"] = file_digest(file, "sha256").hexdigest()
+            except OSError:
+                digests[f"surface.{side}.file"] = ""
+    return digests
+
+
+def changed_files(before: dict[str, str], now: dict[str, str]) -> str:
+    """Keys of the files whose digests differ, joined by "and"; "": none. Files in one alone do not count."""
+    return " and ".join(key for key in now if before.get(key, now[key]) != now[key])
+
+
+def check_unchanged(case: Case) -> None:
+    """Refuse a case whose surface files are no longer as they were read: CaseError."""
+    if changed := changed_files(case.digests, file_digests(case)):
+        raise CaseError([f"{case.path}: {changed}: changed since the case was read; load the case again"])
 
 
 OF_MAPS = ("spacing_across", "direction", "position_across")
