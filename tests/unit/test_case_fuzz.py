@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from support import CASES
 from support.fuzzing import SEED, draws
+from support.maps import MAPS
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
@@ -163,6 +164,17 @@ def test_any_key_with_any_value_raises_case_errors_alone(seed):
             words.append(f"{place}={allowed_value(key, rng)}")
         case = rng.choice(cases)
         refused += bool(faults_of(partial(load, case, words), partial(str, (case.name, words))))
+    assert refused > 0.2 * KEY_DRAWS
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("seed", range(SEED, SEED + 3))
+def test_any_key_of_points_and_strips_with_maps_raises_case_errors_alone(seed):
+    rng, refused = random.Random(seed), 0
+    tables, keys = [tomllib.loads(text) for text in MAPS.values()], list(keys_in(CASE))
+    for _ in range(KEY_DRAWS):
+        words = [f"{place}={allowed_value(key, rng)}" for place, key in rng.choices(keys, k=2)]
+        refused += bool(faults_of(partial(load, rng.choice(tables), words), partial(str, words)))
     assert refused > 0.2 * KEY_DRAWS
 
 
