@@ -73,6 +73,17 @@ def test_a_fast_dry_point_has_bloks_temperature_in_its_middle_row(radii):
     assert state.heat_error < 1e-9
 
 
+@pytest.mark.parametrize("speed, ratio, exact", [(0.05, 1.0, 3.42), (0.05, 2.0, 6.85), (1.0, 2.0, 77.5)])
+def test_a_slow_ball_and_a_pin_at_rest_heat_as_on_a_free_half_space(speed, ratio, exact):
+    """Dry; maximum temperatures [K] by moving point sources, on a mesh 1.5 times as wide as the contact."""
+    mesh = {"inlet": -1.5, "points_per_half_width": 10, "width": 3.0}
+    case = tables(
+        [0.01, 0.01], 20.0, speed, mesh, motion={"entrainment_speed": speed, "slide_roll_ratio": ratio}
+    )
+    _, [state] = solved(case)
+    assert state.temperature_1_max - BULK == pytest.approx(exact, rel=0.01)
+
+
 def test_a_long_ellipse_is_a_line_in_its_middle_row():
     mesh = {"inlet": -2.5, "points_per_half_width": [20, 8], "width": 3.0}
     simulation, [state] = solved(tables([0.0125, 0.375], 600.0, 3.0, mesh, fluid=OIL))

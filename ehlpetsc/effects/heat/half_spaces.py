@@ -9,7 +9,7 @@ The surface temperature under a flux q is, in the frame of the body,
 :math:`\chi=k/(\rho c)` (Carslaw & Jaeger 1959, sections 2.9 and 10.3). Each term obeys
 :math:`\dot A_m=-\lambda_mA_m+\chi\partial_{ss}A_m+q`, and :math:`T=\sum w_mA_m/\sqrt{k\rho c}`, so that no
 history is stored. In the plane :math:`\partial_{yy}` is beside :math:`\partial_{ss}`: each row of cells along
-x is that of a line contact, conduction between rows in :mod:`.record`.
+x is that of a line contact, conduction between rows and beyond the sides of a mesh in :mod:`.record`.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ SLOWEST = 0.2  # rate of the slowest term but the lumped one times the longest t
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
 RENUMBERED = 2.0  # cells between the distance travelled and the step by the speed
+DIFFUSION_LENGTHS = 3.0  # of the longest history, across, beyond the mesh
 MAX_DIFFUSION_AREA = 1e-3  # m^2: over the diffusivity the longest history of a body [s]
 
 
@@ -254,11 +255,11 @@ class Body:
 
     def __init__(self, solid: Solid, speed: float, grid: Grid, dt: float) -> None:
         self.solid, self.n, self.dx = solid, grid.shape[-1], grid.spacings[-1]
-        self.across = Across(grid)
         chi, speed = solid.diffusivity, abs(speed)
         length = self.n * self.dx
         slow = MAX_DIFFUSION_AREA / chi
         longest = min(length / speed + LONGEST * chi / speed**2, slow) if speed > 0.0 else slow
+        self.across = Across(grid, DIFFUSION_LENGTHS * np.sqrt(chi * longest))
         self.rates, self.weights = map(np.array, exponentials(dt, max(longest, 2.0 * dt)))
         self.dt = dt
         reach = PADDING * chi / speed / self.dx if speed > 0.0 else self.n
@@ -271,15 +272,21 @@ class Body:
         """
         q, across, chi = self._on_cells(flux), self.across, self.solid.diffusivity
         terms = np.empty((*q.shape, len(self.rates)))
-        for mode, decay, out in zip(across.mixed(q, across.modes.T), across.decay, terms, strict=True):
+        for mode, decay, out in zip(across.mixed(q, across.inverse), across.decay, terms, strict=True):
             moving_terms(mode, self.rates + chi * decay, chi, speed, self.dx, out)
         cells = across.mixed(terms, across.modes).reshape(-1, len(self.rates))
         rise = cells @ self.weights / self.solid.effusivity + self._tail * q.ravel()
-        return self._rows(rise)[:, self.padding : self.padding + self.n].ravel(), cells
+        return self._rows(rise)[across.inner, self.padding : self.padding + self.n].ravel(), cells
 
     def _on_cells(self, flux: np.ndarray) -> np.ndarray:
         """Flux at the nodes on the cells of a body at its place at the start, shape (rows, cells)."""
-        return np.pad(self._rows(flux), ((0, 0), (self.padding, self.padding + 1)))
+        return np.pad(self._on_rows(flux), ((0, 0), (self.padding, self.padding + 1)))
+
+    def _on_rows(self, flux: np.ndarray) -> np.ndarray:
+        """Flux at the nodes on all rows, without any beyond the sides of the mesh, shape (rows, nodes)."""
+        rows = np.zeros((self.across.rows, self.n))
+        rows[self.across.inner] = flux.reshape(-1, self.n)
+        return rows
 
     def _rows(self, values: np.ndarray) -> np.ndarray:
         return values.reshape(self.across.rows, -1, *values.shape[1:])
@@ -320,7 +327,7 @@ class Body:
         after = [advance_terms(*row, *given) for row in zip(*before, strict=True)]
         terms, flux, rise = map(np.concatenate, zip(*after, strict=True))
         body, fraction = body._replace(first=base - padding, terms=terms, flux=flux), position - base
-        rises = self._rows(rise)[:, padding : padding + self.n + 1]
+        rises = self._rows(rise)[self.across.inner, padding : padding + self.n + 1]
         history = (1.0 - fraction) * rises[:, :-1] + fraction * rises[:, 1:]
         return BodyStep(body, history.ravel(), step.response, step.end, fraction)
 
@@ -330,6 +337,6 @@ class Body:
     def accept(self, step: BodyStep, flux: np.ndarray) -> BodyHeat:
         """Record with the flux at the end of the step, shape (nodes,), shared out to the cells by overlap."""
         given = self._padding_of(step.body), step.fraction, step.end
-        rows = zip(self._rows(step.body.terms), self._rows(np.ascontiguousarray(flux)), strict=True)
+        rows = zip(self._rows(step.body.terms), self._on_rows(flux), strict=True)
         terms, shared = map(np.concatenate, zip(*(add_flux(*row, *given) for row in rows), strict=True))
         return step.body._replace(terms=terms, flux=shared)

@@ -8,6 +8,8 @@ import numpy as np
 
 from ehlpetsc.physics.grid import Grid
 
+GROWTH = 1.5  # of the widths of rows beyond the sides of the mesh
+
 
 class BodyHeat(NamedTuple):
     """Heat of one body, in rows of cells along x; arrays are flat, x fastest.
@@ -95,23 +97,37 @@ def joined(values: np.ndarray) -> np.ndarray:
 
 
 class Across:
-    r"""Conduction along a surface between the rows of a grid; no heat passes the sides of a point contact.
+    r"""Conduction along a surface between rows of cells; those of a point contact end in ever wider rows.
 
-    .. math:: \frac{\partial A}{\partial t}=\chi\frac{A_{j-1}-2A_j+A_{j+1}}{\Delta y^2},
+    .. math:: w_j\frac{\partial A_j}{\partial t}=\chi\Big[\frac{A_{j+1}-A_j}{d_{j+1/2}}
+       -\frac{A_j-A_{j-1}}{d_{j-1/2}}\Big],
 
-    solved exactly in time in the modes of the difference, and positive at any step. Film and body carry heat
-    along x alone, row by row.
+    w the width of a row, d the distance between two, solved exactly in time in the modes of the difference,
+    and positive at any step. Heat leaves a point contact through its sides into rows beyond the mesh, as in
+    a free half-space; the rows of a strip are periodic. Film and body carry heat along x alone, row by row.
 
-    `rows`: number of rows.
-    `modes`: columns of an orthogonal matrix, shape (rows, rows).
+    `reach`: distance beyond the mesh that heat can diffuse [m].
+
+    `rows`: number of rows. `inner`: those of the mesh among them.
+    `modes`, `inverse`: columns are the modes, shape (rows, rows), and its inverse.
     `decay`: rate of decay of each over :math:`\chi` [1/m^2], shape (rows,).
     """
 
-    def __init__(self, grid: Grid) -> None:
-        self.rows = grid.n // grid.shape[-1]
-        nodes = np.eye(self.rows)
-        steps = np.diff(nodes, axis=0, append=nodes[:1] if grid.periodic else nodes[-1:]) / grid.spacings[0]
-        decay, self.modes = np.linalg.eigh(steps.T @ steps)
+    def __init__(self, grid: Grid, reach: float) -> None:
+        of_mesh = grid.n // grid.shape[-1]
+        beyond = 0
+        if len(grid.axes) > 1 and not grid.periodic:
+            beyond = int(np.ceil(np.log1p(reach / grid.spacings[0] * (GROWTH - 1.0)) / np.log(GROWTH)))
+        self.rows, self.inner = of_mesh + 2 * beyond, slice(beyond, beyond + of_mesh)
+        widths = GROWTH ** np.maximum(
+            np.abs(np.arange(self.rows) - 0.5 * (self.rows - 1)) - 0.5 * (of_mesh - 1), 0
+        )
+        widths *= grid.spacings[0]
+        scaled = np.eye(self.rows) / np.sqrt(widths)
+        steps = np.diff(scaled, axis=0, append=scaled[:1] if grid.periodic else scaled[-1:])
+        steps /= np.sqrt(0.5 * (widths + np.roll(widths, -1)))[:, None]
+        decay, modes = np.linalg.eigh(steps.T @ steps)
+        self.modes, self.inverse = modes / np.sqrt(widths)[:, None], modes.T * np.sqrt(widths)
         self.decay = np.maximum(decay, 0.0)
 
     def mixed(self, values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
@@ -123,4 +139,4 @@ class Across:
 
         `area`: :math:`\chi t` [m^2].
         """
-        return self.mixed(values, (self.modes * np.exp(-self.decay * area)) @ self.modes.T)
+        return self.mixed(values, (self.modes * np.exp(-self.decay * area)) @ self.inverse)
