@@ -40,10 +40,11 @@ class Result(reader.Result):
         step: int | None = None,
         time: float | None = None,
         window: tuple[float, float] | None = None,
+        field: str | None = None,
     ) -> Figure:
         """Pressure and film over x/a at the frame nearest to a step or a time [s], contacts marked.
 
-        Of a point contact or strip maps and sections.
+        Of a point contact or strip maps and sections; of a rough line contact the deformed surfaces too.
 
         Parameters
         ----------
@@ -53,6 +54,8 @@ class Result(reader.Result):
             By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`.
         window
             Limits of x/a.
+        field
+            Name of a stored field to draw instead of the film.
 
         Raises
         ------
@@ -74,24 +77,13 @@ class Result(reader.Result):
                     f"plot: path = {path!r}: allowed: the name of a picture; a step is step={path!r}"
                 )
             check_derived(file_path(path), [self.path], PICTURES, "plot")
-        figure = self._figure(frames.choose_frames([self], step, time), window)
-        if path is not None:
-            style.save(figure, path)
-        return figure
-
-    def _figure(self, indices: list[int], window: tuple[float, float] | None) -> Figure:
         from matplotlib import pyplot
 
-        from ehlpetsc.pictures import frames, style
-
-        if self.y is not None:
-            from ehlpetsc.pictures.plane import fill_figure
-
-            figure = pyplot.figure(layout="constrained")
-            return fill_figure(figure, self, indices[0], frames.view([self], window))
-        figure, axes = pyplot.subplots(2, 1, figsize=frames.SIZE, sharex=True, layout="constrained")
-        frames.fill_frame(axes, [self], indices, frames.view([self], window))
-        style.set_title(figure, *frames.panel_title([self], indices))
+        indices, limits = frames.choose_frames([self], step, time), frames.view([self], window)
+        choice = frames.Choice([self], indices, limits, field)
+        figure = choice.draw(pyplot.figure(layout="constrained"))
+        if path is not None:
+            style.save(figure, path)
         return figure
 
     def section(self, y: float = 0.0) -> Result:

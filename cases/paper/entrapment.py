@@ -14,7 +14,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result, read_result
-from ehlpetsc.pictures import frames, style
+from ehlpetsc.pictures import line, style
+from ehlpetsc.pictures.frame_data import PRESSURE
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
 MAX_GAP = 0.05  # half-widths between the contacts
@@ -68,8 +69,8 @@ def draw(result: Result, event: Entrapment) -> Figure:
     for (upper, lower), (frame, centre) in zip(axes.T, instants(result, event), strict=True):
         view = np.abs(x - centre / a) <= 0.5 * VIEW
         touching = result.contacts_at(frame) & view
-        pressure, (below, _) = 1e-9 * result.frame("pressure", frame), frames.deformed_heights(result, frame)
-        frames.deformed_surfaces(lower, result, frame, (x[view][0], x[view][-1]))
+        pressure, (below, _) = 1e-9 * result.frame("pressure", frame), line.deformed_heights(result, frame)
+        line.deformed_surfaces(lower, result, frame, (x[view][0], x[view][-1]))
         lower.get_legend().remove()
         heights += lower.get_ylim()
         upper.plot(x[view], pressure[view], color=style.SINGLE, lw=1.1)
@@ -80,7 +81,7 @@ def draw(result: Result, event: Entrapment) -> Figure:
         upper.set_xlim(x[view][0], x[view][-1])
     axes[0, 0].set_ylim(bottom=0.0)
     axes[1, 0].set_ylim(min(heights), max(heights))
-    axes[0, 0].set_ylabel(frames.PRESSURE)
+    axes[0, 0].set_ylabel(PRESSURE)
     for panel in axes[1, 1:]:
         panel.set_ylabel("")
     style.set_title(figure, str(result.attrs["title"]), style.conditions([result]))

@@ -190,6 +190,8 @@ class Field:
         Cases with the quantity, a key of `SCENES`; "": all.
     integrated : bool
         Whether it is an integral over the contact: per metre of width where that has no ends.
+    of : function, optional
+        Its value at an accepted time level; None: an effect returns it from `observe`, or the simulation.
     """
 
     units: str
@@ -198,6 +200,7 @@ class Field:
     dtype: str = "f8"
     only: str = ""
     integrated: bool = False
+    of: Callable[[Observation], Any] | None = None
 
 
 class Column(NamedTuple):
@@ -224,8 +227,6 @@ class StepScalar(Field):
         Column in the lines of progress.
     compared : bool
         Whether it is compared between runs, unlike scalars of the solution process.
-    of : function, optional
-        Its value at an accepted time level; None: an effect returns it from `observe`, or the simulation.
     """
 
     dims: tuple = ("time",)
@@ -235,4 +236,3 @@ class StepScalar(Field):
     label: str = ""
     progress: Column | None = None
     compared: bool = False
-    of: Callable[[Observation], float] | None = None

@@ -167,7 +167,7 @@ class Effect(Generic[R]):
         return shear
 
     def observe(self, record: R, solution: Solution, step: Step) -> tuple[dict, dict]:
-        """Values of `fields` and `scalars` by name, in SI units."""
+        """Values, by name and in SI units, of `fields` and `scalars` that have no function `of`."""
         return {}, {}
 
     def on_surfaces(

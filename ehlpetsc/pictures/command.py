@@ -4,7 +4,8 @@ OUTPUT.series.json, OUTPUT.passes.json; or the profiles of a CASE.toml as they w
 Pressure and film of one frame, of a point contact or strip as maps with sections through the middle, by
 default that with the maximum load on the solids from when both surfaces fill the contact or, without load on
 solids, the maximum pressure; several results at the same travel in one picture, points and strips by their
-sections along y = 0. The file name after -o determines the format (png, svg, pdf, eps ...).
+sections along y = 0. With --field any stored field in the place of the film. The file name after -o
+determines the format (png, svg, pdf, eps ...).
 Input files are never overwritten.
 
 Exit status: 0 drawn, 2 bad input.
@@ -15,13 +16,16 @@ from __future__ import annotations
 import argparse
 import contextlib
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
+from ehlpetsc.pictures.frame_data import described
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
-from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures, save_movie
+from ehlpetsc.pictures.movie import save_movie
+from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures
 from ehlpetsc.pictures.profiles import draw_case, draw_running_in
 from ehlpetsc.pictures.report import save_report
 from ehlpetsc.results.index import in_order, open_all
@@ -30,7 +34,7 @@ from ehlpetsc.results.reader import Result
 
 FIGURES = {
     "over_time": (draw_courses, "film, pressure, friction of every step over time"),
-    "map": (draw_map, "pressure over x and time, contacts marked"),
+    "map": (draw_map, "pressure or another field over x and time, contacts marked"),
     "stribeck": (draw_stribeck, "friction over speed, of a series"),
     "traction": (draw_traction, "friction over slide/roll ratio, of a series"),
     "temperatures": (draw_temperatures, "temperatures of film and surfaces, with [heat]"),
@@ -47,6 +51,7 @@ OTHERS = {  # that are no pictures: endings of their files, help
 OF_ONE = ("over_time", "map", "temperatures", "report", *MAPS)  # kinds of a single result
 OF_SCALARS = ("over_time", "stribeck", "traction")  # kinds that show no field
 IN_PLANE = (None, "movie", "report", *MAPS)  # kinds that show a point contact or strip in both directions
+OF_FIELDS = (None, "map", "movie", "report")  # kinds that show another field in the place of the film
 
 
 def arguments() -> CommandParser:
@@ -60,6 +65,7 @@ def arguments() -> CommandParser:
     instant.add_argument("--time", type=float, help="time [s]")
     parser.add_argument("--window", type=float, nargs=2, metavar=("LOW", "HIGH"), help="limits of x/a")
     parser.add_argument("--section", type=float, metavar="Y", help="y/a of a point or strip, drawn as a line")
+    parser.add_argument("--field", metavar="NAME", help="stored field to draw instead of the film")
     parser.add_argument("--dpi", type=float, default=style.DPI, help="dots per inch of a png [%(default)s]")
     parser.add_argument("--size", type=float, nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches")
     parser.add_argument("--no-title", action="store_true", help="without the title above the panels")
@@ -76,6 +82,7 @@ def main(words: list[str]) -> int:
     allowed = OTHERS[options.kind][0] if options.kind in OTHERS else PICTURES
     kind = f".{options.kind}" if options.kind in FIGURES | MAPS else ""
     kind = kind or ("" if options.section is None else ".section")
+    kind += f".{options.field}" if options.field else ""
     output = options.output or Path(_stem(options.results) + kind + allowed[0])
     return exit_status("plot", lambda: _run(options, output, allowed), (ValueError,), output)
 
@@ -98,52 +105,48 @@ def _run(options: argparse.Namespace, output: Path, allowed: tuple[str, ...]) ->
 
 def draw(results: list[Result], options: argparse.Namespace, output: Path) -> None:
     """Draw one picture or movie into a file."""
+    kind = f"--{(options.kind or '').replace('_', '-')}"
     if options.kind in OF_ONE and len(results) > 1:
-        raise OutputError(f"{len(results)} results; allowed: --{options.kind.replace('_', '-')} of one")
+        raise OutputError(f"{len(results)} results; allowed: {kind} of one")
+    if options.field and options.kind not in OF_FIELDS:
+        raise OutputError(f"--field: of pictures of an instant, --map, --movie and --report, not of {kind}")
     low, high = frames.view(results, options.window)
     for result in results:
         if not len(result.time):
             raise OutputError(f"{result.path}: no frame in it")
+        if options.field:
+            described(result, options.field)
         if frames.nodes_in_view(result, (low, high)) < 2:
             raise OutputError(f"{result.path}: fewer than two nodes from {low:g} a to {high:g} a")
     planes = [result for result in results if result.y is not None]
     if not planes and (options.kind in MAPS or options.section is not None):
         word = "section" if options.section is not None else options.kind
         raise OutputError(f"{results[0].path}: a line contact; allowed: --{word} of a point contact or strip")
-    if len(results) == 1 and planes and options.section is None and options.kind in IN_PLANE:
-        return draw_plane(results[0], options, output)
-    if options.kind not in OF_SCALARS:
+    whole = len(results) == 1 and options.section is None and options.kind in IN_PLANE
+    if options.kind in OF_SCALARS and options.section is not None:
+        raise OutputError(f"--section: of pictures over x, not of {kind}")
+    if options.kind not in OF_SCALARS and not whole:
         results = [section_of(result, options.section or 0.0) for result in results]
-    elif options.section is not None:
-        raise OutputError(f"--section: of pictures over x, not of --{options.kind.replace('_', '-')}")
     if options.kind == "movie":
         save_movie(results, options, output)
     elif options.kind == "report":
-        save_report(results[0], output)
+        save_report(results[0], output, options.field)
     else:
-        function = FIGURES[options.kind][0] if options.kind else frames.draw_frame
-        style.save(function(results, options), output, chosen=options)
+        style.save(_function(options.kind)(results, options), output, chosen=options)
+
+
+def _function(kind: str | None) -> Callable:
+    """Function of the results and the options that draws a kind of picture."""
+    if kind in MAPS:
+        from ehlpetsc.pictures import fringes, plane  # which no line contact needs
+
+        return fringes.draw_fringes if kind == "fringes" else plane.draw_contacts
+    return FIGURES[kind][0] if kind else frames.draw_instant
 
 
 def section_of(result: Result, y: float) -> Result:
     """Section of a point contact or strip at y [half-widths]; a line contact as it is."""
     return result if result.y is None else result.section(y * result.attrs["a"])
-
-
-def draw_plane(result: Result, options: argparse.Namespace, output: Path) -> None:
-    """Draw one picture, movie or page of a point contact or strip in both directions into a file."""
-    from ehlpetsc.pictures import fringes, plane
-
-    if options.kind == "report":
-        return save_report(result, output)
-    if options.kind == "movie":
-        return plane.save_movie(result, options, output)
-    functions = {
-        None: plane.draw_frame,
-        "fringes": fringes.draw_fringes,
-        "contacts": plane.draw_contacts,
-    }
-    style.save(functions[options.kind](result, options), output, chosen=options)
 
 
 def _stem(paths: list[str]) -> str:

@@ -1,29 +1,83 @@
-"""Pressure, film and deformed surfaces at an instant; x in half-widths, film in µm, pressure in GPa."""
+"""Which stored frame of a result a picture shows, its view, and its title."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from importlib import import_module
+from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.physics.hertz import hertz_pressure
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.style import ACROSS
+from ehlpetsc.pictures.frame_data import Frame
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import Result
 
-PRESSURE = "pressure [GPa]"
-FILM = "film thickness [µm]"
-GAP = "gap [µm]"  # of a dry contact
 WINDOW = (-1.6, 1.4)  # limits of x/a by default
-SIZE = (8.4, 5.6)  # inches
-HEIGHT_WITH_SURFACES = 7.6  # inches
-FAR = 1e3  # µm, to which solids are filled
 MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
+
+
+class Choice(NamedTuple):
+    """A stored frame of each result, limits of x/a, and a field in the place of the film (None: the film)."""
+
+    results: list[Result]
+    indices: Sequence[int]
+    window: Sequence[float]
+    field: str | None = None
+
+    @classmethod
+    def of(cls, results: list[Result], options: argparse.Namespace) -> Choice:
+        """Choice by the options of the command."""
+        indices = choose_frames(results, options.step, options.time)
+        return cls(results, indices, view(results, options.window), options.field)
+
+    @property
+    def frames(self) -> list[Frame]:
+        """Fields of the frames."""
+        pairs = zip(self.results, self.indices, strict=True)
+        return [Frame.of(result, index, self.window, self.field) for result, index in pairs]
+
+    @property
+    def module(self) -> ModuleType:
+        """Module that draws the frames: of lines or, of a point contact or strip, of planes."""
+        return import_module(f"ehlpetsc.pictures.{'line' if self.results[0].y is None else 'plane'}")
+
+    @property
+    def title(self) -> list[str]:
+        """Lines of a title: the common title of results with the instant, then the conditions there."""
+        titles = {str(result.attrs["title"]) for result in self.results}
+        texts = [titles.pop() if len(titles) == 1 else "", instant(self.results, self.indices)]
+        return [": ".join(filter(None, texts)), style.conditions(self.results, self.indices)]
+
+    @property
+    def flow(self) -> str:
+        """Direction of the entrainment as an arrow; "" without oil and where results have different ones."""
+        pairs = zip(self.results, self.indices, strict=True)
+        signs = {np.sign(sum(style.speeds_at(result, index))) for result, index in pairs}
+        if len(signs) > 1 or not any(result.case.fluid for result in self.results):
+            return ""
+        return {1.0: "flow →", -1.0: "← flow"}.get(signs.pop(), "")
+
+    @property
+    def along(self) -> str:
+        """Label of the abscissa of maps, with the direction of the flow."""
+        return ", ".join(filter(None, (style.ACROSS, self.flow)))
+
+    def draw(self, figure: Figure | None = None) -> Figure:
+        """Draw pressure and film, or another field, into an empty figure or a new one."""
+        figure = figure or Figure(layout="constrained")
+        self.module.draw_frame(figure, self)
+        style.set_title(figure, *self.title)
+        return figure
+
+
+def draw_instant(results: list[Result], options: argparse.Namespace) -> Figure:
+    """Draw results at the instant of the options."""
+    return Choice.of(results, options).draw()
 
 
 def path_length(result: Result) -> np.ndarray:
@@ -112,122 +166,3 @@ def instant(results: list[Result], indices: Sequence[int]) -> str:
     if len({float(result.time[k]) for result, k in zip(results, indices, strict=True)}) > 1:
         return travel
     return f"step {first.step[index]}, {1e6 * first.time[index]:.4g} µs, {travel}"
-
-
-def panel_title(results: list[Result], indices: Sequence[int]) -> list[str]:
-    """Lines of a title: the common title of results with the instant, then the conditions there."""
-    titles = {str(result.attrs["title"]) for result in results}
-    texts = [titles.pop() if len(titles) == 1 else "", instant(results, indices)]
-    return [": ".join(filter(None, texts)), style.conditions(results, indices)]
-
-
-def fill_frame(
-    axes: Sequence[Axes], results: list[Result], indices: Sequence[int], window: Sequence[float]
-) -> None:
-    """Draw pressure and film at an instant into two axes; of a single result also what the solids carry.
-
-    The film axis ends above the maximum film inside the contact, or in view if there is none inside.
-    """
-    upper, lower = axes
-    colours, names, key = style.series_colours(results)
-    single, across, highest, thickest = len(results) == 1, np.linspace(*window, 801), 1e-3, 0.0
-    for number, (result, index, colour) in enumerate(zip(results, indices, colours, strict=True)):
-        line = dict(color=colour, lw=1.1, ls="--" if number == 1 and len(results) == 2 else "-")
-        x, shown, inside = shown_nodes(result, index, window)
-        pressure, film = 1e-9 * result.frame("pressure", index), 1e6 * result.frame("film_thickness", index)
-        if single:
-            draw_solids(axes, result, index, shown)
-        upper.plot(x, pressure, label="pressure" if single else names[number], **line)
-        gap = "film" if result.case.fluid else "gap"
-        lower.plot(x, film, label=gap if single else None, **line)
-        highest = max(highest, pressure[shown].max())
-        thickest = max(thickest, film[inside].max() or film[shown].max())
-    contacts = [style.hertz_at(result, index) for result, index in zip(results, indices, strict=True)]
-    curves = {(a / r.attrs["a"], p0): None for r, (a, p0) in zip(results, contacts, strict=True)}
-    for number, (width, p0) in enumerate(curves):
-        pressure, label = 1e-9 * hertz_pressure(across / width, 1.0, p0), "_" * number + "Hertz"
-        upper.plot(across, pressure, ":", color="0.6", lw=0.9, zorder=1, label=label)
-        highest = max(highest, pressure.max())
-    style.legend_beside(upper, title=style.UNITS.get(key, key))
-    style.legend_beside(lower)
-    lower.set(xlabel=ACROSS, xlim=window, ylim=(0.0, 1.15 * thickest or 1.0))
-    upper.set(ylabel=PRESSURE, ylim=(0.0, 1.05 * highest))
-    lower.set_ylabel(FILM if any(result.case.fluid for result in results) else GAP)
-    if len({float(result.attrs["a"]) for result in results}) == 1:
-        style.scale_above(upper, 1e3 * results[0].attrs["a"], "x [mm]")
-    mark_flow(upper, results, indices)
-
-
-def shown_nodes(
-    result: Result, index: int, window: Sequence[float]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x/a, whether nodes are in view, and also inside the contact of a frame, if any is; shape (nx,)."""
-    x = result.x / result.attrs["a"]
-    shown = (x >= window[0]) & (x <= window[1])
-    inside = shown & (np.abs(result.x) <= style.hertz_at(result, index)[0])
-    return x, shown, inside if inside.any() else shown
-
-
-def draw_solids(axes: Sequence[Axes], result: Result, index: int, shown: np.ndarray) -> None:
-    """Fill the pressure of the solids and mark nodes in contact, of those `shown`."""
-    x = result.x / result.attrs["a"]
-    if "contact_pressure" in result:
-        solids = np.where(shown, 1e-9 * result.frame("contact_pressure", index), 0.0)
-        label = "of the solids" if solids.any() else None
-        axes[0].fill_between(x, 0.0, solids, color=style.SOLIDS, lw=0, zorder=1.5, label=label)
-    if "in_contact" in result and (touching := shown & result.contacts_at(index)).any():
-        marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3, label="in contact")
-        axes[1].plot(x[touching], 1e6 * result.frame("film_thickness", index)[touching], "v", **marks)
-
-
-def mark_flow(axes: Axes, results: list[Result], indices: Sequence[int]) -> None:
-    """Mark the direction of the entrainment, if there is oil and all results have the same."""
-    signs = {np.sign(sum(style.speeds_at(result, k))) for result, k in zip(results, indices, strict=True)}
-    if len(signs) == 1 and any(result.case.fluid for result in results):
-        text = {1.0: "flow →", -1.0: "← flow"}.get(signs.pop())
-        axes.text(0.02, 0.9, text, transform=axes.transAxes, fontsize="small", color="0.35")
-
-
-def deformed_heights(result: Result, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Heights [m] of surface 2, below, and of surface 1 about their mean plane, shape (nx,).
-
-    Both solids are assumed to deform equally: the middle of the gap is that of the undeformed rough surfaces.
-    """
-    middle = np.zeros(len(result.x))
-    for side, sign in (("2", 1.0), ("1", -1.0)):
-        profile = result.profile(side)
-        if profile is not None:
-            s, z, speed = profile
-            moved, name = speed * result.time[index], f"displacement_{side}"
-            if name in result.scalars:
-                moved = np.interp(result.time[index], result.steps("time"), result.steps(name))
-            middle += 0.5 * sign * np.interp(result.x - moved, s, z, left=0.0, right=0.0)
-    film = result.frame("film_thickness", index)
-    return middle - 0.5 * film, middle + 0.5 * film
-
-
-def deformed_surfaces(axes: Axes, result: Result, index: int, window: Sequence[float]) -> None:
-    """Draw both deformed surfaces at an instant, solids in grey."""
-    x, _, inside = shown_nodes(result, index, window)
-    lower, upper = (1e6 * height for height in deformed_heights(result, index))
-    bottom, top = lower[inside].min(), upper[inside].max()
-    room = 0.15 * (top - bottom)
-    for height, end, side in ((upper, FAR, "1"), (lower, -FAR, "2")):
-        axes.fill_between(x, height, end, color="0.85", lw=0)
-        axes.plot(x, height, color=style.SURFACES[side], lw=0.9, label=f"surface {side}")
-    axes.set(xlabel=ACROSS, ylabel="surfaces [µm]", ylim=(bottom - room, top + room))
-    style.legend_beside(axes)
-
-
-def draw_frame(results: list[Result], options: argparse.Namespace) -> Figure:
-    """Pressure and film at an instant; for one rough result also both deformed surfaces."""
-    indices, window = choose_frames(results, options.step, options.time), view(results, options.window)
-    rough = len(results) == 1 and any(results[0].profile(side) for side in "12")
-    size = (SIZE[0], HEIGHT_WITH_SURFACES) if rough else SIZE
-    figure, axes = style.new_figure(3 if rough else 2, 1, size, sharex=True)
-    fill_frame(axes[:2], results, indices, window)
-    if rough:
-        deformed_surfaces(axes[2], results[0], indices[0], window)
-        axes[1].set_xlabel("")
-    style.set_title(figure, *panel_title(results, indices))
-    return figure

@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehlpetsc.pictures import frames, style
-from ehlpetsc.pictures.plane import WIDTH, PlaneFrame, draw_map, map_height, outline
+from ehlpetsc.pictures.frame_data import Frame
+from ehlpetsc.pictures.plane import WIDTH, draw_map, map_height, outline
 from ehlpetsc.results.reader import Result
 
 OIL_INDEX = 1.5  # refractive index of the oil; of a dry gap 1
@@ -54,27 +55,29 @@ def coloured(film: np.ndarray, index: float) -> np.ndarray:
     return np.stack([intensity(film, length, index, BANDWIDTH) for length in WAVELENGTHS.values()], axis=-1)
 
 
-def draw_fringes(result: Result, options: argparse.Namespace) -> Figure:
+def draw_fringes(results: list[Result], options: argparse.Namespace) -> Figure:
     """Interference of one colour and of three at an instant, each with its chart over the film."""
-    [index] = frames.choose_frames([result], options.step, options.time)
-    frame = PlaneFrame.of(result, index, frames.view([result], options.window))
-    n = OIL_INDEX if result.case.fluid else 1.0
+    choice = frames.Choice.of(results, options)
+    [frame] = choice.frames
+    n = OIL_INDEX if results[0].case.fluid else 1.0
     x, y, film = refined(frame)
     height = map_height(frame)
     figure, axes = style.new_figure(2, 2, (WIDTH, height + MARGIN), height_ratios=(height, 0.12))
     colourings = ("wavelength", monochromatic, ["green"]), ("wavelengths", coloured, list(WAVELENGTHS))
     for column, (word, colours, names) in zip(axes.T, colourings, strict=True):
-        draw_map(column[0], x, y, colours(film, n), cmap="gray", vmin=0.0, vmax=1.0)
+        shades = dict(cmap="gray", vmin=0.0, vmax=1.0, interpolation="antialiased")
+        draw_map(column[0], x, y, colours(film, n), **shades)
+        column[0].set_xlabel(choice.along)
         outline(column[0], frame.half_widths, style.CONTACT)
         lengths = ", ".join(f"{1e9 * WAVELENGTHS[name]:.0f}" for name in names)
         column[0].set_title(f"{word} {lengths} nm", fontsize="small")
         draw_chart(column[1], colours, n, frame)
     note = f"refractive index {n:g}; red: edge of the dry contact"
-    style.set_title(figure, *frames.panel_title([result], [index]), note)
+    style.set_title(figure, *choice.title, note)
     return figure
 
 
-def refined(frame: PlaneFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def refined(frame: Frame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """x/a and y/a of pixels, and the film there [m] by cubic splines."""
     from scipy.interpolate import RectBivariateSpline
 
@@ -82,15 +85,16 @@ def refined(frame: PlaneFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     counts = (max(round(PIXELS * np.ptp(axis) / longer), len(axis)) for axis in (frame.x, frame.y))
     x, y = (np.linspace(axis[0], axis[-1], n) for axis, n in zip((frame.x, frame.y), counts, strict=True))
     order = min(3, len(frame.y) - 1)
-    film = RectBivariateSpline(frame.y, frame.x, 1e-6 * frame.film, kx=order)(y, x)
+    film = RectBivariateSpline(frame.y, frame.x, 1e-6 * frame.values, kx=order)(y, x)
     return x, y, np.maximum(film, 0.0)
 
 
 def draw_chart(
-    axes: Axes, colours: Callable[[np.ndarray, float], np.ndarray], index: float, frame: PlaneFrame
+    axes: Axes, colours: Callable[[np.ndarray, float], np.ndarray], index: float, frame: Frame
 ) -> None:
     """Draw the colours over the films of a frame."""
-    film = np.linspace(0.0, frame.thickest, CHART)
-    shape = dict(extent=(0.0, frame.thickest, 0.0, 1.0), aspect="auto", cmap="gray", vmin=0.0, vmax=1.0)
+    thickest = frame.limits.high
+    film = np.linspace(0.0, thickest, CHART)
+    shape = dict(extent=(0.0, thickest, 0.0, 1.0), aspect="auto", cmap="gray", vmin=0.0, vmax=1.0)
     axes.imshow(colours(1e-6 * film, index)[np.newaxis], **shape)
-    axes.set(yticks=[], xlabel=frame.film_label)
+    axes.set(yticks=[], xlabel=frame.label)

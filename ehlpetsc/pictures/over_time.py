@@ -1,25 +1,22 @@
-"""Results over time: maps over x and time, temperatures, the course of all steps; movies."""
+"""Results over time: maps over x and time, temperatures, the course of all steps."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
-from matplotlib.animation import PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.pictures import frames, style
+from ehlpetsc.pictures import frames, line, style
+from ehlpetsc.pictures.frame_data import COLOUR_PERCENTILE, MOSTLY, contact_share, contact_word, described
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.means import filled_from
-from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
-COLOUR_PERCENTILE = 99.9  # upper end of the colours, without a few sharp peaks
 TEMPERATURES = {
     "film_temperature": ("film", style.FILM),
     "temperature_1": ("surface 1", style.SURFACES["1"]),
@@ -41,18 +38,20 @@ COURSE_HEIGHT = 1.5  # inches of a panel
 
 
 def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
-    """Pressure of one result over x and time, contacts outlined."""
+    """Pressure or another field of one result over x and time, contacts outlined."""
     [result] = results
-    figure, axes = style.new_figure(1, 1, frames.SIZE)
-    window = frames.view(results, options.window)
-    image = space_time_map(axes, result, "pressure", window, 1e-9, vmin=0.0)
-    figure.colorbar(image, ax=axes, label=frames.PRESSURE, extend="max")
-    if "in_contact" in result and result.contact_count.any():
-        columns = style.in_view(result.x / result.attrs["a"], window)
-        touching = result.contacts_at(slice(0, len(result.time)), columns)
-        x, time = result.x[columns] / result.attrs["a"], 1e6 * result.time
-        axes.contour(x, time, touching, [0.5], colors=style.CONTACT, linewidths=0.7)
-        axes.plot([], [], color=style.CONTACT, lw=1.0, label="in contact")
+    figure, axes = style.new_figure(1, 1, line.SIZE)
+    window, name = frames.view(results, options.window), options.field or "pressure"
+    _, label, factor = described(result, name)
+    lowest = dict(vmin=0.0) if name == "pressure" else {}
+    image = space_time_map(axes, result, name, window, factor, **lowest)
+    figure.colorbar(image, ax=axes, label=label, extend="max")
+    x = result.x / result.attrs["a"]
+    columns = style.in_view(x, window)
+    share = contact_share(result, (slice(0, len(result.time)), columns))
+    if share.max() > MOSTLY:
+        axes.contour(x[columns], 1e6 * result.time, share, [MOSTLY], colors=style.CONTACT, linewidths=0.7)
+        axes.plot([], [], color=style.CONTACT, lw=1.0, label=contact_word(result))
         axes.legend(loc="upper left", fontsize="small")
     style.set_title(figure, str(result.attrs["title"]), style.conditions(results))
     return figure
@@ -78,16 +77,16 @@ def draw_temperatures(results: list[Result], options: argparse.Namespace) -> Fig
     steady = len(result.time) == 1
     size, heights = (STEADY_SIZE, HEIGHTS[:3]) if steady else (TEMPERATURE_SIZE, HEIGHTS)
     figure, axes = style.new_figure(len(heights), 1, size, sharex=True, height_ratios=heights)
-    [index] = frames.choose_frames(results, options.step, options.time)
-    frames.fill_frame(axes[:2], results, [index], window)
-    temperatures_at(axes[2], result, index, window)
+    choice = frames.Choice.of(results, options)
+    line.fill(axes[:2], choice)
+    temperatures_at(axes[2], result, choice.indices[0], window)
     axes[1].set_xlabel("")
     axes[-1].set_xlabel(ACROSS)
     if not steady:
         side = max("12", key=lambda name: np.nanmean(result.steps(f"temperature_{name}_mean")))
         image = space_time_map(axes[3], result, f"temperature_{side}", window, cmap="inferno")
         figure.colorbar(image, ax=axes[3], label=f"temperature of\nsurface {side} [K]")
-    style.set_title(figure, *frames.panel_title(results, [index]))
+    style.set_title(figure, *choice.title)
     return figure
 
 
@@ -132,40 +131,3 @@ def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> 
     note = "grey: the surfaces do not yet fill the contact" if filled > time[0] else ""
     style.set_title(figure, str(result.attrs["title"]), style.conditions(results), note)
     return figure
-
-
-MAX_FRAMES = 150
-RATE = 15  # frames per second
-DPI = 80
-
-
-def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
-    """Write at most `MAX_FRAMES` frames with common axes."""
-    chosen = style.spread(len(results[0].time), MAX_FRAMES)
-    figure, axes = style.new_figure(2, 1, frames.SIZE, sharex=True)
-    window, limits = frames.view(results, options.window), _limits(results, chosen)
-    writer = PillowWriter(fps=RATE)
-    with replacing(path) as temporary, writer.saving(figure, temporary, DPI):
-        for index in chosen:
-            for panel in axes:
-                panel.clear()
-            indices = frames.choose_frames(results, time=results[0].time[index])
-            frames.fill_frame(axes, results, indices, window)
-            style.set_title(figure, *frames.panel_title(results, indices))
-            for panel, limit in zip(axes, limits, strict=True):
-                panel.set_ylim(0.0, limit)
-            if index == 0:  # one layout for all frames
-                figure.draw_without_rendering()
-                figure.set_layout_engine("none")
-            writer.grab_frame()
-
-
-def _limits(results: list[Result], chosen: np.ndarray) -> tuple[float, float]:
-    """Upper limits of the axes [GPa, µm] for all pressures and for the film inside the contact."""
-    film = 1e-9
-    for result in results:
-        for index in (index for index in chosen if index < len(result.time)):
-            inside = np.abs(result.x) <= style.hertz_at(result, index)[0]
-            film = max(film, result.frame("film_thickness", index)[inside].max(initial=0.0))
-    pressure = max(np.nanmax(result.steps("p_max")) for result in results)
-    return 1.05e-9 * pressure, 1.15e6 * film

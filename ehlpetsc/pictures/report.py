@@ -17,8 +17,8 @@ from ehlpetsc.base.environment import has
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frames import frame_to_show, travel_of, view
-from ehlpetsc.pictures.style import hertz_at
+from ehlpetsc.pictures.frame_data import MOSTLY, SHOWN_UNITS, Frame, aspect, common, contact_word, in_view
+from ehlpetsc.pictures.frames import Choice, frame_to_show, travel_of, view
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import damage_beside
@@ -27,15 +27,13 @@ from ehlpetsc.results.reader import Result
 MAX_FRAMES, MAX_NODES, MAX_ROWS, MAX_POINTS = 200, 1200, 2000, 2000  # on a page
 MIN_CHANGE = 1e-9  # relative change over a run below which a scalar counts as constant
 MINIMUM_SCALARS = {"h_min", "film_central", "mean_gap_ratio"}  # of several steps; of others the maximum
-FIELDS = {"pressure": (1e-9, np.max), "film_thickness": (1e6, np.min), "contact_pressure": (1e-9, np.max)}
-SHOWN_UNITS = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
 HIDDEN_SCALARS = set("step time dt newton retries load wall load_error mass_error".split())
 EXTREMES = """h_min p_max film_temperature_max temperature_1_max temperature_2_max load_error
 mass_error""".split()  # of the run, in the table at the top
 MAX_MAP_NODES = 160  # of a map along either side
 MAX_VALUES = 2_000_000  # of all maps of a field on a page
 LEVELS = 65535  # of a stored value, over the maximum of its field
-FILM_ROOM = 10.0  # largest stored film over the upper end of its colours
+FILM_ROOM = 10.0  # largest stored film over the upper end of its axis
 
 
 def binned(values: np.ndarray, width: int, reduce: Callable[..., np.ndarray]) -> np.ndarray:
@@ -56,39 +54,45 @@ def packed(values: np.typing.ArrayLike, kind: type = np.float32) -> str:
 
 def frames_on_page(result: Result, window: Sequence[float]) -> int:
     """Number of frames on a page that keeps its size bounded."""
-    from ehlpetsc.pictures import plane  # which no line contact needs
-
-    _, x, y = plane.in_view(result, window)
+    _, x, y = in_view(result, window)
     widths = (-(-len(axis) // MAX_MAP_NODES) for axis in (x, y))
     nodes = np.prod([-(-len(axis) // width) for axis, width in zip((x, y), widths, strict=True)])
     return max(1, MAX_VALUES // int(nodes))
 
 
-def plane_maps(result: Result, chosen: np.ndarray, window: Sequence[float]) -> dict:
-    """Pressure [GPa], film [µm] and contacts of chosen frames, of each block of nodes the extreme."""
-    from ehlpetsc.pictures import plane
-
-    found = [plane.PlaneFrame.of(result, k, window) for k in chosen]
-    first = found[0]
+def plane_maps(result: Result, shown: list[Frame]) -> dict:
+    """Pressure [GPa], film or another field and contacts of frames, of each block of nodes the extreme."""
+    first, limits = shown[0], common(frame.limits for frame in shown)
     width = tuple(-(-len(axis) // MAX_MAP_NODES) for axis in (first.y, first.x))
-    thickest = max(frame.thickest for frame in found)
-    fields = {
-        "pressure": (np.max, [frame.pressure for frame in found]),
-        "film": (np.min, [np.minimum(frame.film, FILM_ROOM * thickest) for frame in found]),
-    }
     page = {
         "x": packed(binned(first.x, width[1], np.mean)),
         "y": packed(binned(first.y, width[0], np.mean)),
-        "contact": packed([blocks(frame.contact, width, np.max) for frame in found], np.uint8),
-        "aspect": plane.aspect(result) if np.isfinite(plane.aspect(result)) else None,
-        "highest": float(np.percentile([frame.pressure for frame in found], plane.COLOUR_PERCENTILE)),
-        "thickest": thickest,
+        "contact": packed([blocks(is_marked(frame), width, np.max) for frame in shown], np.uint8),
+        "aspect": aspect(result) if np.isfinite(aspect(result)) else None,
+        "highest": limits.brightest,
+        "ends": limits[2:],
+    }
+    highest = FILM_ROOM * limits.high if first.is_film else np.inf
+    fields = {
+        "pressure": (np.max, [frame.pressure for frame in shown]),
+        "values": (reduction(first), [np.minimum(frame.values, highest) for frame in shown]),
     }
     for name, (reduce, values) in fields.items():
-        unit = max(float(np.max(values)), 1e-12) / LEVELS
-        levels = [np.rint(blocks(each, width, reduce) / unit) for each in values]
-        page[name] = {"unit": unit, "levels": packed(levels, np.uint16)}
+        low = min(0.0, float(np.nanmin(values)))
+        unit = max(float(np.nanmax(values)) - low, 1e-12) / LEVELS
+        levels = [np.rint((blocks(np.nan_to_num(each), width, reduce) - low) / unit) for each in values]
+        page[name] = {"low": low, "unit": unit, "levels": packed(levels, np.uint16)}
     return page
+
+
+def is_marked(frame: Frame) -> np.ndarray:
+    """Nodes that are marked as in contact."""
+    return frame.share > MOSTLY
+
+
+def reduction(frame: Frame) -> Callable[..., np.ndarray]:
+    """Extreme of several nodes that a page shows: of film the minimum, of other fields the maximum."""
+    return np.min if frame.is_film else np.max
 
 
 def blocks(values: np.ndarray, width: Sequence[int], reduce: Callable[..., np.ndarray]) -> np.ndarray:
@@ -96,16 +100,17 @@ def blocks(values: np.ndarray, width: Sequence[int], reduce: Callable[..., np.nd
     return binned(binned(values, width[1], reduce).T, width[0], reduce).T
 
 
-def save_report(result: Result, path: Path) -> None:
-    """Write the page."""
+def save_report(result: Result, path: Path, field: str | None = None) -> None:
+    """Write the page, with a stored field in the place of the film."""
     if not has("plotly"):
         raise OutputError("the report is drawn by plotly; type: sudo apt-get install python3-plotly")
-    data, page = report_data(result), files("ehlpetsc.pictures").joinpath("page")
+    data, page = report_data(result, field), files("ehlpetsc.pictures").joinpath("page")
     pieces = {
         "style": page.joinpath("report.css").read_text(encoding="utf-8"),
         "script": page.joinpath("report.js").read_text(encoding="utf-8"),
         "title": html.escape(data["title"]),
         "case": html.escape(data["case"]),
+        "word": html.escape(data["frames"]["word"]),
         "facts": "".join(
             f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
             for name, value in data["facts"]
@@ -119,18 +124,20 @@ def save_report(result: Result, path: Path) -> None:
     atomic_write(path, re.sub(r"\{\{(\w+)\}\}", lambda word: pieces[word[1]], template).encode())
 
 
-def report_data(result: Result) -> dict:
+def report_data(result: Result, field: str | None = None) -> dict:
     """Data of the page, for JSON; of a point contact or strip maps, and frames of the section at y = 0."""
-    line, chosen, of_plane = result, chosen_frames(result, MAX_FRAMES), {}
+    line, chosen, maps, window = result, chosen_frames(result, MAX_FRAMES), {}, view([result])
     if result.y is not None:
-        line, window = result.section(), view([result])
+        line = result.section()
         chosen = chosen_frames(result, min(MAX_FRAMES, frames_on_page(result, window)))
-        of_plane = {"maps": plane_maps(result, chosen, window)}
-    return of_plane | {
+        maps = {"maps": plane_maps(result, [Frame.of(result, k, window, field) for k in chosen])}
+    shown = [Frame.of(line, k, window, field) for k in chosen]
+    return maps | {
+        "flow": Choice([result], [chosen[0]], window).flow,
         "title": str(result.attrs["title"]),
         "facts": facts(result),
         "case": str(result.attrs["case"]),
-        "frames": frames(line, chosen),
+        "frames": frames(line, chosen, shown),
         "steps": scalars_over_time(result),
         "damage": damage(result),
     }
@@ -169,29 +176,29 @@ def chosen_frames(result: Result, most: int) -> np.ndarray:
     return np.unique(np.append(style.spread(len(result.time), most), frame_to_show(result)))
 
 
-def frames(result: Result, chosen: np.ndarray) -> dict:
-    """Pressure, film, contacts and Hertz contact of chosen frames in view."""
-    x, a = result.x / result.attrs["a"], result.attrs["a"]
-    columns = style.in_view(x, view([result]))
-    width = -(-len(x[columns]) // MAX_NODES)
-    fields = {
-        name: packed([binned(factor * result.frame(name, k)[columns], width, reduce) for k in chosen])
-        for name, (factor, reduce) in FIELDS.items()
-        if name in result
-    }
-    hertz = [hertz_at(result, k) for k in chosen]
-    rows = (result.contacts_at(k, columns) if "in_contact" in result else 0.0 * x[columns] for k in chosen)
-    touching = [binned(row, width, np.max) for row in rows]
+def frames(result: Result, chosen: np.ndarray, shown: list[Frame]) -> dict:
+    """Pressure, film or another field, contacts and Hertz contact of chosen frames in view."""
+    first, width = shown[0], -(-len(shown[0].x) // MAX_NODES)
+    fields = {"pressure": np.max, "values": reduction(first)}
+    if "contact_pressure" in result:
+        fields["solids"] = np.max
     return {
-        "x": packed(binned(x[columns], width, np.mean)),
+        "x": packed(binned(first.x, width, np.mean)),
         "time": packed(1e6 * result.time[chosen]),
         "step": [int(step) for step in result.step[chosen]],
         "travel": travel_of(result)[chosen].tolist(),
         "first": int(np.searchsorted(chosen, frame_to_show(result))),
-        "hertz": [[half_width / a, 1e-9 * p0] for half_width, p0 in hertz],
+        "hertz": [[frame.half_widths[0], frame.p0] for frame in shown],
         "width": width,
-        "contact": packed(touching, np.uint8),
-        **fields,
+        "word": first.word,
+        "label": first.label.replace("\n", " "),
+        "is_film": first.is_film,
+        "ends": common(frame.limits for frame in shown)[2:],
+        "contact": packed([binned(is_marked(frame), width, np.max) for frame in shown], np.uint8),
+        "contact_word": contact_word(result),
+    } | {
+        name: packed([binned(getattr(frame, name), width, reduce) for frame in shown])
+        for name, reduce in fields.items()
     }
 
 

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ehlpetsc.base.quantities import STEP_SCALARS, of_case
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
@@ -126,8 +126,11 @@ def diagnostics(
         shear = effect.film_shear(state.records[effect.name], solution, shear)
     fields = _fields(scene, conditions, solution, shear)
     observation = Observation(scene, problem, state, conditions, fields, started)
-    functions = {name: STEP_SCALARS[name].of for name in of_case(STEP_SCALARS, case)}
-    scalars = {name: of(observation) for name, of in functions.items() if of}
+    fields_of, scalars = (
+        {name: of(observation) for name in of_case(table, case) if (of := table[name].of)}
+        for table in (FIELDS, STEP_SCALARS)
+    )
+    fields = fields | fields_of
     step = Step(state.time, state.dt, state.travelled, conditions)
     for effect in present:
         effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)

@@ -5,6 +5,7 @@ import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
 from support import CASES
@@ -44,6 +45,12 @@ def test_law_and_effect_of_the_page_work_as_they_are(folder):
     both = "from my_oil import LAWS\nfrom my_supply import EFFECTS\n"
     (folder / "both.py").write_text(both)
     assert "starved.h5" in call(folder, "-m", "ehlpetsc", "summary", "starved.h5", EHLPETSC_OWN="both")
+    with h5py.File(folder / "starved.h5") as file:
+        oil = file["film_thickness"][:] * (1.0 - file["void_fraction"][:])
+        np.testing.assert_allclose(file["oil"][:], oil, rtol=1e-15)
+        assert file["oil"].attrs["long_name"] == "oil in the film"
+    words = "plot", "starved.h5", "--field", "oil"
+    assert call(folder, "-m", "ehlpetsc", *words, EHLPETSC_OWN="both") == "starved.oil.png\n"
     listed = call(folder, "-m", "ehlpetsc", "keys", "starving", EHLPETSC_OWN="my_supply")
     assert "loss: in a half-width" in listed
 

@@ -80,7 +80,8 @@ def test_section_is_the_result_of_a_line(path):
         assert np.array_equal(row["pressure"][1:3, 5], result.pressure[1:3, k, 5])
         assert row.profile("1")[1].shape == row.profile("1")[0].shape
         assert row.to_xarray().pressure.dims == ("time", "x")
-        assert len(row.plot().axes) == 2
+        labels = [axes.get_ylabel() for axes in row.plot().axes]
+        assert labels == ["pressure [GPa]", "film thickness [µm]", "surfaces [µm]"]
         with pytest.raises(OutputError, match="section: y = 1 m; allowed: on the mesh"):
             result.section(1.0)
         with pytest.raises(OutputError, match="a line contact, which has no sections"):

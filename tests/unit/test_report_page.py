@@ -18,6 +18,8 @@ from ehlpetsc.pictures import report
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import read_result
 
+PLACES = {"film_thickness": "values", "contact_pressure": "solids"}  # of fields on the page
+
 
 def unpacked(text, kind="<f4"):
     return np.frombuffer(base64.b64decode(text), dtype=kind)
@@ -70,7 +72,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
     with read_result(path) as r:
         part = np.isin(np.float32(r.x / r.attrs["a"]), x)
         for name, factor in (("pressure", 1e-9), ("film_thickness", 1e6), ("contact_pressure", 1e-9)):
-            shown = unpacked(frames[name]).reshape(-1, x.size)
+            shown = unpacked(frames[PLACES.get(name, name)]).reshape(-1, x.size)
             np.testing.assert_allclose(shown, factor * r[name][:][:, part], rtol=1e-6)
         touching = unpacked(frames["contact"], "u1").reshape(-1, x.size)
         np.testing.assert_array_equal(touching, r["in_contact"][:][:, part])

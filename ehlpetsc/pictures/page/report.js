@@ -32,21 +32,22 @@ function folded(text) {
 
 const largest = values => values.reduce((most, v) => (v > most ? v : most), 0);
 const data = JSON.parse(document.getElementById("data").textContent);
-instantAndMap(data.frames, data.maps ? planeMaps(data.maps, data.frames.hertz) : () => {}, data.maps ? "x/a along y = 0" : "x/a");
+instantAndMap(data.frames, data.maps ? planeMaps(data.maps, data.frames) : () => {}, data.maps ? "x/a along y = 0" : "x/a");
 overTime(data.steps);
 damage(data.damage);
 
 // maps of a point contact or strip; returns the function that shows frame k
-function planeMaps(maps, hertz) {
+function planeMaps(maps, frames) {
+  const { hertz, label, is_film: isFilm } = frames;
   const x = unpacked(maps.x), y = unpacked(maps.y), n = x.length, contact = unpacked(maps.contact, Uint8Array);
-  const [pressure, film] = [maps.pressure, maps.film].map(field => { const levels = unpacked(field.levels, Uint16Array); return i => levels[i] * field.unit; });
+  const [pressure, values] = [maps.pressure, maps.values].map(field => { const levels = unpacked(field.levels, Uint16Array); return i => field.low + levels[i] * field.unit; });
   const rows = (of, k) => Array.from(y, (_, j) => Array.from(x, (_, i) => of((k * y.length + j) * n + i)));
-  const about = { type: "heatmap", x, y, zmin: 0, hoverongaps: false };
+  const about = { type: "heatmap", x, y, zmin: 0, hoverongaps: false }, [low, high] = maps.ends;
   const bar = (text, at) => ({ title: { text, side: "right" }, x: at, thickness: 14 });
   const traces = [
     { ...about, zmax: maps.highest, colorscale: "Viridis", colorbar: bar("pressure [GPa]", 0.43), hovertemplate: "%{x:.3f}, %{y:.3f} a: %{z:.3f} GPa<extra></extra>" },
-    { ...about, zmax: maps.thickest, colorscale: FILMS, colorbar: bar("film [µm]", 1), xaxis: "x2", yaxis: "y2", hovertemplate: "%{x:.3f}, %{y:.3f} a: %{z:.4f} µm<extra></extra>" },
-    { ...about, zmax: 1, colorscale: [[0, CONTACT], [1, CONTACT]], showscale: false, xaxis: "x2", yaxis: "y2", hovertemplate: "%{x:.3f}, %{y:.3f} a: in contact<extra></extra>" },
+    { ...about, zmin: low, zmax: high, colorscale: isFilm ? FILMS : "Cividis", colorbar: bar(label, 1), xaxis: "x2", yaxis: "y2", hovertemplate: "%{x:.3f}, %{y:.3f} a: %{z:.5~g}<extra></extra>" },
+    { ...about, zmax: 1, colorscale: [[0, CONTACT], [1, CONTACT]], showscale: false, xaxis: "x2", yaxis: "y2", hovertemplate: `%{x:.3f}, %{y:.3f} a: ${frames.contact_word}<extra></extra>` },
   ];
   const edge = (k, end, color) => {
     const a = hertz[k][0], about = { xref: "x" + end, yref: "y" + end, line: { color, width: 1 } };
@@ -55,40 +56,39 @@ function planeMaps(maps, hertz) {
   };
   const ratio = (y[y.length - 1] - y[0]) / (x[n - 1] - x[0]), compact = ratio > 0.4 && ratio < 2.5;
   const across = end => ({ title: { text: "y/a" }, zeroline: false, anchor: "x" + end, ...(compact ? { scaleanchor: "x" + end, constrain: "domain" } : {}), ...(end ? { matches: "y" } : {}) });
-  const along = { title: { text: "x/a" }, zeroline: false, constrain: "domain" };
+  const along = { title: { text: ["x/a", data.flow, "line: dry contact"].filter(Boolean).join(", ") }, zeroline: false, constrain: "domain" };
   const box = chart("instant", Math.min(Math.max(420 * ratio, 240), 700) + 80, traces, {
     xaxis: { ...along, domain: [0, 0.42] }, xaxis2: { ...along, domain: [0.57, 0.99], anchor: "y2", matches: "x" }, yaxis: across(""), yaxis2: across("2"),
   });
-  return k => Plotly.update(box, { z: [rows(pressure, k), rows(film, k), rows(i => (contact[i] ? 1 : null), k)] }, { shapes: [...edge(k, "", "#fff"), ...edge(k, "2", "#000")] });
+  return k => Plotly.update(box, { z: [rows(pressure, k), rows(values, k), rows(i => (isFilm && contact[i] ? 1 : null), k)] }, { shapes: [...edge(k, "", "#fff"), ...edge(k, "2", "#000")] });
 }
 
 function instantAndMap(frames, maps, along) {
   const x = unpacked(frames.x), time = unpacked(frames.time), n = x.length, many = time.length > 1;
   const fields = {}, contact = unpacked(frames.contact, Uint8Array);
-  for (const name of ["pressure", "contact_pressure", "film_thickness"]) if (frames[name]) fields[name] = unpacked(frames[name]);
+  for (const name of ["pressure", "solids", "values"]) if (frames[name]) fields[name] = unpacked(frames[name]);
   const row = (values, k) => values.subarray(k * n, (k + 1) * n);
-  const touching = k => row(fields.film_thickness, k).map((h, i) => (contact[k * n + i] ? h : NaN));
+  const touching = k => row(fields.values, k).map((h, i) => (contact[k * n + i] ? h : NaN));
   const fine = Array.from({ length: 401 }, (_, i) => -1 + i / 200);
   const line = (name, colour, more) => ({ name, x, mode: "lines", line: { color: colour, width: 1.4 }, ...more });
   const hertz = k => fine.map(v => frames.hertz[k][1] * Math.sqrt(Math.max(0, 1 - (v / frames.hertz[k][0]) ** 2)));
   const traces = [], moving = [];  // each trace, and its values at an instant
   const add = (trace, values) => { moving.push(values); traces.push(trace); };
-  const { pressure, contact_pressure: solids, film_thickness: film } = fields;
+  const { pressure, solids, values } = fields;
   add({ ...line("Hertz", GREY), x: fine, line: { color: GREY, dash: "dot" } }, hertz);
   if (solids) add(line("of the solids", SOLIDS, { fill: "tozeroy", line: { color: SOLIDS, width: 0 } }), k => row(solids, k));
   if (pressure) add(line(solids ? "total pressure" : "pressure", BLUE), k => row(pressure, k));
-  if (film) {
-    add(line("film", BLUE, { yaxis: "y2", showlegend: false }), k => row(film, k));
-    add({ name: "in contact", x, mode: "markers", yaxis: "y2", marker: { color: CONTACT, symbol: "triangle-down", size: 8 } }, touching);
+  add(line(frames.word, BLUE, { yaxis: "y2", showlegend: false }), k => row(values, k));
+  if (frames.is_film) {
+    add({ name: frames.contact_word, x, mode: "markers", yaxis: "y2", marker: { color: CONTACT, symbol: "triangle-down", size: 8 } }, touching);
   }
   const highest = Math.max(largest(frames.hertz.map(([, p0]) => p0)), pressure ? largest(pressure) : 0);
-  const thickest = film ? largest(film.filter((_, i) => Math.abs(x[i % n]) <= 1)) : 1;
   const box = chart("instant", 520, traces, {
     xaxis: { title: { text: along }, range: [x[0], x[n - 1]], anchor: "y2", zeroline: false },
     yaxis: { title: { text: "pressure [GPa]" }, range: [0, 1.05 * highest], domain: [0.54, 1] },
-    yaxis2: { title: { text: "film [µm]" }, range: [0, 1.15 * thickest || 1], domain: [0, 0.46] },
+    yaxis2: { title: { text: frames.label }, range: frames.ends, domain: [0, 0.46] },
   });
-  const map = many && pressure && pressureMap(x, time, pressure, contact, along);
+  const map = many && pressure && pressureMap(x, time, frames.is_film ? pressure : values, contact, along, frames);
   const slider = document.getElementById("slider"), play = document.getElementById("play");
 
   function show(k) {
@@ -112,18 +112,17 @@ function instantAndMap(frames, maps, along) {
   show(frames.first);
 }
 
-function pressureMap(x, time, pressure, contact, along) {
-  const n = x.length, sorted = Float32Array.from(pressure).sort();
+function pressureMap(x, time, values, contact, along, { is_film: isPressure, label, ends, contact_word: word }) {
+  const n = x.length, sorted = Float32Array.from(values).sort(), text = isPressure ? "pressure [GPa]" : label;
   const rows = of => Array.from(time, (_, k) => Array.from({ length: n }, (_, i) => of(k * n + i)));
   const about = { type: "heatmap", x, y: time, hovertemplate: "x/a %{x:.3f}, %{y:.2f} µs" };
   const field = {
-    ...about, z: rows(i => pressure[i]), colorscale: "Viridis", zmin: 0, zmax: sorted[Math.floor(0.999 * (sorted.length - 1))] || 1,
-    hovertemplate: about.hovertemplate + ": %{z:.3f} GPa<extra></extra>", colorbar: { title: { text: "pressure [GPa]", side: "right" } },
+    ...about, z: rows(i => values[i]), colorscale: "Viridis", zmin: isPressure ? 0 : ends[0], zmax: sorted[Math.floor(0.999 * (sorted.length - 1))] || 1,
+    hovertemplate: about.hovertemplate + ": %{z:.4~g}<extra></extra>", colorbar: { title: { text, side: "right" } },
   };
   const contacts = {
     ...about, z: rows(i => (contact[i] ? 1 : null)), colorscale: [[0, CONTACT], [1, CONTACT]], showscale: false,
-    hovertemplate: about.hovertemplate + ": in contact<extra></extra>", hoverongaps: false,
-    opacity: 0.35, // a compliant layer is in contact nearly everywhere
+    hovertemplate: about.hovertemplate + `: ${word}<extra></extra>`, hoverongaps: false, opacity: 0.35,
   };
   return chart("over-time", 440, [field, contacts], {
     xaxis: { title: { text: along } }, yaxis: { title: { text: "time [µs]" } },
