@@ -243,7 +243,10 @@ class _Life:
 def passes_to_failure(file: Path, settings: tuple[str, ...] = ()) -> tuple[float, float]:
     """Passes until D = 1 at the worst point of each surface, of the pass in a result file."""
     with Loads(file, settings) as loads:
-        job, prepared = Job(str(file), "", settings=settings), prepare(loads, SIDES, lambda text: None)
+        job, prepared = (
+            Job(str(file), "", settings=settings, share=1.0),
+            prepare(loads, SIDES, lambda text: None),
+        )
         worst = []
         for side in SIDES:
             values = solve(prepared, side, job)

@@ -118,7 +118,7 @@ def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]
     Path(restart).unlink(missing_ok=True)
     with Loads(file) as loads:
         figures = means(loads) | {"p_max": float(loads.steps("p_max").max())}
-        job, prepared = Job(str(file), ""), prepare(loads, SIDES, lambda text: None)
+        job, prepared = Job(str(file), "", share=1.0), prepare(loads, SIDES, lambda text: None)
         damages = []
         for side in SIDES:
             passed = prepared.motions[side].complete

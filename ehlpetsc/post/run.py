@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -29,13 +29,15 @@ if TYPE_CHECKING:
     from ehlpetsc.post.stresses.block_stress import BlockStress
 
 MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
-DEPTHS_AT_ONCE = 4  # with common reading and transforms of the loads
+DEPTHS_AT_ONCE = 16  # with common reading and transforms of the loads
 
 
 class Job(NamedTuple):
     """One result file and the settings of its processing.
 
     `settings` ("table.key=value") override keys of the case, whose criterion is added to `criteria`.
+    `share`: of the points of a plane, the worst ones, whose critical planes are sought (see
+    :func:`.criteria.critical_plane.count_on_planes`).
     """
 
     path: str
@@ -44,6 +46,7 @@ class Job(NamedTuple):
     jobs: int = 1
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
+    share: float = 0.01
 
     def fingerprint(self) -> str:
         """Hash of the settings and of the version of the result file."""
@@ -76,9 +79,10 @@ def run(
             raise PostError(f"{job.path}: {fault}") from None
         for note in _notes(job, loads):
             report(note)
-        done, total = 0, len(prepared.depths) * sum(m.complete.sum() for m in prepared.motions.values())
+        points = sum(motion.complete.sum() for motion in prepared.motions.values())
+        done, total = 0.0, 2.0 * len(prepared.depths) * points
 
-        def advance(points: int) -> None:
+        def advance(points: float) -> None:
             nonlocal done
             done += points
             show(done / total)
@@ -119,11 +123,12 @@ def _criteria(job: Job, case: Case) -> set[str]:
 
 
 def solve(
-    prepared: Prepared, surface: str, job: Job, advance: Callable[[int], None] = lambda points: None
+    prepared: Prepared, surface: str, job: Job, advance: Callable[[float], None] = lambda points: None
 ) -> dict[str, np.ndarray]:
     """Damage, cycles, peak range and criteria of a surface (depths, *rows, points) by name in the file.
 
-    nan for incomplete points. `advance` is called with the number of points that are done at a depth.
+    nan for incomplete points. `advance` is called with numbers of points at a depth whose stresses are
+    computed, then with those that are counted.
     """
     depths = prepared.depths
     blocks = np.array_split(depths, max(-(-len(depths) // DEPTHS_AT_ONCE), min(job.jobs, len(depths))))
@@ -133,7 +138,7 @@ def solve(
 
 
 def _solve_depths(
-    prepared: Prepared, surface: str, job: Job, advance: Callable[[int], None], depths: np.ndarray
+    prepared: Prepared, surface: str, job: Job, advance: Callable[[float], None], depths: np.ndarray
 ) -> dict[str, np.ndarray]:
     loads, motion, table = prepared.loads, prepared.motions[surface], prepared.loads.case.post.residual_stress
     counts = _counts(prepared, surface, job)
@@ -144,7 +149,11 @@ def _solve_depths(
     stress = _stresses(loads, depths * loads.a / loads.dx, prepared.materials[surface].poisson_ratio)
     for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, stress.bytes_per_sample):
         of_rows = np.repeat(lengths[points], math.prod(loads.rows))
-        for k, stresses in enumerate(histories(loads, surface, motion, stress, points, QUANTUM * loads.p0)):
+        found = histories(
+            *(loads, surface, motion, stress, points, QUANTUM * loads.p0),
+            show=lambda share, count=points.size * depths.size: advance(share * count),
+        )
+        for k, stresses in enumerate(found):
             residual = float(np.interp(depths[k], *np.transpose(table))) if table else 0.0
             for columns, count in counts:
                 values = count(stresses.reshape(-1, *stresses.shape[-2:]), of_rows, residual)
@@ -158,10 +167,17 @@ def _stresses(loads: Loads, depths: np.ndarray, poisson_ratio: float) -> BodyStr
     """Stresses of the half plane or of the half-space at depths in elements."""
     if not loads.rows:
         return BodyStress(loads.x.size, depths)
+    (ny,), width = loads.rows, loads.dy / loads.dx
+    return _block_stress(ny, loads.x.size, width, tuple(depths), poisson_ratio, loads.is_periodic)
+
+
+@lru_cache(maxsize=1)  # for both surfaces, and the passes of a life
+def _block_stress(
+    ny: int, nx: int, width: float, depths: tuple[float, ...], poisson_ratio: float, is_periodic: bool
+) -> BlockStress:
     from ehlpetsc.post.stresses.block_stress import BlockStress
 
-    (ny,), width = loads.rows, loads.dy / loads.dx
-    return BlockStress(ny, loads.x.size, width, depths, poisson_ratio, loads.is_periodic)
+    return BlockStress(ny, nx, width, np.array(depths), poisson_ratio, is_periodic)
 
 
 def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str], Callable]]:
@@ -175,7 +191,7 @@ def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str],
         from ehlpetsc.post.criteria.critical_plane import PlaneDamage, count_on_planes
 
         names = [f"criteria/fatemi_socie/{surface}_{column}" for column in PlaneDamage._fields]
-        count = partial(count_on_planes, constants=constants, **common)
+        count = partial(count_on_planes, constants=constants, share=job.share, **common)
         counts.append((names, count))
     if "dang-van" in _criteria(job, case):
         from ehlpetsc.post.criteria.dang_van import count_utilisation

@@ -21,12 +21,12 @@ by a pattern search, and the damage of the best plane is counted on all samples.
 from __future__ import annotations
 
 from functools import partial
-from math import cos, exp, log, pi, sin
+from math import asin, atan2, cos, exp, log, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.post.criteria.laws import Criteria
 from ehlpetsc.post.criteria.turning_samples import turning_samples
 from ehlpetsc.post.fatigue.accumulate import evaluate
@@ -75,7 +75,12 @@ def planes_and_directions(step: float = GRID_STEP, components: int = 3) -> np.nd
     return np.radians(rows)
 
 
+MIN_SOUGHT = 200  # points of a depth whose planes are always sought
+MAX_SOUGHT = 3  # shares
+JACOBI_SWEEPS = 4
+FAR_PAIRS, SHEAR_PAIRS = 3, 2  # of samples, whose planes of maximum shear are tried
 MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
+ROUNDING = 1e-9  # of a bound
 NEGLIGIBLE_RANGE = 0.2  # of the widest: smaller cycles, which the search ignores, have < 1e-7 of its damage
 
 
@@ -91,10 +96,13 @@ def _on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -
         work[3][:size] = law[1] * share + (a * stress[0] + b * stress[1] + c * stress[2])
         return
     in_shear, across, share = tensor_weights(angles[0], angles[1], angles[2])
-    work[2][:size], work[3][:size] = 0.0, law[1] * share
-    for k in range(6):
-        work[2][:size] += 3**0.5 * in_shear[k] * stress[k]
-        work[3][:size] += across[k] * stress[k]
+    root, residual = 3**0.5, law[1] * share
+    for i in range(size):
+        along, normal = 0.0, residual
+        for k in range(6):
+            along += root * in_shear[k] * stress[k, i]
+            normal += across[k] * stress[k, i]
+        work[2][i], work[3][i] = along, normal
 
 
 @compiled(error_model="python", nogil=True)
@@ -132,19 +140,43 @@ def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: 
 
 
 @compiled(error_model="python", nogil=True)
+def _bound(series: np.ndarray, highest: float, law: tuple) -> float:
+    """Upper bound of the damage of a shear stress with a maximum normal stress."""
+    low, high, way = series[0], series[0], abs(series[-1] - series[0])
+    for k in range(1, series.size):
+        way += abs(series[k] - series[k - 1])
+        low, high = min(low, series[k]), max(high, series[k])
+    # ranges of the cycles sum up to half the way, and damage rises faster than the range
+    cycles = max(0.5 * way / (high - low), 1.0) if high > low else 1.0
+    return cycles * _cycle_damage(high - low, highest, law)
+
+
+@compiled(error_model="python", nogil=True)
+def _bounds(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> np.ndarray:
+    """Upper bounds of the damage on all planes of a grid, whose directions in a plane follow each other."""
+    size, bounds = stress.shape[1], np.empty(grid.shape[0])
+    first, across, angles = np.empty(size), np.empty(size), np.empty(3)
+    series, normal = work[2][:size], work[3][:size]
+    highest = 0.0
+    for g in range(grid.shape[0]):
+        if g == 0 or grid[g, 0] != grid[g - 1, 0] or grid[g, 1] != grid[g - 1, 1]:
+            angles[:2] = grid[g, :2]
+            for turn, along in ((0.0, first), (pi / 2, across)):
+                angles[2] = turn
+                _on_plane(angles, stress, law, work)
+                along[:] = series
+            highest = normal.max()
+        c, s = cos(grid[g, 2]), sin(grid[g, 2])
+        for k in range(size):
+            series[k] = c * first[k] + s * across[k]
+        bounds[g] = (1 + ROUNDING) * _bound(series, highest, law)
+    return bounds
+
+
+@compiled(error_model="python", nogil=True)
 def _coarse(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> tuple[np.ndarray, np.ndarray]:
     """Angles (2, 3) and damage of the best planes of the grid, in falling order."""
-    size, bounds = stress.shape[1], np.empty(grid.shape[0])
-    _, _, series, normal = work
-    for g in range(grid.shape[0]):
-        _on_plane(grid[g], stress, law, work)
-        low, high, way, highest = series[0], series[0], abs(series[size - 1] - series[0]), normal[0]
-        for k in range(1, size):
-            way += abs(series[k] - series[k - 1])
-            low, high, highest = min(low, series[k]), max(high, series[k]), max(highest, normal[k])
-        # ranges of the cycles sum up to half the way, and damage rises faster than the range
-        cycles = max(0.5 * way / (high - low), 1.0) if high > low else 1.0
-        bounds[g] = cycles * _cycle_damage(high - low, highest, law)
+    bounds = _bounds(grid, stress, law, work)
     order, first, second = np.argsort(-bounds), 0, len(bounds) - 1
     damages = np.full(order.size, -1.0)
     for n in range(order.size):
@@ -217,6 +249,118 @@ def _worst_planes(
                 out[p, 0], out[p, 1:] = damage, starts[k, :2]
 
 
+@compiled(error_model="python", nogil=True)
+def _principal_axes(tensor: np.ndarray, axes: np.ndarray) -> None:
+    """Set the columns of axes (3, 3) to principal directions by Jacobi's rotations; tensor gets diagonal."""
+    axes[:] = 0.0
+    for k in range(3):
+        axes[k, k] = 1.0
+    for _ in range(JACOBI_SWEEPS):
+        for i in range(2):
+            for j in range(i + 1, 3):
+                if tensor[i, j] == 0.0:
+                    continue
+                angle = 0.5 * atan2(2 * tensor[i, j], tensor[j, j] - tensor[i, i])
+                c, s = cos(angle), sin(angle)
+                for k in range(3):
+                    a, b = tensor[k, i], tensor[k, j]
+                    tensor[k, i], tensor[k, j] = c * a - s * b, s * a + c * b
+                    a, b = axes[k, i], axes[k, j]
+                    axes[k, i], axes[k, j] = c * a - s * b, s * a + c * b
+                for k in range(3):
+                    a, b = tensor[i, k], tensor[j, k]
+                    tensor[i, k], tensor[j, k] = c * a - s * b, s * a + c * b
+
+
+@compiled(error_model="python", nogil=True)
+def _shear_planes(stress: np.ndarray, begin: int, end: int, angles: np.ndarray) -> None:
+    """Angles (2, 3) of both planes of maximum shear between two samples."""
+    tensor, axes = np.empty((3, 3)), np.empty((3, 3))
+    for row, column, part in ((0, 0, 0), (2, 2, 1), (0, 2, 2), (1, 1, 3), (0, 1, 4), (1, 2, 5)):
+        tensor[row, column] = tensor[column, row] = stress[part, end] - stress[part, begin]
+    _principal_axes(tensor, axes)
+    low, high = 0, 0
+    for k in range(3):
+        low = k if tensor[k, k] < tensor[low, low] else low
+        high = k if tensor[k, k] > tensor[high, high] else high
+    for turn in range(2):
+        sign = 1.0 - 2.0 * turn
+        x, y, z = (axes[:, high] + sign * axes[:, low]) / sqrt(2.0)
+        tx, ty, tz = (axes[:, high] - sign * axes[:, low]) / sqrt(2.0)
+        theta, phi = atan2(z, x), asin(min(max(y, -1.0), 1.0))
+        along = cos(theta) * tz - sin(theta) * tx
+        across = cos(phi) * ty - sin(phi) * (cos(theta) * tx + sin(theta) * tz)
+        angles[turn] = theta, phi, atan2(across, along)
+
+
+@compiled(error_model="python", nogil=True)
+def _estimates(stress: np.ndarray, lengths: np.ndarray, law: tuple, work: tuple, out: np.ndarray) -> None:
+    """Set out as `_worst_planes`, to the most damaged of some planes of maximum shear: a lower bound.
+
+    These are the planes between far samples, each of which is the farthest from the one before, then between
+    the samples of extreme shear on the worst plane so far.
+    """
+    points, angles, best = np.empty((5, stress.shape[2])), np.empty((2, 3)), np.empty(3)
+    for p in range(stress.shape[0]):
+        history = stress[p, :, : lengths[p]].copy()
+        equivalent_points(history, law[0], points)
+        begin, worst = ZERO, 0.0
+        for pair in range(FAR_PAIRS + SHEAR_PAIRS):
+            end, largest = begin, -1.0
+            if pair < FAR_PAIRS:
+                for k in range(lengths[p]):
+                    away = 0.0
+                    for axis in range(5):
+                        away += (points[axis, k] - points[axis, begin]) ** 2
+                    if away > largest:
+                        end, largest = k, away
+            elif worst > 0.0:
+                _on_plane(best, history, law, work)
+                begin, end = work[2][: lengths[p]].argmin(), work[2][: lengths[p]].argmax()
+            _shear_planes(history, begin, end, angles)
+            is_better = False
+            for k in range(2):
+                damage = plane_damage(angles[k], history, law, 0.0, work)
+                if damage > worst:
+                    worst, is_better = damage, True
+                    best[:] = angles[k]
+            if pair >= FAR_PAIRS and not is_better:
+                break
+            begin = end
+        out[p, 0], out[p, 1:] = worst, best[:2]
+
+
+def _sought(stress: np.ndarray, lengths: np.ndarray, law: tuple, share: float) -> np.ndarray:
+    """Results (points, 3) as of `_worst_planes`, sought in the worst share of the points.
+
+    Planes are sought in the order of the estimates until no other point can be among the worst share, if its
+    damage exceeds its estimate by no more than that of any point so far; of `MAX_SOUGHT` shares at most.
+    """
+    grid, work = planes_and_directions(components=stress.shape[1]), plane_workspace(stress.shape[-1])
+    out = np.empty((len(stress), 3))
+    wanted = max(int(np.ceil(share * len(stress))), MIN_SOUGHT)
+    if wanted >= len(stress) or stress.shape[1] == 3:
+        _worst_planes(grid, stress, lengths, law, work, out)
+        return out
+    _estimates(stress, lengths, law, work, out)
+    estimates = out[:, 0].copy()
+    order, done, excess = np.argsort(-estimates), 0, 1.0
+    while done < min(len(order), MAX_SOUGHT * wanted):
+        if done >= wanted:
+            limit = -np.partition(-out[order[:done], 0], wanted - 1)[wanted - 1]
+            if excess * estimates[order[done]] <= limit:
+                break
+        chosen = order[done : done + wanted]
+        found = np.empty((chosen.size, 3))
+        _worst_planes(grid, stress[chosen], lengths[chosen], law, work, found)
+        better = found[:, 0] > estimates[chosen]
+        out[chosen[better]] = found[better]
+        known = estimates[chosen] > 0
+        excess = max(excess, np.max(out[chosen, 0][known] / estimates[chosen][known], initial=1.0))
+        done += chosen.size
+    return out
+
+
 def plane_law(
     residual: float, material: Material, constants: Criteria, strain: str, cycle_residual: str = "repeat"
 ) -> tuple:
@@ -238,14 +382,16 @@ def count_on_planes(
     constants: Criteria,
     strain: str,
     cycle_residual: str = "repeat",
+    share: float = 1.0,
 ) -> np.ndarray:
-    """Results (points, 3) as in PlaneDamage of histories (points, 3 or 6, samples) of these lengths."""
+    """Results (points, 3) as in PlaneDamage of histories (points, 3 or 6, samples) of these lengths.
+
+    Of six components planes are sought in the worst `share` of the points; others have a lower bound, the
+    damage of the worst of six planes of maximum shear.
+    """
     stress = stress.astype(float, copy=False)  # one compiled version for files and arrays
     law = plane_law(residual, material, constants, strain, cycle_residual)
-    work = plane_workspace(stress.shape[-1])
-    out = np.empty((len(stress), 3))
-    _worst_planes(planes_and_directions(components=stress.shape[1]), stress, lengths, law, work, out)
-    damage, theta, phi = out.T
+    damage, theta, phi = _sought(stress, lengths, law, share).T
     x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)
     inclination = np.degrees(np.arctan2(z, x)) % 180.0
     return np.stack([damage, inclination, np.degrees(np.arctan2(abs(y), np.hypot(x, z)))], axis=1)

@@ -30,6 +30,7 @@ from ehlpetsc.post.fatigue.cycles import equivalent_points
 
 MAX_ROUNDS = 200  # of the search for the smallest ball
 BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
+DEGENERATE = 1e-10  # pivot over the first of the products of edges: corners on a line, in a plane ...
 
 
 @compiled(nogil=True)
@@ -65,23 +66,111 @@ def _around(support: np.ndarray, new: np.ndarray) -> tuple[float, np.ndarray, np
 
 
 @compiled(error_model="python", nogil=True)
+def _barycentric(points: np.ndarray, system: np.ndarray, weights: np.ndarray) -> bool:
+    """Set weights (n,) of points (n, axes) in the centre of the smallest sphere through them.
+
+    False if the points are degenerate. `system`: space of n x n numbers.
+    """
+    n, axes = points.shape[0] - 1, points.shape[1]
+    for i in range(n):
+        for j in range(n):
+            system[i, j] = 0.0
+            for axis in range(axes):
+                edge = points[i + 1, axis] - points[0, axis]
+                system[i, j] += edge * (points[j + 1, axis] - points[0, axis])
+        weights[i + 1] = system[i, i] / 2
+    for k in range(n):
+        if system[k, k] <= DEGENERATE * system[0, 0]:
+            return False
+        for i in range(k + 1, n):
+            factor = system[i, k] / system[k, k]
+            weights[i + 1] -= factor * weights[k + 1]
+            for j in range(k, n):
+                system[i, j] -= factor * system[k, j]
+    weights[0] = 1.0
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            weights[k + 1] -= system[k, j] * weights[j + 1]
+        weights[k + 1] /= system[k, k]
+        weights[0] -= weights[k + 1]
+    return True
+
+
+@compiled(error_model="python", nogil=True)
+def _reduced(corners: np.ndarray, count: int, centre: np.ndarray, work: tuple) -> tuple[int, float]:
+    """Set the centre of the smallest ball about corners[:count], the last of which is on its surface.
+
+    Corners inside the ball are removed as long as their weight in the centre is negative. A centre within
+    the hull of corners on its surface is that of the smallest ball if no removed corner is outside, which is
+    checked. Returns the number of corners that remain and the squared radius; 0 corners: not found.
+    """
+    system, weights, all_corners = work
+    every = count
+    all_corners[:every] = corners[:every]
+    while True:
+        if not _barycentric(corners[:count], system, weights):
+            return 0, 0.0
+        least = weights[:count].argmin()
+        if weights[least] >= 0.0:
+            break
+        if least == count - 1:
+            return 0, 0.0
+        corners[least : count - 1] = corners[least + 1 : count].copy()
+        count -= 1
+    squared = largest = 0.0
+    for axis in range(centre.size):
+        centre[axis] = 0.0
+        for k in range(count):
+            centre[axis] += weights[k] * corners[k, axis]
+        squared += (corners[count - 1, axis] - centre[axis]) ** 2
+    for k in range(every):
+        away = 0.0
+        for axis in range(centre.size):
+            away += (all_corners[k, axis] - centre[axis]) ** 2
+        largest = max(largest, away)
+    return (count, squared) if largest <= squared * (1 + BALL_TOLERANCE) else (0, 0.0)
+
+
+@compiled(error_model="python", nogil=True)
+def _farthest(points: np.ndarray, centre: np.ndarray) -> tuple[int, float]:
+    """Index of the point farthest from the centre and its squared distance."""
+    index, largest = 0, -1.0
+    for k in range(points.shape[1]):
+        away = 0.0
+        for axis in range(centre.size):
+            away += (points[axis, k] - centre[axis]) ** 2
+        if away > largest:
+            index, largest = k, away
+    return index, largest
+
+
+@compiled(error_model="python", nogil=True)
 def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     """Centre and radius of the smallest ball about points (axes, n).
 
     The farthest point outside is added to the points that define the ball until no point is outside; the
     radius increases in every round, so that no subset occurs twice.
     """
-    centre, radius = points[:, 0].copy(), 0.0
-    support = centre.copy().reshape(1, centre.size)
+    axes = points.shape[0]
+    centre, radius, count = points[:, 0].copy(), 0.0, 1
+    support = np.empty((axes + 2, axes))
+    corners, new_centre = support.copy(), centre.copy()
+    support[0] = centre
+    work = np.empty((axes + 1, axes + 1)), np.empty(axes + 2), support.copy()
     for _ in range(MAX_ROUNDS):
-        away = ((points - centre.reshape(centre.size, 1)) ** 2).sum(axis=0)
-        farthest = away.argmax()
-        if sqrt(away[farthest]) <= radius * (1 + BALL_TOLERANCE):
+        farthest, away = _farthest(points, centre)
+        if sqrt(away) <= radius * (1 + BALL_TOLERANCE):
             break
-        larger, new_centre, support = _around(support, points[:, farthest].copy())
+        corners[:count], corners[count] = support[:count], points[:, farthest]
+        number, squared = _reduced(corners, count + 1, new_centre, work)
+        larger = sqrt(squared)
+        if number == 0 or number > axes + 1:
+            larger, about, kept = _around(support[:count].copy(), points[:, farthest].copy())
+            number, new_centre[:], corners[: len(kept)] = len(kept), about, kept
         if not larger > radius:
             break
-        radius, centre = larger, new_centre
+        radius, count = larger, number
+        centre[:], support[:count] = new_centre, corners[:count]
     return centre, radius
 
 

@@ -7,8 +7,6 @@ and loads linear. Histories hold sx, sz, txz, as those of a line contact, then s
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy import fft
@@ -27,72 +25,95 @@ from ehlpetsc.post.stresses.half_space import (
     COMPONENTS,
     IMAGES,
     LOADS,
+    fading,
     hat_kernels,
     padded_shape,
     plane_strain,
-    sum_images,
 )
 
 ORDER = [0, 2, 5, 1, 3, 4]  # of the components in histories
 IS_EVEN_ACROSS = np.array([True, True, True, True, False, False])  # in this order, of both loads
 IS_EVEN_ALONG = np.array([[1, 1, 0, 1, 0, 1], [0, 0, 1, 0, 1, 0]], bool)  # under pressure, under traction
-NEAR_ELEMENTS = 8  # along x; beyond, cubics may consist of fewer hats
-FAR_HATS_PER_ELEMENT = 8
+NEAR_ELEMENTS = 8  # beyond, a kernel is smooth over an element
+REACH = 4  # nodes either side whose hats replace the cubic of a node far away
 ROWS_AT_ONCE = 32
 
 
-def _along(distance: np.ndarray, y: np.ndarray, z: float, nu: float, offset: float, hats: int) -> np.ndarray:
-    """Kernels (2 shapes, 2, 6, ny, n) at consecutive distances, each cubic of `hats` an element."""
+def _near(distance: np.ndarray, y: np.ndarray, z: float, nu: float, offset: float) -> np.ndarray:
+    """Kernels (2 shapes, 2, 6, ny, n) at consecutive distances, each cubic of many hats."""
+    hats = HATS_PER_ELEMENT
     first = distance[0] + offset - (hats - 1) / hats
     fine = first + np.arange((distance.size + 1) * hats - 1) / hats
-    windows = sliding_window_view(hat_kernels(fine, y, z, nu)[:, :, 1:-1], 2 * hats - 1, axis=-1)
-    return np.moveaxis(
-        windows[..., ::hats, :] @ hermite_shapes(np.arange(hats - 1, -hats, -1) / hats).T, -1, 0
-    )
+    windows = sliding_window_view(hat_kernels(fine, y, z, nu), 2 * hats - 1, axis=-1)
+    shapes = hermite_shapes(np.arange(hats - 1, -hats, -1) / hats).T
+    return np.moveaxis(windows[..., ::hats, :] @ shapes, -1, 0)
 
 
-def _rows(ny: int, periodic: bool) -> int:
-    """Number of rows at distances of 0 or more whose kernels are needed."""
-    return (IMAGES + 1) * ny if periodic else ny
+def _far_weights(offset: float) -> np.ndarray:
+    """Weights (2 shapes, 9) of hats on neighbouring nodes with the moments of the cubics up to the eighth."""
+    order = np.arange(2 * REACH + 1)
+    t, weights = np.polynomial.legendre.leggauss(8)
+    t, weights = np.append(t - 1, t + 1) / 2, np.tile(weights / 2, 2)
+    moments = (hermite_shapes(t) * weights) @ (t - offset)[:, None] ** order
+    at = order[:, None] - REACH + t
+    of_hats = np.einsum("jtn,t->nj", at[..., None] ** order, weights * (1 - np.abs(t)))
+    return np.linalg.solve(of_hats, moments.T).T
 
 
-def _kernels(
-    shape: tuple[int, int], width: float, z: float, nu: float, offset: float
-) -> Iterator[np.ndarray]:
-    """Blocks of rows 0, 1, ... of the kernels (2 shapes, 2, 6, rows, 2 nx) at distances -nx .. nx - 1."""
-    count, nx = shape
-    distance = np.arange(-nx, nx)
-    near = slice(max(nx - NEAR_ELEMENTS, 0), nx + NEAR_ELEMENTS + 1)
+def _far(hats: np.ndarray, offset: float) -> np.ndarray:
+    """As `_near` where kernels are smooth over an element, from those of hats at the nodes, `REACH` more
+    at each end.
+    """
+    windows = sliding_window_view(hats, 2 * REACH + 1, axis=-1)
+    return np.moveaxis(windows @ _far_weights(offset)[:, ::-1].T, -1, 0)
+
+
+def _add_rows(out: np.ndarray, block: np.ndarray, first: int, period: int) -> None:
+    """Add kernels of the rows `first`, ... and of those at the opposite distances to the rows of `out`.
+
+    Those of a load of a period (0: none) are repeated; images fade out.
+    """
+    rows, signs = out.shape[-2], np.where(IS_EVEN_ACROSS, 1.0, -1.0)[:, None]
+    for row in range(first, first + block.shape[-2]):
+        values = block[..., row - first, :] * (fading(row / period) if period else 1.0)
+        out[..., (rows // 2 + row) % rows, :] += values
+        if row:
+            out[..., (rows // 2 - row) % rows, :] += signs * values
+
+
+def hat_sums(ny: int, nx: int, width: float, z: float, nu: float, periodic: bool) -> np.ndarray:
+    """Kernels (2, 6, rows, 2 nx + 2 REACH) of hats at the nodes, summed over the images of a period."""
+    count, rows = ((IMAGES + 1) * ny, ny) if periodic else (ny, 2 * ny - 1)
+    distance = np.arange(-nx - REACH, nx + REACH, dtype=float)
+    sums = np.zeros((LOADS, COMPONENTS, rows, distance.size))
     for first in range(0, count, ROWS_AT_ONCE):
-        y = width * np.arange(first - 1.0, min(first + ROWS_AT_ONCE, count) + 1)
-        block = _along(distance, y, z, nu, offset, FAR_HATS_PER_ELEMENT)
-        block[..., near] = _along(distance[near], y, z, nu, offset, HATS_PER_ELEMENT)
-        yield block[:, :, ORDER]
-
-
-def _mirrored(kernels: np.ndarray) -> np.ndarray:
-    """Kernels of rows -n .. n from those of rows 0 .. n, axis -2."""
-    signs = np.where(IS_EVEN_ACROSS, 1.0, -1.0)[:, None, None]
-    return np.concatenate([signs * kernels[..., :0:-1, :], kernels], axis=-2)
+        hats = hat_kernels(distance, width * np.arange(first, first + ROWS_AT_ONCE), z, nu)[:, ORDER]
+        _add_rows(sums, hats[..., : count - first, :], first, ny if periodic else 0)
+    return sums
 
 
 def offset_spectra(
-    ny: int, nx: int, width: float, z: float, nu: float, offset: float, periodic: bool
+    sums: np.ndarray, ny: int, width: float, z: float, nu: float, offset: float, periodic: bool
 ) -> np.ndarray:
-    """Spectra (2 shapes, 2, 6, ky, kx) of the kernels `offset` elements right of the nodes, ky from 0 on."""
-    blocks = _kernels((_rows(ny, periodic), nx), width, z, nu, offset)
-    kernels = _mirrored(np.concatenate(list(blocks), axis=-2))
-    middle = kernels.shape[-2] // 2
-    rows = np.arange(-middle, middle + 1)
+    """Spectra (2 shapes, 2, 6, ky, kx) of the kernels `offset` elements right of the nodes, ky from 0 on.
+
+    `sums`: of :func:`hat_sums`.
+    """
+    rows, nx = sums.shape[-2], sums.shape[-1] // 2 - REACH
+    kernels = _far(sums, offset)
+    if z < NEAR_ELEMENTS:
+        y, reach = width * np.arange(int(NEAR_ELEMENTS / width) + 2), min(NEAR_ELEMENTS, nx - 1)
+        hats = hat_kernels(np.arange(-reach - REACH, reach + REACH + 1.0), y, z, nu)
+        refined = _near(np.arange(-reach, reach + 1), y, z, nu, offset) - _far(hats, offset)
+        refined = refined[:, :, ORDER, : None if periodic else ny]
+        _add_rows(kernels[..., nx - reach : nx + reach + 1], refined, 0, ny if periodic else 0)
     if periodic:
-        first, line = middle - IMAGES * ny - ny // 2, hermite_kernels(nx, z, offset)[..., np.arange(-nx, nx)]
-        images = kernels[..., first : first + (2 * IMAGES + 1) * ny, :]
-        means = [plane_strain(shape, nu)[:, ORDER] for shape in line]
-        kernels = np.stack([sum_images(*both) for both in zip(images, means, strict=True)])
-        rows = np.arange(ny) - ny // 2
+        line = hermite_kernels(nx, z, offset)[..., np.arange(-nx, nx)]
+        means = np.stack([plane_strain(shape, nu)[:, ORDER] for shape in line])
+        kernels += ((means - kernels.sum(axis=-2)) / ny)[..., None, :]
     shape = padded_shape(ny, nx, periodic)
     padded = np.zeros((*kernels.shape[:3], *shape))
-    padded[..., rows[:, None], np.arange(-nx, nx)] = kernels
+    padded[..., (np.arange(rows) - rows // 2)[:, None], np.arange(-nx, nx)] = kernels
     return fft.rfft2(padded)[..., : shape[0] // 2 + 1, :]
 
 
@@ -112,8 +133,9 @@ def kernel_table(ny: int, nx: int, width: float, depth: float, nu: float, period
     turn = signs[..., None, None] * np.exp(1j * along)
     shape = factor[kept].shape
     table = np.empty((shape[0], LOADS * LOADS * COMPONENTS, OFFSETS.size, 2, shape[1]))
+    sums = hat_sums(ny, nx, width, depth, nu, periodic)
     for k in range(OFFSETS.size // 2):
-        left = factor * offset_spectra(ny, nx, width, depth, nu, OFFSETS[k], periodic)
+        left = factor * offset_spectra(sums, ny, width, depth, nu, OFFSETS[k], periodic)
         for place, spectra in ((k, left), (OFFSETS.size - 1 - k, turn * left.conj())):
             by_row = np.moveaxis(spectra.reshape(-1, *factor.shape)[:, *kept], 1, 0)
             table[:, :, place, 0], table[:, :, place, 1] = by_row.real, by_row.imag
@@ -163,10 +185,10 @@ class BlockStress:
     `width`: spacing across and `depths` (nz,) in elements along x.
     """
 
-    components, frames_at_once = COMPONENTS, 2
+    components, frames_at_once = COMPONENTS, 8
 
     def __init__(self, ny: int, nx: int, width: float, depths: np.ndarray, nu: float, periodic: bool) -> None:
-        self.rows, self.shape = (ny,), padded_shape(ny, nx, periodic)
+        self.rows, self.nodes, self.shape = (ny,), nx, padded_shape(ny, nx, periodic)
         self.bytes_per_sample = len(depths) * ny * COMPONENTS * COMPONENT_BYTES
         self.tables = [kernel_table(ny, nx, width, depth, nu, periodic) for depth in depths]
 
@@ -184,9 +206,12 @@ class BlockStress:
         return fft.fft(fft.rfft(loads, columns), rows, axis=-2, overwrite_x=True)
 
     def __call__(self, depth: int, spectra: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """Stresses (frames, 6, ny, n) of depth number `depth` at offsets with these `offset_weights`."""
+        """Stresses (frames, 6, ny, nx) of depth number `depth` at offsets with these `offset_weights`."""
         table, (rows, columns) = self.tables[depth], self.shape
         out = np.zeros((len(spectra), COMPONENTS, rows, table.shape[-1]), complex)
         _multiply(table, weights, spectra, np.where(IS_EVEN_ACROSS, 1.0, -1.0), out)
-        lines = fft.ifft(out, axis=-2, overwrite_x=True)[:, :, : self.rows[0]]
-        return fft.irfft(lines, columns)
+        found = np.empty((len(spectra), COMPONENTS, self.rows[0], self.nodes))
+        for frame, field in zip(out, found, strict=True):  # one by one: within the cache
+            lines = fft.ifft(frame, axis=-2, overwrite_x=True)[:, : self.rows[0]]
+            field[:] = fft.irfft(lines, columns)[..., : self.nodes]
+        return found

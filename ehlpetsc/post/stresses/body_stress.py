@@ -19,6 +19,7 @@ same sign: ripples of ten nodes are accurate to 5e-4 of their amplitude, and ste
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -215,15 +216,15 @@ def _collect(
     """
     shift, enter, leave = motion
     inverse, end = 1.0 / quantum if quantum else 0.0, begin + stress.shape[0]
-    for place in range(histories.shape[0]):
-        j = first + place
-        for frame in range(max(begin, enter[j]), min(end, leave[j] + 1)):
-            node, sample = j + shift[frame], frame - enter[j] + 1
-            for row in range(stress.shape[2]):
-                for component in range(stress.shape[1]):
-                    value = stress[frame - begin, component, row, node]
+    for row in range(stress.shape[2]):
+        for component in range(stress.shape[1]):
+            for place in range(histories.shape[0]):  # of a row and a component: within the cache
+                j = first + place
+                history = histories[place, row, component]
+                for frame in range(max(begin, enter[j]), min(end, leave[j] + 1)):
+                    value = stress[frame - begin, component, row, j + shift[frame]]
                     rounded = np.rint(value * inverse) * quantum if quantum else value
-                    histories[place, row, component, sample] = rounded
+                    history[frame - enter[j] + 1] = rounded
 
 
 def runs_of_points(motion: Passage, memory: float, bytes_per_sample: int) -> list[np.ndarray]:
@@ -245,8 +246,11 @@ def histories(
     points: np.ndarray,
     quantum: float,
     dtype: type = np.float32,
+    show: Callable[[float], None] = lambda share: None,
 ) -> np.ndarray:
     """Stress histories of consecutive points, multiples of `quantum` [Pa].
+
+    `show` is called with the share of the frames of a batch after each.
 
     Shape (nz, points, 3, samples); of a plane (nz, points, ny, 6, samples). Of a point the first
     leave - enter + 3 samples count: it is unstressed before it enters and after it leaves, so that its
@@ -257,8 +261,8 @@ def histories(
     found: np.ndarray = np.zeros(shape, dtype)
     by_row = found.reshape(*shape[:2], -1, *shape[-2:])
     weights, places = offset_weights(motion.offset), (motion.shift, motion.enter, motion.leave)
-    end = motion.leave[points].max() + 1
-    for begin in range(motion.enter[points].min(), end, FRAMES_PER_READ):
+    start, end = motion.enter[points].min(), motion.leave[points].max() + 1
+    for begin in range(start, end, FRAMES_PER_READ):
         pressure, shear = loads.read(surface, begin, min(begin + FRAMES_PER_READ, end))
         for at in range(0, len(pressure), stress.frames_at_once):
             batch = slice(at, at + stress.frames_at_once)
@@ -268,4 +272,5 @@ def histories(
                 fields = stress(depth, spectra, of_frames)
                 fields = fields.reshape(*fields.shape[:2], -1, fields.shape[-1])
                 _collect(fields, begin + at, points[0], places, quantum, rows)
+            show(len(spectra) / (end - start))
     return found

@@ -139,6 +139,11 @@ def plane_strain(kernels: np.ndarray, nu: float) -> np.ndarray:
     )
 
 
+def fading(periods: float | np.ndarray) -> np.ndarray:
+    """Weight of an image at a distance in periods."""
+    return erfc((periods - FADE) / FADE_WIDTH) / 2
+
+
 def sum_images(kernels: np.ndarray, mean: np.ndarray) -> np.ndarray:
     """Kernels (2, 6, ny, ...) of a load of period ny cells across.
 
@@ -148,7 +153,7 @@ def sum_images(kernels: np.ndarray, mean: np.ndarray) -> np.ndarray:
     total = kernels.shape[2]
     ny = total // (2 * IMAGES + 1)
     periods = np.abs(np.arange(total) - IMAGES * ny - ny // 2) / ny
-    faded = erfc((periods - FADE) / FADE_WIDTH) / 2
+    faded = fading(periods)
     shape = *kernels.shape[:2], 2 * IMAGES + 1, ny, *kernels.shape[3:]
     one = np.einsum("lcijx,ij->lcjx", kernels.reshape(shape), faded.reshape(-1, ny))
     return one + ((mean - one.sum(axis=2)) / ny)[:, :, None]
