@@ -25,6 +25,7 @@ from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton iteration allowed
 START_FACTOR = 7  # iteration limit of a steady start over that of a time step
 MAX_ROUNDING_FACTOR = 10.0  # limit of the factor by which rounding may raise Newton's absolute tolerance
+MAX_ROUNDING = 1e-6  # up to which it may raise a default one: rounding limits the oil balance of all contacts
 CLEAR_OF_BOUND = 0.02  # of the expected film: minimum film of a guess that is solved without the bound
 MAX_SHORTENED_STEPS = 20  # of a solve
 OVERFLOW = PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
@@ -57,8 +58,7 @@ class NewtonSolver:
         self._petsc_objects = owned(self)
         self._watch: Watch = None
         self._needs_renewal = False
-        self._before: np.ndarray | None = None
-        self._share = 1.0
+        self._before, self._share = None, 1.0  # unknowns before the last step; share of the next one
         self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
         # other line searches may end at another point than the last trial point
         self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
@@ -247,7 +247,10 @@ class NewtonSolver:
         if "ksp_atol" not in self._options.given:
             snes.ksp.setTolerances(atol=system.matrices.linear_atol * self._atol)
         system.matrices.begin_solve()
-        self.tolerance = min(max(self._atol, system.rounding()), MAX_ROUNDING_FACTOR * self._atol)
+        highest = MAX_ROUNDING_FACTOR * self._atol
+        if "snes_atol" not in self._options.given:
+            highest = max(highest, MAX_ROUNDING)
+        self.tolerance = min(max(self._atol, system.rounding()), highest)
         snes.setTolerances(max_it=max_it, atol=self.tolerance)
         if snes.rtol > 0.0 or snes.stol > 0.0:  # set by the user; stol accepts the residual of the guess
             factor = 1.0 if snes.stol > 0.0 else snes.rtol

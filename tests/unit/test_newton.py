@@ -11,6 +11,7 @@ import ehlpetsc
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator
+from ehlpetsc.nonlinear.two_fields import TwoFields
 
 # the inlet near the contact, thin oil: the asperities touch within few steps
 TOUCHING_MESH = {"mesh.inlet": -1.2, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
@@ -125,6 +126,16 @@ def test_process_ends_after_an_error_inside_petsc(error, status):
     script = FAULTY.replace("CASE", repr(str(CASES / "table1_smooth.toml"))).replace("ERROR", error)
     process = called([PYTHON, "-c", script], CASES)
     assert process.returncode == status and process.stderr.endswith(f"{error}: of a callback\n")
+
+
+@pytest.mark.parametrize("options, expected", [({}, 5e-7), ({"snes_atol": 1e-8}, 1e-7)])
+def test_rounding_raises_the_tolerance_of_a_layer_as_that_of_rigid_contact(monkeypatch, options, expected):
+    """Slow oil trapped by a closed layer reaches no smaller residual; ten times a tolerance of the user."""
+    layer = {"contact.model": "mixed", "contact.asperity_height": 10e-9, "mesh.points_per_half_width": 20}
+    monkeypatch.setattr(TwoFields, "rounding", lambda system: 5e-7)
+    simulation = ehlpetsc.Simulation(ehlpetsc.load(CASES / "table1_smooth.toml", layer), options=options)
+    simulation.advance()
+    assert simulation.stepper.solver.tolerance == pytest.approx(expected)
 
 
 def test_options_belong_to_their_call():

@@ -5,6 +5,7 @@ the temperatures of the last one: alone they would oscillate where fast, warm fi
 """
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -71,7 +72,8 @@ def mixed_record(pairs: Sequence[tuple[HeatRecord, HeatRecord]], cold: float) ->
     weights = 1.0 / np.maximum(np.concatenate(scales), 1e-300)
     x = combined(list(before), list(found - before), weights, MIN_SINGULAR_VALUE_OF_RECORDS)
     ends = np.cumsum([getattr(after, name).size for name in LAGGED])
-    return after._replace(**dict(zip(LAGGED, np.split(x, ends[:-1]), strict=True)))
+    fields: dict[str, Any] = dict(zip(LAGGED, np.split(x, ends[:-1]), strict=True))
+    return after._replace(**fields)
 
 
 def _lagged(record: HeatRecord) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -78,7 +78,7 @@ class HeatRecord(NamedTuple):
 def interpolated(record: HeatRecord, by: Grid, onto: Grid) -> HeatRecord:
     """Record of a steady solution with its nodal fields on another grid; those of the bodies remain."""
     nodal = (k for k, v in record._asdict().items() if isinstance(v, np.ndarray) and v.shape == (by.n,))
-    at_nodes = {name: by.interpolated(getattr(record, name), onto) for name in nodal}
+    at_nodes: dict[str, Any] = {name: by.interpolated(getattr(record, name), onto) for name in nodal}
     flow = record.flow.reshape(-1, by.shape[-1] + 1)
     per_cell = by.interpolated(0.5 * (flow[:, 1:] + flow[:, :-1]).ravel(), onto) * (by.dx / onto.dx)
     rows = np.pad(onto.rows(per_cell), ((0, 0), (1, 1)), mode="edge")
