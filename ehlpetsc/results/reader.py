@@ -13,9 +13,9 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError, OutputError
-from ehlpetsc.case.tables.surface import changed_files
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 from ehlpetsc.results.output_guard import atomic_write, check_derived, file_path
+from ehlpetsc.surfaces.digests import changed_files
 from ehlpetsc.surfaces.exports import WRITERS, GridField
 
 if TYPE_CHECKING:

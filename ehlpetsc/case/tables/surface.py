@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.base.errors import CaseError
+from ehlpetsc.surfaces.digests import changed_files
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -164,11 +165,6 @@ def file_digests(case: Case) -> dict[str, str]:
             except OSError:
                 digests[f"surface.{side}.file"] = ""
     return digests
-
-
-def changed_files(before: dict[str, str], now: dict[str, str]) -> str:
-    """Keys of the files whose digests differ, joined by "and"; "": none. Files in one alone do not count."""
-    return " and ".join(key for key in now if before.get(key, now[key]) != now[key])
 
 
 def check_unchanged(case: Case) -> None:
