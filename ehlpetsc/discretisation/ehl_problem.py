@@ -6,7 +6,7 @@ because SNESVI pairs row with unknown:
 * row of q: deflection, :mod:`ehlpetsc.discretisation.line.deflection`;
 * row of w: Reynolds equation, :class:`ehlpetsc.discretisation.line.reynolds.Reynolds`, in direct contact
   complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.line.reynolds.NoOil`;
-* last row: load, :math:`\sum p\,\Delta x=\pi/2`.
+* last row: :mod:`.balance`, of the load :math:`\sum p\,\Delta x=\pi/2`.
 
 The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from
 the unknowns of its window, see :mod:`.deflection`.
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ehlpetsc.discretisation.balance import Load
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
@@ -95,9 +96,10 @@ class EHLProblem:
     """Residual and derivatives of the nodes of a rank.
 
     `scales`: with the nodes of the mesh.
-    `share`: nodes of this rank; the rank that owns the last node owns the load row.
+    `share`: nodes of this rank; the rank that owns the last node owns the border.
     `film_scale`: scale of the Reynolds rows, about the expected film, in a^2/R.
 
+    `balance`: border of the system.
     `n`, `x`, `dx`: number of nodes; coordinates of all nodes and spacing along x.
     """
 
@@ -118,6 +120,7 @@ class EHLProblem:
         self.fluid, self.boundary_friction = case.fluid, case.contact.boundary_friction
         self.film_scale, self.model = film_scale, model
         self.deflection, self.reynolds = deflection, reynolds
+        self.balance = Load(scales)
         self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:
@@ -128,9 +131,9 @@ class EHLProblem:
                 self.inlet_film = self.fluid.inlet_film / scales.h
 
     @property
-    def load_is_local(self) -> bool:
-        """Whether this rank owns the load row."""
-        return self.last == self.n
+    def border(self) -> int:
+        """Number of unknowns of the whole contact that this rank owns, behind those of its nodes."""
+        return self.balance.unknowns if self.last == self.n else 0
 
     def inputs(
         self,
@@ -177,7 +180,7 @@ class EHLProblem:
         """
         (q, w, h00), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
-        residual = np.empty(n_dofs(self.local) + self.load_is_local)
+        residual = np.empty(n_dofs(self.local) + self.border)
         # the parabola's second difference is dx^2 exactly
         curvature = self.scales.R / inputs.conditions.radius
         separation = state.separation - curvature * self._undeformed - inputs.phi[self.window]
@@ -185,8 +188,6 @@ class EHLProblem:
         q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
         reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
         w_of(residual, self.local)[:] = reynolds
-        if self.load_is_local:
-            residual[-1] = sums.load[-1] - self.grid.load * inputs.load_share * (
-                inputs.conditions.load / self.scales.load
-            )
+        if self.border:
+            residual[-1] = self.balance.residual(h00, sums.load[-1], inputs)
         return Evaluation(model, state, residual, derivatives)

@@ -55,7 +55,7 @@ class Jacobian:
         self.state: Any = None
         self.derivatives: np.ndarray = None
         self.reynolds_derivatives: np.ndarray = None
-        self.size = n_dofs(problem.local) + problem.load_is_local
+        self.size = n_dofs(problem.local) + problem.border
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """Fill in the local rows of the product with a local vector, zero in inactive rows; collective."""
@@ -167,7 +167,7 @@ class TwoFields:
         self.bound_reached = False
 
     def _create_vectors(self) -> None:
-        sizes = (n_dofs(self.local) + self.problem.load_is_local, n_dofs(self.n) + 1)
+        sizes = (n_dofs(self.local) + self.problem.border, n_dofs(self.n) + self.problem.balance.unknowns)
         self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
         self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
         self.lower.set(PETSc.NINFINITY)
@@ -193,7 +193,7 @@ class TwoFields:
         self._given, self.inputs, self.x_evaluated, self.rows = inputs, inputs.begin(), None, None
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
-        if self.problem.load_is_local:
+        if self.problem.border:
             self.x.array[-1] = guess.h00
 
     def continue_from(self, local: np.ndarray) -> None:

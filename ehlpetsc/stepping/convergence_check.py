@@ -103,7 +103,7 @@ def find_fault(problem: EHLProblem, unknowns: Unknowns, rows: Rows, tolerance: f
     if fault:
         return fault
     for equation, norm in (
-        ("load", abs(load)),
+        (problem.balance.equation, abs(load)),
         ("deflection", np.linalg.norm(deflection)),
         ("open gap" if problem.fluid is None else "oil balance", np.linalg.norm(reynolds)),
     ):

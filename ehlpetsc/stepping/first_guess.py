@@ -31,11 +31,6 @@ def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
     return inputs.phi + change * problem.grid.undeformed
 
 
-def load_of(problem: EHLProblem, inputs: StepInputs) -> float:
-    """Load of a step over the load of the scales."""
-    return inputs.load_share * (inputs.conditions.load / problem.scales.load)
-
-
 def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: float = 1.3) -> Unknowns:
     """Hertz pressure with a film above the expected one at every node; downstream of the contact a cavity.
 
@@ -45,7 +40,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
 
     Without entrainment the solids carry the load, in oil at ambient pressure: no flow fills a cavity.
     """
-    grid, load = problem.grid, load_of(problem, inputs)
+    grid, load = problem.grid, problem.balance.share(inputs)
     width_2 = (load * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
     p = np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0))
     oil_carries = problem.fluid is not None and not inputs.rests
@@ -101,7 +96,7 @@ def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unkno
 
 def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
     """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
-    limit, load, grid = problem.model.yield_pressure, load_of(problem, inputs), problem.grid
+    limit, load, grid = problem.model.yield_pressure, problem.balance.share(inputs), problem.grid
     total, phi = grid.load * load / grid.cell, undeformed_gap(problem, inputs)
     rate = 1.0 / problem.deflection.largest_eigenvalue
     p = ahead = project(np.sqrt(np.maximum(load**grid.growth - grid.distance**2, 0.0)), limit, total)

@@ -65,6 +65,11 @@ class Observation:
         """Integral of the pressure [N/m]."""
         return self.cell * self.fields["pressure"].sum()
 
+    @property
+    def load_error(self) -> float:
+        """Relative error of the border's equation."""
+        return self.problem.balance.error(self.state.solution.unknowns.h00, self.load, self.conditions)
+
     @cached_property
     def friction_1(self) -> float:
         """Friction force on surface 1 [N/m]."""

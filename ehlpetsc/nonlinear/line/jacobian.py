@@ -107,7 +107,7 @@ class NearFieldMatrix:
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
         set_rows(self.matrix, w_index(nodes), p.reynolds.columns, self._by_unknowns(state, derivatives))
-        if p.load_is_local:
+        if p.border:
             load = np.zeros(n_dofs(p.n) + 1)  # with the zero on the diagonal, which LU needs
             q_of(load, p.n)[:], w_of(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
             self.matrix.setValues([n_dofs(p.n)], np.arange(len(load), dtype=np.int32), load)

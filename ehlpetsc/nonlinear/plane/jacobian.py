@@ -72,8 +72,9 @@ class PlaneJacobian(Jacobian):
         unknown, film = (by[k, 0] * window[:, 0] + by[k, 1] * window[:, 1] for k in (1, 2))
         separation = by[3, 0, owned] * pairs[:, 0] + by[3, 1, owned] * pairs[:, 1]
         scale = p.deflection.row_scale
-        out[0:local:2] = scale * (separation - self.exchange.h00(v) - deflection)
+        h00 = self.exchange.h00(v)
+        out[0:local:2] = scale * (separation - h00 - deflection)
         out[1:local:2] = p.reynolds.product(self.reynolds_derivatives, unknown, film, owned.start)
         if len(out) > local:
-            out[local] = load
+            out[local] = p.balance.product(h00, load)
         out[2 * self.inactive_nodes + 1] = 0.0

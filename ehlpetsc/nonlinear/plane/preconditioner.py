@@ -216,7 +216,7 @@ class Elimination:
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
             coarse = CoarseCorrection(self.coarse_space, self._gathered(sparse.by), mask)
         self.factors = Factors(sparse, coarse)
-        of_h00 = self._pressures(operator, np.zeros(p.local), np.ones(p.local))
+        of_h00 = self._pressures(operator, np.zeros(p.local), p.balance.gap(p.local))
         self.factors = Factors(sparse, coarse, of_h00)
 
     def _pressures(
@@ -255,7 +255,7 @@ class Elimination:
         if self.ranks.size > 1:
             b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
         pressure, r, load = self._pressures(operator, full[1:local:2], b_g)
-        approach = (b_load - load) / of_h00[2]
+        approach = p.balance.change(b_load, load, of_h00[2])
         pressure, r = pressure + approach * of_h00[0], r + approach * of_h00[1]
         sums = exchange.sums(pressure)
         separation = sums.deflection + approach + b_g

@@ -1,0 +1,63 @@
+r"""The border of the system: the unknown of the whole contact, the approach h00, and its equation.
+
+.. math:: h=h_{00}+g+D\,p,\qquad\sum p\,\Delta A=W.
+
+The last rank owns both, behind the unknowns and the rows of its nodes. In units of the scales: h00 in a^2/R,
+the load in p0 times the unit of the grid's cell.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.physics.operation import Conditions
+from ehlpetsc.physics.scales import Scales
+
+
+class Load:
+    """Balance of the load by h00.
+
+    `unknowns`: of the whole contact; as many equations.
+    `equation`: name of the equation in messages.
+    """
+
+    unknowns = 1
+    equation = "load"
+
+    def __init__(self, scales: Scales):
+        self.scales = scales
+
+    def share(self, inputs: StepInputs) -> float:
+        """Load of a step over the load of the scales."""
+        return inputs.load_share * (inputs.conditions.load / self.scales.load)
+
+    def residual(self, h00: float, load: float, inputs: StepInputs) -> float:
+        """Row of the equation; `load`: integral of the pressure."""
+        return load - self.scales.grid.load * self.share(inputs)
+
+    def product(self, h00: float, load: float) -> float:
+        """Derivative of the row times changes of h00 and of the integral of the pressure."""
+        return load
+
+    def gap(self, nodes: int) -> np.ndarray:
+        """Gap that a unit of h00 adds at each of some nodes."""
+        return np.ones(nodes)
+
+    def change(self, row: float, load: float, by_unit: float) -> float:
+        """Change of h00 for a right-hand side of the row.
+
+        Parameters
+        ----------
+        row
+            Right-hand side.
+        load
+            Integral of the pressures that follow from the rows of the nodes while h00 does not change.
+        by_unit
+            Change of that integral by a unit of h00.
+        """
+        return (row - load) / by_unit
+
+    def error(self, h00: float, load: float, conditions: Conditions) -> float:
+        """Relative error of the equation; load in N or N/m."""
+        return abs(load / conditions.load - 1.0)
