@@ -139,7 +139,7 @@ STEP_SCALARS = {
         of=lambda o: int(o.loads.contact_mask.sum()),
     ),
     "load": Integral("N", "integral of the pressure", of=lambda o: o.load),
-    "load_error": Error("relative error of the load", of=lambda o: o.load_error),
+    "load_error": Error("relative error of the load, or of the given approach", of=lambda o: o.load_error),
     "mass_error": Error(
         "mass defect summed over all nodes, relative to the mass that the contact carries",
         of=lambda o: o.mass_error,

@@ -163,7 +163,7 @@ def _missing(place: str, key: Key, data: Tables, root: Tables, misspelt: Set[str
     """Fault of a required key; a consequence where it follows from others, or if one of them is misspelt."""
     if not key.required:
         return []
-    given = [name for name in key.replaced_by if (root.get(name[1:-1]) if name[0] == "[" else data.get(name))]
+    given = [name for name in key.replaced_by if (root.get(name[1:-1]) if name[0] == "[" else name in data)]
     text = f"{place} is missing" + (f", and does not follow from {given[0]}" if given else "")
     instead = "".join(f", or {name}" for name in key.replaced_by if not given)
     return [Fault(place, f"{text}; allowed: {allowed(key)}{instead}", bool(given or misspelt))]

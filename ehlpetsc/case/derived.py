@@ -13,9 +13,11 @@ from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.base.toml_file import Tables
-from ehlpetsc.case.checking import Fault, check, unsound_tables, values_of
-from ehlpetsc.case.tables.contact import GRADE, LAYER_NODES
+from ehlpetsc.case.checking import Fault, check, is_point, unsound_tables, values_of
+from ehlpetsc.case.tables.contact import CONTACT, GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
+from ehlpetsc.case.values import is_allowed, is_number
+from ehlpetsc.physics.hertz import hertz_load
 from ehlpetsc.physics.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
 from ehlpetsc.physics.oils import OIL_SHEAR, OILS
@@ -61,6 +63,19 @@ def _with_material(tables: Tables) -> Tables:
         pressures = [flow_pressure(one["cyclic_strength"], one["cyclic_hardening"]) for one in constants]
         filled["yield_pressure"] = list(map(float, pressures))
     return tables | {"contact": filled}
+
+
+def _with_approach(tables: Tables) -> Tables:
+    """Load of the dry smooth point contact of a given approach, from which the scales come."""
+    contact = tables.get("contact", {})
+    elastic = [contact.get(key) for key in ("youngs_modulus", "poisson_ratio")]
+    if "approach" not in contact or not is_point(tables) or None in elastic:
+        return tables
+    modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
+    load = float(hertz_load(contact["approach"], *contact["radius"], modulus))
+    if not is_allowed(CONTACT.keys["load"], load):  # reported as a load that does not follow
+        return tables
+    return tables | {"contact": {"load": load} | contact}
 
 
 def _with_grade(tables: Tables) -> Tables:
@@ -114,6 +129,7 @@ def _with_oil(tables: Tables) -> Tables:
 
 DERIVATIONS = (  # function, tables that it reads
     (_with_material, {"contact", "post"}),
+    (_with_approach, {"contact"}),
     (_with_grade, {"fluid", "heat"}),
     (_with_oil, {"fluid", "heat"}),
 )

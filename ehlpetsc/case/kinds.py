@@ -43,6 +43,25 @@ def given_by_gears(data: Tables) -> list[Fault]:
     return faults
 
 
+def approach_faults(data: Tables) -> list[Fault]:
+    """Faults of an approach in another contact than a point's, and of loads beside it."""
+    contact = data.get("contact")
+    if not isinstance(contact, dict) or "approach" not in contact:
+        return []
+    beside = ["contact.load"] * ("load" in contact) + [
+        f"[{name}]" for name in ("operation", "gears") if name in data
+    ]
+    if "radius" in contact and not is_point(data):
+        reason = (
+            "of point contacts, and one radius is of a line or a strip; allowed: two radii, or contact.load"
+        )
+    elif beside:
+        reason = f"in place of the load, which {' and '.join(beside)} would give; leave out one of both"
+    else:
+        return []
+    return [Fault("contact.approach", f"contact.approach = {show(contact['approach'])}: {reason}")]
+
+
 def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
     """Faults of keys that a line contact, or a plane, does not have; `surfaces` by side."""
     return FAULTS[case.kind](case, data, surfaces)

@@ -23,7 +23,7 @@ from ehlpetsc.case.derived import (
     with_derived,
     with_layer_stiffness,
 )
-from ehlpetsc.case.kinds import LINE, faults_of_kind, given_by_gears
+from ehlpetsc.case.kinds import LINE, approach_faults, faults_of_kind, given_by_gears
 from ehlpetsc.case.messages import shortened, show
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES, file_digests
@@ -152,7 +152,7 @@ def _checked(
     if isinstance(heat, dict) and heat.get("bulk_temperature") == "losses":
         return _checked_with_losses(folder, data, known)
     faults, conditions = [], None
-    if wrong := given_by_gears(data):
+    if wrong := approach_faults(data) or given_by_gears(data):
         return None, wrong
     unsound = unsound_tables(data, known)
     data = with_derived(data, unsound)

@@ -1,6 +1,6 @@
-r"""The border of the system: the unknown of the whole contact, the approach h00, and its equation.
+r"""The border of the system: the unknown of the whole contact, h00, and its equation.
 
-.. math:: h=h_{00}+g+D\,p,\qquad\sum p\,\Delta A=W.
+.. math:: h=h_{00}+g+D\,p,\qquad\sum p\,\Delta A=W\quad\mathrm{or}\quad h_{00}=-\delta.
 
 The last rank owns both, behind the unknowns and the rows of its nodes. In units of the scales: h00 in a^2/R,
 the load in p0 times the unit of the grid's cell.
@@ -8,11 +8,16 @@ the load in p0 times the unit of the grid's cell.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
 
 
 class Load:
@@ -61,3 +66,37 @@ class Load:
     def error(self, h00: float, load: float, conditions: Conditions) -> float:
         """Relative error of the equation; load in N or N/m."""
         return abs(load / conditions.load - 1.0)
+
+
+class Approach(Load):
+    """Given rigid-body approach of a point contact; its load follows.
+
+    `approach`: of the case [m].
+    """
+
+    equation = "approach"
+
+    def __init__(self, scales: Scales, approach: float):
+        super().__init__(scales)
+        self.approach = approach / scales.h
+
+    def residual(self, h00: float, load: float, inputs: StepInputs) -> float:
+        """Row of the equation: a fraction of the load is that of a smaller approach."""
+        return h00 + self.approach * self.share(inputs) ** self.scales.grid.growth
+
+    def product(self, h00: float, load: float) -> float:
+        """See :class:`Load`."""
+        return h00
+
+    def change(self, row: float, load: float, by_unit: float) -> float:
+        """See :class:`Load`."""
+        return row
+
+    def error(self, h00: float, load: float, conditions: Conditions) -> float:
+        """See :class:`Load`."""
+        return abs(h00 / self.approach + 1.0)
+
+
+def balance_of(case: Case, scales: Scales) -> Load:
+    """Border of a case."""
+    return Load(scales) if case.contact.approach is None else Approach(scales, case.contact.approach)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.discretisation.balance import Load
+from ehlpetsc.discretisation.balance import balance_of
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
@@ -120,7 +120,7 @@ class EHLProblem:
         self.fluid, self.boundary_friction = case.fluid, case.contact.boundary_friction
         self.film_scale, self.model = film_scale, model
         self.deflection, self.reynolds = deflection, reynolds
-        self.balance = Load(scales)
+        self.balance = balance_of(case, scales)
         self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:

@@ -39,6 +39,14 @@ def hertz_line(load: float, radius: float, modulus: float) -> tuple[float, float
     return a, 2.0 * load / (math.pi * a)
 
 
+def hertz_load(approach: float, radius_x: float, radius_y: float, modulus: float) -> float:
+    r"""Load [N] of the dry smooth point contact of an approach [m], :math:`F\propto\delta^{3/2}`.
+
+    Other parameters as of :func:`hertz_ellipse`.
+    """
+    return (approach / hertz_ellipse(1.0, radius_x, radius_y, modulus).approach) ** 1.5
+
+
 def hertz_pressure(x: np.ndarray, a: float, p0: float) -> np.ndarray:
     r"""Pressure of a dry smooth cylinder, :math:`p_0\sqrt{1-(x/a)^2}`, 0 outside (Johnson 1985, eq. 4.44).
 

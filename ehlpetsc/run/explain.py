@@ -142,8 +142,10 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
 
 def _dry(case: Case, s: Scales) -> list[str]:
     """Radii, load and the dry contact."""
-    load = f"load {s.load:g} {load_unit(case)}, reduced modulus {s.E / 1e9:.4f} GPa"
-    return KINDS[case.kind].dry(s, load)
+    approach, load = case.contact.approach, f"load {s.load:g} {load_unit(case)}"
+    if approach is not None:
+        load = f"approach {1e6 * approach:g} um, dry {load}"
+    return KINDS[case.kind].dry(s, f"{load}, reduced modulus {s.E / 1e9:.4f} GPa")
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:

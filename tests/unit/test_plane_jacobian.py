@@ -37,6 +37,7 @@ SCENES = {
     "direct": {"contact.model": "direct", "contact.boundary_film": None, "contact.minimum_film": 1e-9},
     "dry": {"fluid": None, "motion": None},
     "strip": STRIP | EYRING,
+    "approach": {"contact.load": None, "contact.approach": 2e-6},
 }
 
 

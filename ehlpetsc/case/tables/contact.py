@@ -58,7 +58,13 @@ KEYS = {
         "of a point contact its load [N]",
         *("N/m", 1e-3, 1e10),
         point_unit="N",
-        replaced_by=CONDITIONS,
+        replaced_by=(*CONDITIONS, "approach"),
+    ),
+    "approach": Key(
+        "of a point contact in place of its load: rigid-body approach `delta` from the first touch of the "
+        "smooth bodies; `a` and `p0` are those of the dry contact with this approach",
+        *("m", 1e-9, 1e-2),
+        equation="`h00 = -delta` in place of the balance of the load",
     ),
     "material": Key("steel: elastic, fatigue and yield constants", choices=tuple(STEELS), many="both"),
     "youngs_modulus": Required(
