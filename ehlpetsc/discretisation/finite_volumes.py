@@ -4,11 +4,13 @@ The Couette flux and the storage are second-order upwind (BDF2 in time), both by
 :func:`positive_extrapolation`: second order where the film is resolved, and never
 a negative outflow, so that no node is emptied by the scheme itself.
 
-The pressure flow through a face is that of the film at the face, the mean of both nodes', with the mean of
-both nodes' fluidities :math:`\rho/\eta` (and S): a node without film then does not drain at the rate of its
-thick neighbour. The viscosities stay the nodes': with the one at the mean pressure, the flow out of a node
-would fall again when its pressure exceeds its neighbour's by more than about 2/alpha: a fold, at which
-Newton's method cycles, and which asperities two nodes wide reach.
+The pressure flow through a face is the exact one between its nodes of a film that is linear between them,
+:func:`face_film`, and of a fluidity :math:`\rho/\eta` (and S) that is exponential in the pressure,
+:func:`face_mean`. A closed node then lets nothing through, and the flow is a difference of reduced pressures,
+monotone in both: with the viscosity at the mean pressure, the flow out of a node would fall again when its
+pressure exceeds its neighbour's by more than about 2/alpha, a fold at which Newton's method cycles.
+The paper's direct contact needs faces that leak, with the means of both films and of both fluidities: it
+closes a node by draining it.
 
 An oil may be thinned by other than its pressure: both nodes then have the fluidities at the mean of both
 nodes' thinning. With its own, a node can be the more fluid one although its pressure is higher, which is the
@@ -32,6 +34,8 @@ M, M_Q, M_H = 3, 4, 5  # mass per area rho h (1 - theta) in a^2/R, and its deriv
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 PROPERTIES = 10
+LEAST_SHARE = 1e-100  # of both fluidities of a face that the smaller one counts as at least
+SERIES_LIMIT = 0.02  # difference over sum of both, below which the logarithmic mean is a series
 # Of an oil that is thinned by other than its pressure, FLUIDITY and LN_ETA_P hold without that. THINNING is
 # the square root of the fluidity over that one, LN_THINNING_* the derivatives of its logarithm by p and h.
 THINNING, LN_THINNING_P, LN_THINNING_H = 10, 11, 12
@@ -109,20 +113,65 @@ def scaled(mobility: tuple, factor: float, by_film: float) -> tuple:
 
 
 @inlined
+def face_film(left: float, right: float, leaks: bool) -> tuple[float, float, float]:
+    r"""Film of a face between nodes with the films `left` and `right`, and its derivatives by both.
+
+    Of a film that is linear between the nodes a constant flow meets the resistance
+    :math:`\int h^{-3}dx`: :math:`h^3=2h_l^2h_r^2/(h_l+h_r)`. Of a face that leaks the mean.
+    """
+    if leaks:
+        return 0.5 * (left + right), 0.5, 0.5
+    if left <= 0.0 or right <= 0.0:
+        return 0.0, 0.0, 0.0
+    total = left + right
+    film = np.cbrt(2.0 * (left * right) ** 2 / total)
+    third = film / 3.0
+    return film, third * (2.0 / left - 1.0 / total), third * (2.0 / right - 1.0 / total)
+
+
+@inlined
+def face_mean(left: float, right: float, leaks: bool) -> tuple[float, float, float]:
+    r"""Mean of positive fluidities of both nodes of a face, and twice its derivatives by both.
+
+    The logarithmic mean :math:`(f_l-f_r)/\ln(f_l/f_r)` is the mean over the pressure of a fluidity that is
+    exponential in it, as in exponentially fitted schemes (Scharfetter & Gummel 1969): the flow of Barus' law
+    is exact. Of a face that leaks the arithmetic mean.
+    """
+    total = left + right
+    if leaks or total <= 0.0:
+        return 0.5 * total, 1.0, 1.0
+    least = LEAST_SHARE * total
+    a, b = max(left, least), max(right, least)
+    difference = (a - b) / total
+    if abs(difference) < SERIES_LIMIT:  # of the logarithm, to 1e-13
+        d2 = difference * difference
+        over = 1.0 / (1.0 + d2 * (1.0 / 3.0 + d2 * (1.0 / 5.0 + d2 / 7.0)))
+        slope = -difference * (2.0 / 3.0 + d2 * (4.0 / 5.0 + d2 * 6.0 / 7.0)) * over * over
+        by = slope * 2.0 / total
+        return 0.5 * total * over, over + by * b, over - by * a
+    ln_ratio = np.log(a / b)
+    mean = (a - b) / ln_ratio
+    by_left = 2.0 * (a - mean) / (a * ln_ratio) if left > least else 0.0
+    by_right = 2.0 * (mean - b) / (b * ln_ratio) if right > least else 0.0
+    return mean, by_left, by_right
+
+
+@inlined
 def face(at: np.ndarray, behind: int, left: int, right: int, table: np.ndarray, law: tuple) -> tuple:
     """State of the face between two nodes; parameters as of :func:`flux_through`.
 
     Returns the mass per area that the mean speed moves through it, with derivatives by that of `left` and of
-    `behind`; film [m]; pressure gradient [Pa/m]; stress of the shear law [Pa]; mobilities of both nodes.
+    `behind`; film [m] and its derivatives by those of both nodes; pressure gradient [Pa/m]; stress of the
+    shear law [Pa]; mobilities of both nodes.
     """
-    per_length, _, stress, stress_rise, sliding, _, layer = law
+    per_length, _, stress, stress_rise, sliding, _, layer, leaks = law
     drawn = positive_extrapolation(at[M, left], at[M, behind], 0.5 if behind != left else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
-    film = 0.5 * (at[H, left] + at[H, right])
+    films = face_film(at[H, left], at[H, right], leaks)
     if stress_rise != 0.0:
         stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
-    gap = film, gradient, stress, sliding, layer
-    return drawn, film, gradient, stress, face_mobilities(at, left, right, table, gap)
+    gap = films[0], gradient, stress, sliding, layer
+    return drawn, films, gradient, stress, face_mobilities(at, left, right, table, gap)
 
 
 @compiled
@@ -141,24 +190,25 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
     law
         p0 over the spacing [Pa/m]; a^2/R [m]; stress of the shear law without pressure, infinite: Newtonian,
         its rise over p0 [Pa]; |u1 - u2| [m/s]; entrainment speed over that of the scales; rms height of the
-        compliant layer [m], 0 without one.
+        compliant layer [m], 0 without one; whether the face leaks.
     """
-    per_length, per_film, _, stress_rise, _, entrainment, _ = law
-    drawn, _, gradient, stress, (mobility_l, mobility_r) = face(at, behind, left, right, table, law)
+    per_length, per_film, _, stress_rise, _, entrainment, _, leaks = law
+    drawn, films, gradient, stress, (mobility_l, mobility_r) = face(at, behind, left, right, table, law)
     couette, by_left, by_behind = drawn
-    rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
-    mean = 0.5 * (rho_l * mobility_l[0] + rho_r * mobility_r[0])
-    by_film = half * 0.5 * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
+    half, flows = 0.5 * gradient, (at[RHO, left] * mobility_l[0], at[RHO, right] * mobility_r[0])
+    mean, weight_l, weight_r = face_mean(*flows, leaks)
+    rho_l, rho_r = weight_l * at[RHO, left], weight_r * at[RHO, right]
+    by_film = half * per_film * (rho_l * mobility_l[1] + rho_r * mobility_r[1])
     by_difference = (mean + half * (rho_l * mobility_l[2] + rho_r * mobility_r[2])) * per_length
-    by_state_l = at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
-    by_state_r = at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
+    by_state_l = weight_l * at[RHO_P, left] * mobility_l[0] + at[LN_ETA_P, left] * rho_l * mobility_l[3]
+    by_state_r = weight_r * at[RHO_P, right] * mobility_r[0] + at[LN_ETA_P, right] * rho_r * mobility_r[3]
     by_p_l, by_p_r = half * by_state_l - by_difference, half * by_state_r + by_difference
     if stress_rise != 0.0:
         by_stress = rho_l * (mobility_l[0] + mobility_l[3] + gradient * mobility_l[2])
         by_stress += rho_r * (mobility_r[0] + mobility_r[3] + gradient * mobility_r[2])
         by_stress *= -0.5 * half * stress_rise / stress
         by_p_l, by_p_r = by_p_l + by_stress, by_p_r + by_stress
-    by_film_l = by_film_r = by_film
+    by_film_l, by_film_r = by_film * films[1], by_film * films[2]
     if at.shape[0] > PROPERTIES:
         by_thinning = -half * (rho_l * mobility_l[3] + rho_r * mobility_r[3])
         by_p_l, by_p_r = (

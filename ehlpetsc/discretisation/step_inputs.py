@@ -118,18 +118,29 @@ Watch = Callable[[], object] | None  # called in every iteration; an exception t
 
 
 class FilmHistory:
-    r"""Masses per area of the film at the previous time levels, for BDF2.
+    r"""Masses per area of the film at the previous time levels, carried to the new one, for BDF2.
 
-    `m`, `m_older`: :math:`\rho h(1-\theta)` one and two steps ago, shape (nx,).
+    `m`, `m_older`: :math:`\rho h(1-\theta)` one and two steps ago where the film that is now at each node
+        was then, see :mod:`.transport`, shape (nx,).
     `dt`, `dt_older`: current and previous time step, in units of a/u; `dt_older` None starts with backward
         Euler.
+    `moved`: distance of the film in the step, in nodes. `before`: mass one step ago at the nodes themselves.
 
     `k`: factor of the extrapolation from the two levels of the current step.
     `extrapolated`: extrapolation from the two older levels, shape (nx,).
     """
 
-    def __init__(self, m: np.ndarray, m_older: np.ndarray, dt: float, dt_older: float | None = None):
+    def __init__(
+        self,
+        m: np.ndarray,
+        m_older: np.ndarray,
+        dt: float,
+        dt_older: float | None = None,
+        moved: float = 0.0,
+        before: np.ndarray | None = None,
+    ):
         self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
+        self.moved, self.before = moved, m if before is None else before
         self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
         self.extrapolated = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
 
@@ -146,6 +157,7 @@ class StepInputs:
     `load_share`: applied fraction of the load of `conditions`.
     `dt`: length of the step [s]; None: steady.
     `contact`: contact model of the solve; None: that of the problem.
+    `leaks`: whether faces leak although those of the contact do not, of a first solution to start from.
     `boundary_friction`: coefficient of friction between the solids.
     """
 
@@ -157,6 +169,7 @@ class StepInputs:
     load_share: float = 1.0
     dt: float | None = None
     contact: ContactModel | None = None
+    leaks: bool = False
     boundary_friction: float | np.ndarray = 0.0
 
     @property
@@ -190,7 +203,9 @@ def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, f
     flow, now = inputs.flow, inputs.conditions
     stress = np.inf if flow.kind == NEWTON else flow.stress
     rise = scales.p0 * stress_pressure(inputs.fluid)
-    return stress, stress * rise if rise else 0.0, abs(now.sliding), now.entrainment / scales.u
+    # in a time step the mean speed carries the history along, see :mod:`.transport`
+    moved = 0.0 if inputs.history else now.entrainment / scales.u
+    return stress, stress * rise if rise else 0.0, abs(now.sliding), moved
 
 
 def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndarray, ...]:

@@ -46,6 +46,11 @@ class Conditions(NamedTuple):
         """Sliding speed u1 - u2 [m/s]."""
         return self.u1 - self.u2
 
+    @property
+    def step_speed(self) -> float:
+        """Speed by which time steps count [m/s]: of the film, or of either surface past it."""
+        return max(abs(self.entrainment), 0.5 * abs(self.sliding))
+
 
 @dataclass(frozen=True)
 class ConstantOperation:

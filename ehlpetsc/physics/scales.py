@@ -52,7 +52,7 @@ class Scales:
     moes_m, moes_l
         Moes' M and L; None in a dry case.
     dt
-        Time step [s], courant dx / u_max; None in a steady case.
+        Time step [s], courant dx / max(u, |u1 - u2|/2); None in a steady case.
     duration
         Time in which the faster surface covers the travel [s]; None in a steady case.
     """
@@ -135,8 +135,9 @@ class Scales:
             )
         dx = a / mesh.points_per_half_width
         if case.time:
-            u_max = max(abs(u1), abs(u2))
-            dt, duration = case.time.courant * dx / u_max, case.time.travel * a / u_max
+            now = Conditions(contact.load, contact.radius, u1, u2)
+            dt = case.time.courant * dx / now.step_speed
+            duration = case.time.travel * a / max(abs(u1), abs(u2))
         return cls(
             geometry=geometry,
             grid=geometry.grid(contact, mesh, dry),

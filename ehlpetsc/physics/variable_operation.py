@@ -22,8 +22,8 @@ MIN_SAMPLES = 4096  # points at which a table is evaluated for time steps and ex
 END_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
 MIN_ENTRAINMENT_RATIO = 1e-3  # of the faster surface's speed: smaller entrainment speeds are no scale
 SPEED_ROUNDING = 1e-12  # of the maximum speed: less is rest or rolling, where solids have no friction
-MAX_SPEED_CHANGE = 0.04  # in a time step, of the maximum speed, for a Courant number of 1
-MIN_STEPS = 25  # of a table in which nothing moves for some time, for a Courant number of 1
+MAX_SPEED_CHANGE = 0.02  # in a time step, of the maximum speed, for a Courant number of 1
+MIN_STEPS = 50  # of a table in which nothing moves for some time, for a Courant number of 1
 
 
 class ConditionsTable(NamedTuple):
@@ -64,6 +64,11 @@ class ConditionsTable(NamedTuple):
     def entrainment(self) -> np.ndarray:
         """Entrainment speed [m/s]."""
         return 0.5 * (self.u1 + self.u2)
+
+    @property
+    def step_speed(self) -> np.ndarray:
+        """Speed by which time steps count [m/s], as :attr:`.operation.Conditions.step_speed`."""
+        return np.maximum(np.abs(self.entrainment), 0.5 * np.abs(self.u1 - self.u2))
 
     def sampled(self) -> ConditionsTable:
         """Same conditions at `MIN_SAMPLES` points or more, including the points of the table."""
@@ -256,7 +261,7 @@ class VariableOperation:
         cell = self.courant * self.dx
         with np.errstate(over="ignore"):
             rates = [
-                fine.speed / cell,  # steps per second: the faster surface moves by the Courant number a step
+                fine.step_speed / cell,  # steps per second: the film moves by the Courant number a step
                 # and so do the edges of the Hertz contact
                 0.5
                 * self.growth
@@ -271,7 +276,10 @@ class VariableOperation:
         steps = cumulative(rate, fine.time)
         multiple = 4 if self.is_reversing else 1  # equal time levels in both strokes
         count = multiple * max(int(np.ceil(steps[-1] * (1.0 - 1e-12) / multiple)), 1)
-        return np.interp(np.linspace(0.0, steps[-1], count + 1), steps, fine.time)
+        if self.is_reversing or self.table.repeat > 1:
+            return np.interp(np.linspace(0.0, steps[-1], count + 1), steps, fine.time)
+        # whole nodes a step, except for the last one
+        return np.interp(np.minimum(np.arange(count + 1), steps[-1]), steps, fine.time)
 
     def step_count(self, nominal: float) -> int:
         """Number of time steps of the whole run."""

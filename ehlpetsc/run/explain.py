@@ -42,6 +42,11 @@ RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
     "(mesh.width), touch on 0.7 of the dry area and carry more of the load in mixed lubrication"
 )
+NODES_OF_FILM, NODES_OF_FRICTION, NODES_OF_SHARE = (
+    8,
+    16,
+    32,
+)  # to the shortest wave, tests/benchmarks/ACCURACY.md
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
@@ -135,9 +140,32 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
         surface_lines(case, scales, rough),
         KINDS[case.kind].lay * bool(rough),
         _size(case, scales, rough),
+        _resolution(case, scales),
         [f"Warning: {line}" for line in warnings(case, scales, rough)],
     ]
     return "\n".join(line for section in sections for line in section)
+
+
+def _resolution(case: Case, s: Scales) -> list[str]:
+    """Nodes to the shortest wave of each surface, and the error to expect; [] where a wave is not given."""
+    lines = []
+    for number, body in enumerate((case.surface.body_1, case.surface.body_2), 1):
+        made = getattr(body, "synthetic", None)
+        waves = [getattr(body, "short_cutoff", None)]
+        waves += [getattr(made, key, None) for key in ("short_cutoff", "wavelength")] if made else []
+        shortest = min((wave for wave in waves if wave), default=None)
+        if shortest is not None:
+            lines.append(
+                f"Waves of surface {number}: {shortest / s.dx:.3g} nodes to the shortest one, "
+                f"{1e6 * shortest:.4g} um; "
+            )
+    if not lines:
+        return []
+    lines[-1] += (
+        f"{NODES_OF_FILM} are enough for films and pressures, {NODES_OF_FRICTION} for 5 % in the friction of "
+        f"mixed contact, {NODES_OF_SHARE} for the load on the solids"
+    )
+    return [line.rstrip("; ") for line in lines]
 
 
 def _dry(case: Case, s: Scales) -> list[str]:

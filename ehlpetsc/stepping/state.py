@@ -33,7 +33,8 @@ class State:
     solution
         Solution of the step; None after a restart.
     m, m_older
-        Masses per area of the film at this level and the previous one (None: no such level).
+        Masses per area of the film at this level and the previous one (None: no such level; before a steady
+        start the same).
     time, dt
         [s]; `dt` is the step to this level (None at the start).
     step

@@ -35,6 +35,7 @@ from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start,
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
 LOAD_GROWTH = 1.2  # factor from one load to the next
+QUICK_ITERATIONS = 15  # after which a start that yields is tried otherwise
 MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 NEAR = 30  # iterations from the solution on a coarser mesh, which is near or of no use
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
@@ -78,11 +79,18 @@ def yielding_start(
     films need smoothed edges of the flat pressure; thin films far above the yield pressure do not. For thick
     films the load is increased from the onset of yielding.
     """
-    problem, attempt = solver.problem, SolveAttempts(solver, watch=watch)
+    problem, quick = solver.problem, SolveAttempts(solver, QUICK_ITERATIONS, watch)
     for width in (SMOOTHING, 0.0):
-        solution = attempt(bounded_start(problem, film, inputs, width), inputs)
+        solution = quick(bounded_start(problem, film, inputs, width), inputs)
         if solution is not None:
-            return solution, attempt.spent
+            return solution, quick.spent
+    attempt = SolveAttempts(solver, watch=watch, spent=quick.spent)
+    # where faces leak the film behind the flat pressure depends less on the mesh, and is near the solution
+    solution = attempt(bounded_start(problem, film, inputs, SMOOTHING), replace(inputs, leaks=True))
+    if solution is not None:
+        solution = attempt(solution, inputs)
+    if solution is not None:
+        return solution, attempt.spent
     load, reached = FIRST_LOAD_RATIO * problem.model.yield_pressure**2, 0.0
     solution = hertz_start(problem, film, replace(inputs, load_share=load))
     while reached < 1.0:
@@ -102,9 +110,9 @@ class SolveAttempts:
     `spent`: Newton iterations, failed attempts included. `failure`: last failure.
     """
 
-    def __init__(self, solver: Solver, max_it: int | None = None, watch: Watch = None):
+    def __init__(self, solver: Solver, max_it: int | None = None, watch: Watch = None, spent: int = 0):
         self.solver, self.watch, self.max_it = solver, watch, solver.start_iterations(max_it)
-        self.made, self.spent = 0, 0
+        self.made, self.spent = 0, spent
         self.failure: SolveFailed | None = None
 
     def __call__(self, begin: Unknowns, inputs: StepInputs) -> Unknowns | None:

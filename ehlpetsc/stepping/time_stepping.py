@@ -13,6 +13,7 @@ import numpy as np
 from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrored
+from ehlpetsc.discretisation.transport import carried
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.nonlinear import events
@@ -21,6 +22,7 @@ from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
 from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 
+SPEED_ROUNDING = 1e-9  # of the scales' speed: a slower film is at rest
 RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
 MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
@@ -40,7 +42,7 @@ def next_step(dt: float | None, retries: int, nominal: float, left: float) -> fl
     The size does not increase directly after a halved step, because a longer step would mostly fail too.
 
     `dt`: last step [s]; None at the start. `retries`: number of times that the last step was halved.
-    `nominal`: nominal step, courant dx / u_max [s]. `left`: time to the next time level [s].
+    `nominal`: nominal step [s]. `left`: time to the next time level [s].
     """
     longest = nominal
     if dt is not None and NEARLY_NOMINAL * dt < nominal:
@@ -97,7 +99,7 @@ class TimeStepping:
         solved, newton = self._inlet_first(
             inputs, guess, lambda i, begin: steady(self.solver, self.film, i, watch, begin)
         )
-        state = self._state(solved, self._step_end(), records, newton=newton)
+        state = self._state(solved, self._step_end(), records, newton=newton, m_older=solved.mass)
         return self._settled(state, inputs, records, watch)
 
     def _settled(self, state: State, inputs: StepInputs, before: dict, watch: Watch) -> State:
@@ -117,7 +119,7 @@ class TimeStepping:
             except SolveFailed as error:
                 raise NoSteadyStart(error) from error
             newton += iterations
-            state = self._state(solved, end, before, newton=newton)
+            state = self._state(solved, end, before, newton=newton, m_older=solved.mass)
         raise NoSteadyStart(f"{MAX_STEADY_SOLUTIONS} solutions in turn with the effects")
 
     def _solve_step(
@@ -133,8 +135,14 @@ class TimeStepping:
         guess: Unknowns | None,
         solve: Callable[[StepInputs, Unknowns | None], tuple[Unknowns, int]],
     ) -> tuple[Solution, int]:
-        """Solution and iterations with the inlet at the first node: mirrored if entrainment is negative."""
-        if inputs.conditions.entrainment >= 0.0:
+        """Solution and iterations with the inlet at the first node: mirrored if entrainment is negative.
+
+        At rest the inlet is where the film last came from.
+        """
+        direction = inputs.conditions.entrainment
+        if abs(direction) < SPEED_ROUNDING * self.scales.u and inputs.history is not None:
+            direction = inputs.history.moved
+        if direction >= 0.0:
             unknowns, iterations = solve(inputs, guess)
             residual = self.solver.residual().reynolds
         else:
@@ -195,16 +203,28 @@ class TimeStepping:
 
     def inputs(self, state: State, dt: float) -> tuple[Step, StepInputs]:
         """Step of `dt` [s] from a state, and the inputs of its solve."""
-        history = None
-        if self.problem.fluid is not None:
-            unit = self.scales.u / self.scales.a
-            older = None if state.dt is None else state.dt * unit
-            history = FilmHistory(state.m, state.m_older, dt * unit, older)
+        history = None if self.problem.fluid is None else self.history(state, dt)
         step = self._step_end(state, dt)
         inputs = self._with_effects(self._inputs_of(step, history), state.records, step)
         if step.time < 0.0:
             inputs = replace(inputs, phi=self._roughness_ramp(step.time) * inputs.phi)
         return step, inputs
+
+    def history(self, state: State, dt: float) -> FilmHistory:
+        """Masses of the film at the level of a state and before, carried along over a step of `dt` [s]."""
+        rows, unit = self.problem.grid.rows, self.scales.u / self.scales.a
+        moved = self._nodes_moved(state.time, dt)
+        m = carried(rows(state.m), moved).ravel()
+        if state.m_older is None:
+            return FilmHistory(m, None, dt * unit, None, moved, state.m)
+        dt_older = state.dt or dt  # before a steady start the film was as it is
+        before = moved + self._nodes_moved(state.time - dt_older, dt_older)
+        m_older = carried(rows(state.m_older), before).ravel()
+        return FilmHistory(m, m_older, dt * unit, dt_older * unit, moved, state.m)
+
+    def _nodes_moved(self, time: float, dt: float) -> float:
+        """Distance of the film from a time [s] on in a step of `dt` [s], in nodes."""
+        return 0.5 * sum(self.operation.displacement(time, dt)) / self.scales.dx
 
     def _state(self, solution: Solution, end: Step, records: dict, **entries: Any) -> State:
         accepted = {e.name: e.accept(records[e.name], solution, end) for e in self.effects}
@@ -236,8 +256,8 @@ class TimeStepping:
             return
         self._is_prepared = True
         q, w = self.baseline
-        m, unit = self.problem.mass_per_area(q, w), self.scales.u / self.scales.a
-        history = FilmHistory(m, m, dt * unit, dt * unit)
+        m = self.problem.mass_per_area(q, w)
+        history = self.history(State(Unknowns(q, w, 0.0), m=m, m_older=m, dt=dt), dt)
         self.solver.prepare(Unknowns(q, w, 0.0), self.problem.inputs(history=history, dt=dt))
 
     def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:

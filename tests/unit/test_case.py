@@ -80,7 +80,7 @@ def test_values_are_read_as_written():
     assert c.contact.youngs_modulus == (207e9, 207e9)
     assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
     assert c.surface.body_1.scale == 0.5
-    assert (c.time.travel, c.time.courant) == (6.0, 0.5)
+    assert (c.time.travel, c.time.courant) == (6.0, 1.0)
 
 
 def test_overrides_replace_values_and_no_override_keeps_the_text():

@@ -16,7 +16,7 @@ from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.writer import Layout, ResultWriter
 from ehlpetsc.run.solve import Run
 
-RIDGE = {"mesh.inlet": -1.3, "mesh.points_per_half_width": 20, "time.travel": 0.3}
+RIDGE = {"mesh.inlet": -1.3, "mesh.points_per_half_width": 20, "time.travel": 0.3, "time.courant": 0.445}
 STEPS = 12
 
 

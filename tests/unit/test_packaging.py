@@ -60,7 +60,7 @@ def test_wheel_contains_the_package_only(wheel):
         about = {Path(name).name for name in archive.namelist()} - {Path(name).name for name in names}
     assert names == modules
     assert about <= {"METADATA", "WHEEL", "RECORD", "LICENSE", "entry_points.txt", "top_level.txt"}
-    assert wheel.stat().st_size < 600_000
+    assert wheel.stat().st_size < 650_000
 
 
 def test_petsc_and_mpi_are_requirements_of_the_solver_extra_only(wheel):

@@ -63,10 +63,11 @@ def test_speeds_of_both_surfaces(xi, u1, u2):
 
 def test_time_step_and_duration_follow_the_faster_surface():
     s = scales("table1_rough.toml")
-    assert s.dt * s.u1 == pytest.approx(0.5 * s.a / 200)
+    assert s.dt * s.u == pytest.approx(s.a / 200)
     assert s.duration * s.u1 == pytest.approx(6 * s.a)
     backwards = scales("table1_rough.toml", "motion.slide_roll_ratio=-4")
-    assert backwards.dt * abs(backwards.u2) == pytest.approx(0.5 * s.a / 200)
+    # surfaces that move against each other pass the film faster than it moves
+    assert 0.5 * backwards.dt * (backwards.u2 - backwards.u1) == pytest.approx(s.a / 200)
     operation = ConstantOperation(Conditions(s.load, s.R, backwards.u1, backwards.u2), 6 * s.a)
     assert operation.duration == operation.remaining(0.0, (0.0, 0.0)) == 6 * s.a / abs(backwards.u2)
 

@@ -251,6 +251,7 @@ def test_profiles_beside_each_other_are_no_map(tmp_path):
 def test_the_command_reads_a_map_with_its_positions(tmp_path, capsys):
     (tmp_path / "map.txt").write_text("Z unit: um\n" + matrix("y\\x [mm]", MM * X, MM * Y))
     assert main([str(tmp_path / "map.txt"), "--no-picture", "--set", "level=false"]) == 0
-    size, *_, sq = capsys.readouterr().out.partition("\nSsk")[0].splitlines()
+    size, *rest = capsys.readouterr().out.splitlines()
+    sq = next(line for line in rest if line.startswith("Sq "))
     assert size.endswith("map.txt: 0.0575 x 0.06 mm, 24 x 16 points 2.5 um and 4 um apart")
     assert float(sq.split()[1]) == pytest.approx(UM * Z.std(), abs=1e-4)

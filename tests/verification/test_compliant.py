@@ -73,7 +73,7 @@ def test_rough_contacts_converge_at_every_speed(speed):
 
 
 NODE_A_STEP = {"time.courant": 1.0}
-LIMITS = 0.07625, 0.7624  # friction and share of the load of stribeck.toml at 0.05 m/s
+LIMITS = 0.07629, 0.7628  # friction and share of the load of stribeck.toml at 0.05 m/s
 SMOOTHED = {  # waves down to 100 um and a layer of 60 nm: what a/25 resolves
     "surface.1.short_cutoff": 100e-6,
     "surface.2.short_cutoff": 100e-6,
@@ -109,10 +109,7 @@ def test_share_friction_and_lengths_converge():
 
 @pytest.mark.slow
 def test_stribeck_case_converges_with_its_default_layer():
-    """Measured height, default stiffness, 0.05 m/s, on a/40 to a/160.
-
-    Limits from a/50 to a/200, half a node a step.
-    """
+    """Measured height, default stiffness, 0.05 m/s, on a/40 to a/160; limits by extrapolation."""
     scene, errors = NODE_A_STEP | {"motion.entrainment_speed": 0.05, "series": None}, []
     for points in (40, 80, 160):
         mesh = {"mesh.points_per_half_width": points}
@@ -142,15 +139,14 @@ def test_steady_contacts_converge_with_the_default_stiffness(speed):
 
 
 def test_a_thin_layer_tends_to_rigid_contact():
-    """A layer of vanishing height carries at a film of zero, rigid contact at 0.1 nm; on a/50 as on a/32."""
-    given = {"mesh.points_per_half_width": 32, "time.travel": 3.0, "motion.entrainment_speed": 1.0}
-    given = RESOLVED | NODE_A_STEP | given
-    *_, last = ehlpetsc.Simulation(
+    """A layer of vanishing height carries at a film of zero, rigid contact at 0.1 nm; slow, smooth."""
+    given = SMOOTH | {"motion.entrainment_speed": 1e-3}
+    last = ehlpetsc.Simulation(
         load(CASES / "resolved_mixed.toml", given | {"contact.boundary_film": 1e-10})
-    )
+    ).advance()
     apart = []
     for sigma in (4e-9, 1e-9, 2.5e-10):
-        *_, state = ehlpetsc.Simulation(case(given, sigma=sigma))
+        state = ehlpetsc.Simulation(case(given, sigma=sigma)).advance()
         apart.append(abs(state.pressure - last.pressure).mean() / last.pressure.mean())
     assert apart[0] > apart[1] > apart[2]
     assert apart[2] < 0.01

@@ -92,7 +92,8 @@ def test_a_steady_solution_stays_as_it_is_in_time():
     np.testing.assert_allclose(end.temperature_2, begin.temperature_2, atol=0.05)
     assert max(state.scalars["heat_error"] for state in states) < 1e-9
     before, after = (state.dimensionless.records["heat"] for state in states[-2:])
-    np.testing.assert_allclose(after.rate * simulation.scales.dt, after.film - before.film, atol=1e-9)
+    upstream = np.append(BULK, before.film[:-1])  # a node a step
+    np.testing.assert_allclose(after.rate * simulation.scales.dt, after.film - upstream, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["table1_rough.toml", "table1_mixed.toml", "table1_damage.toml"])
@@ -213,7 +214,8 @@ def surface_rise(simulation, fluxes, times, speed):
 
 @pytest.mark.parametrize("name", ["table1_damage.toml", "table1_mixed.toml"])
 def test_surface_temperatures_by_quadrature_of_the_fluxes(name):
-    keys = ["mesh.points_per_half_width=64", "mesh.inlet=-1.4", "mesh.outlet=1.3", "time.travel=2.0"]
+    keys = ["mesh.points_per_half_width=64", "mesh.inlet=-1.4", "mesh.outlet=1.3", "time.travel=2.4"]
+    keys.append("time.courant=0.5")
     simulation, states = solved(name, HEAT, *keys)
     s, before = simulation.scales, 300  # steps of the steady flux at the start
     times = [state.time for state in states]

@@ -26,7 +26,7 @@ def test_solids_and_film_are_complementary_to_the_bit(rough):
     simulation, states = rough
     bound = simulation.case.contact.boundary_film
     touching = sum(int(s.in_contact.sum()) for s in states)
-    assert touching > 500
+    assert touching > 200
     for state in states:
         over = state.film_thickness - simulation.stepper.solver.bound * simulation.scales.h
         assert state.film_thickness.min() >= bound * (1.0 - 1e-15)
@@ -50,27 +50,19 @@ def test_no_step_is_halved(rough):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name, overrides",
-    [
-        ("ridge.toml", ("mesh.points_per_half_width=60", "mesh.inlet=-1.5")),
-        ("waviness.toml", ("mesh.points_per_half_width=50",)),
-        ("table1_rough.toml", ("fluid.viscosity=0.02", "mesh.points_per_half_width=60", "mesh.inlet=-1.3")),
-    ],
-)
-def test_in_full_film_both_models_give_the_same(name, overrides):
-    tight, brief = {"snes_atol": "1e-10"}, ("time.travel=1.5", "time.courant=1.0")
-    direct, mixed = (
-        list(Simulation(load(CASES / name, [*overrides, *brief, *model]), options=tight))
-        for model in ((), (MIXED,))
-    )
-    assert len(direct) == len(mixed) > 30
-    for one, other in zip(direct, mixed, strict=True):
-        assert not one.in_contact.any() and not other.in_contact.any()
-        np.testing.assert_allclose(other.pressure, one.pressure, rtol=0, atol=1e-9 * one.pressure.max())
-        np.testing.assert_allclose(
-            other.film_thickness, one.film_thickness, rtol=0, atol=1e-9 * one.film_thickness.max()
-        )
+@pytest.mark.parametrize("name", ["table1_smooth.toml", "waviness.toml"])
+def test_in_full_film_both_models_have_one_limit(name):
+    """Faces of direct contact leak, those of mixed contact do not: the films meet with the square of dx."""
+    apart = []
+    for points in (25, 50, 100):
+        keys = {"mesh.points_per_half_width": points, "mesh.inlet": -2.0, "surface": {}, "time": None}
+        direct = {"contact.model": "direct", "contact.boundary_film": None}
+        films = [
+            Simulation(load(CASES / name, keys | model)).advance().film_central
+            for model in (direct, {"contact.model": "mixed"})
+        ]
+        apart.append(films[1] / films[0] - 1.0)
+    assert 1.7 < np.log2(apart[1] / apart[2]) < 2.3 and 0.0 < apart[2] < 1e-2
 
 
 @pytest.mark.parametrize("speed", [5.0, 0.1, 0.01, 1e-3, 1e-4])
@@ -80,19 +72,21 @@ def test_smooth_starts_converge_in_every_regime(speed):
     )
     state = scene.start().state
     share = scene.problem.model.contact_pressure(state.w).sum() / state.p.sum()
-    assert (share == 0.0) if speed == 5.0 else (0.1 < share < 0.2) if speed == 0.1 else (share > 0.999)
+    assert (share == 0.0) if speed == 5.0 else (1e-5 < share < 1e-3) if speed == 0.1 else (share > 0.999)
 
 
 def flow(case, scales, state, left):
-    """Oil through the face right of node `left`, over rho0 u a^2/R: by the textbook's formulas, in SI units.
+    """Oil that the pressure drives through the face right of node `left`, over rho0 u a^2/R.
 
-    Conry, Wang & Cusano 1987 for the Eyring factor, with the film at the face and both nodes' viscosities.
+    By the textbook's formulas, in SI units: Conry, Wang & Cusano 1987 for the Eyring factor, with the film of
+    the face and the logarithmic mean of the fluidities with both nodes' viscosities.
     """
     fluid, at = case.fluid, [left, left + 1]
     p = np.maximum(state.q[at], 0.0) * scales.p0
-    void, film = np.maximum(-state.q, 0.0), state.h * scales.h
+    film = state.h * scales.h
     rho, eta = density(p, fluid)[0], fluid.viscosity * np.exp(viscosity(p, fluid)[0])
-    gradient, h = (p[1] - p[0]) / scales.dx, film[at].mean()
+    gradient = (p[1] - p[0]) / scales.dx
+    h = np.cbrt(2.0 * film[at].prod() ** 2 / film[at].sum())
     factor = np.ones(2)
     if fluid.eyring_stress:
         sigma = abs(h * gradient / (2.0 * fluid.eyring_stress)) + 1e-12
@@ -102,16 +96,19 @@ def flow(case, scales, state, left):
             rolling = 3.0 * (sigma * np.cosh(sigma) - np.sinh(sigma)) / sigma**3
             sliding = 3.0 * (sigma / np.tanh(sigma) - 1.0) / sigma**2
         factor = np.sqrt(rolling**2 + (zeta * sliding) ** 2)
-    pressure_flow = (rho * h**3 * factor / (12.0 * eta)).mean() * gradient
-    content = state.m[left] + (0.5 * (state.m[left] - state.m[left - 1]) if left else 0.0)
-    assert void[left] < 1.0
-    carried = max(content, 0.5 * state.m[left])
-    return carried - pressure_flow / (scales.u * scales.h)
+    one, other = rho * h**3 * factor / (12.0 * eta)
+    mean = (one - other) / np.log(one / other) if abs(one / other - 1.0) > 1e-4 else 0.5 * (one + other)
+    return -mean * gradient / (scales.u * scales.h)
+
+
+def carried(values):
+    """One node downstream; the value of the first node enters."""
+    return np.append(values[:1], values[:-1])
 
 
 def stored(state):
-    """Mass per area that BDF2 keeps with equal steps, at every node."""
-    return np.maximum(state.m + 0.5 * (state.m - state.m_older), 0.5 * state.m)
+    """Mass per area that BDF2 keeps with equal steps of a node, at every node."""
+    return np.maximum(state.m + 0.5 * (state.m - carried(state.m_older)), 0.5 * state.m)
 
 
 @pytest.mark.slow
@@ -126,11 +123,12 @@ def test_oil_inflow_minus_outflow_equals_storage(rough):
         if state.step < 2:  # the first step is of another order
             continue
         if begin is None:
-            begin = stored(state)
+            begin = last = stored(state)
             continue
-        count = scales.u * state.dt / scales.dx
-        inflow, outflow = flow(case, scales, state, 0), flow(case, scales, state, scales.nx - 2)
-        passed, gained = passed + count * inflow, gained + count * (inflow - outflow)
+        assert scales.u * state.dt == pytest.approx(scales.dx, rel=1e-9)  # all that a node holds moves on
+        inflow = last[0] + flow(case, scales, state, 0)
+        outflow = last[-2] + flow(case, scales, state, scales.nx - 2)
+        passed, gained, last = passed + inflow, gained + inflow - outflow, stored(state)
     change = (stored(state) - begin)[1:-1].sum()
     assert abs(change) > 1e-3 * passed
     assert abs(change - gained) < 1e-8 * passed
@@ -174,9 +172,8 @@ def test_pocket_between_two_contacts_conserves_its_oil(tmp_path):
             continue
         assert accepted.in_contact[right - 2 : right + 2].all()
         if contents:
-            leak += flow(case, scales, state, left - 2) - flow(case, scales, state, right - 2)
-            # the window moves on by a node: what enters it and what is left behind
-            leak += stored(state)[right - 1] - stored(state)[left - 1]
+            # the window moves on by a node, as what it holds
+            leak += flow(case, scales, state, left - 1) - flow(case, scales, state, right - 1)
         contents.append(stored(state)[left:right].sum())
         middle, width = (left + right) // 2, (right - left) // 2
         within, beyond = accepted.pressure[middle], accepted.pressure[[left - width, right + width]]

@@ -141,16 +141,17 @@ def test_half_strokes_of_oscillating_entrainment_mirror_each_other():
         "operation.time": np.arange(2 * n + 1) / (2 * n) * period,
         "operation.speed_1": speed,
         "operation.speed_2": 0.8 * speed,
-        "operation.repeat": 2,
+        "operation.repeat": 3,
         "mesh.points_per_half_width": 25,
         "mesh.inlet": -4.0,
         "mesh.outlet": 4.0,
         "time": None,
     }
-    simulation = Simulation(load(CASES / "table1_smooth.toml", table))
+    # nothing damps what the tolerance leaves in a film
+    simulation = Simulation(load(CASES / "table1_smooth.toml", table), options={"snes_atol": 1e-9})
     states = list(simulation)
-    steps = simulation.operation.step_count(None) // 2
-    assert len(states) == 2 * steps + 1 and steps % 4 == 0
+    steps = simulation.operation.step_count(None) // 3
+    assert len(states) == 3 * steps + 1 and steps % 4 == 0
     assert not any(state.retries for state in states)
     steady = states[0]  # begins with the largest speed
     last = states[-steps:]
@@ -193,7 +194,7 @@ def harmonic(quantity, steps):
 
 @pytest.mark.parametrize("quantity", ["load", "radius", "speed"])
 def test_second_order_in_time_under_harmonic_conditions(quantity):
-    solutions = [harmonic(quantity, steps) for steps in (40, 80, 160, 320)]
+    solutions = [harmonic(quantity, steps) for steps in (160, 320, 640, 1280)]
     for field in (0, 1):
         pairs = zip(solutions, solutions[1:], strict=False)
         differences = [np.sqrt(np.mean((one[field] - other[field]) ** 2)) for one, other in pairs]
@@ -248,7 +249,7 @@ def test_squeeze_film_of_an_approaching_cylinder():
 
 
 def test_stopped_gear_run_resumes_identically(tmp_path, capsys):
-    short = {"mesh.points_per_half_width": 25, "time.travel": 2.0, "output.every": 10}
+    short = {"mesh.points_per_half_width": 25, "time.travel": 2.0, "time.courant": 0.3, "output.every": 10}
     short |= {"gears.tip_relief": 52e-6, "gears.load_sharing": "tip-relief"}  # begins without load, after A
     case = load(CASES / "fzg.toml", short)
     whole = ehlpetsc.solve(case)

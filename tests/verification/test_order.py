@@ -22,7 +22,7 @@ import pytest
 from support.convergence import observed_order
 from support.driving import Scene
 
-COARSEST = 8  # points per half-width
+COARSEST = 16  # points per half-width
 WINDOW = (-1.0, 0.5)
 TRAVEL = 2.5  # half-widths, of the mean speed
 SCENE = (
@@ -69,8 +69,8 @@ def orders(solutions):
     "refinements",
     [
         pytest.param([(n, 80) for n in (16, 32, 64, 128)], id="space"),
-        pytest.param([(32, n) for n in (40, 80, 160, 320)], id="time"),
-        pytest.param([(n, 5 * n // 2) for n in (8, 16, 32, 64)], id="both"),
+        pytest.param([(32, n) for n in (160, 320, 640, 1280)], id="time"),
+        pytest.param([(n, 5 * n // 2) for n in (32, 64, 128, 256)], id="both"),
     ],
 )
 def test_second_order(refinements):

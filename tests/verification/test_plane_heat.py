@@ -49,7 +49,7 @@ def test_a_strip_is_the_line_with_its_heat():
     mesh, more = {"points_per_half_width": 16}, {"fluid": OIL, "time": {"travel": 0.2}}
     _, line = solved(tables(0.0125, 1e5, 3.0, mesh, **more), **TIGHT)
     _, strip = solved(tables(0.0125, 1e5, 3.0, mesh | {"width": 0.3}, **more), **TIGHT)
-    assert len(line) == len(strip) > 5
+    assert len(line) == len(strip) > 3
     for one, other in zip(line, strip, strict=True):
         for name in (*TEMPERATURES, "heat_flux_1", "film_thickness", "shear_stress_1"):
             rows, alone = other.fields[name], one.fields[name]

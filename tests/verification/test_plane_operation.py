@@ -58,7 +58,7 @@ def test_constant_conditions_in_a_table_are_the_plain_case():
     expected = list(ball(plain))
     table = {"time": [0.0, 3.0 * expected[-1].time], "load": [S.load] * 2, "radius": [R] * 2}
     found = list(ball(plain | {f"operation.{name}": column for name, column in table.items()}))
-    assert len(found) == len(expected) > 7
+    assert len(found) == len(expected) > 4
     for one, other in zip(found, expected, strict=True):
         assert one.time == other.time
         np.testing.assert_array_equal(one.pressure, other.pressure)
@@ -79,15 +79,17 @@ def test_dry_ball_under_a_harmonic_load_is_steady_at_every_instant():
 def test_slow_harmonic_conditions_approach_the_steady_film():
     """The lag behind the steady film is proportional to the rate of change."""
     lags = []
-    for travel in (32.0, 64.0, 128.0):
-        state, now = at_three_quarters(harmonic(travel), 64)
+    for travel in (16, 32, 64):
+        # a node a step, at a constant speed: the balance of a step is then that of a steady film
+        speeds = dict.fromkeys(("operation.speed_1", "operation.speed_2"), [S.u] * 65)
+        state, now = at_three_quarters(harmonic(travel) | speeds, 8 * travel)
         steady = steady_under(now, {})
         lags.append(abs(state.film_central / steady.film_central - 1.0))
     assert lags[-1] < 1.5e-2 and observed_order(lags) == pytest.approx(1.0, abs=0.2)
 
 
 def test_second_order_in_time():
-    states = [at_three_quarters(harmonic(4.0), steps)[0] for steps in (32, 64, 128)]
+    states = [at_three_quarters(harmonic(4.0), steps)[0] for steps in (128, 256, 512)]
     inside = S.grid.inside(0.8)
     for field in ("film_thickness", "pressure"):
         values = [getattr(state, field).ravel()[inside] for state in states]
@@ -98,7 +100,7 @@ def test_second_order_in_time():
 def test_reversed_motion_turns_the_contact_about_its_axis():
     """A map without symmetry under a ball, sliding, either way: rotation by 180 degrees."""
     heights = 20e-9 * np.random.default_rng(3).standard_normal((9, 9))
-    rough = {"surface.1": {"z": heights.tolist(), "spacing": S.a / 3.0}, "time.start": "rough"}
+    rough = {"surface.1": {"z": heights.tolist(), "spacing": S.a / 5.0}, "time.start": "rough"}
     rough |= BOTH_WAYS | {"time.travel": 0.3, "operation.time": [0.0, 1.0], "motion": None}
     there, back = (
         list(ball(rough | {"operation.speed_1": [1.2 * u] * 2, "operation.speed_2": [0.8 * u] * 2}))
@@ -149,7 +151,7 @@ def test_strip_under_a_table_is_the_line():
         list(Simulation(load(CASES / "table1_smooth.toml", table | mesh | of), options=TIGHT))
         for of in ({}, {"mesh.width": 0.25})
     )
-    assert len(line) > 15
+    assert len(line) > 12
     for one, other in zip(line, strip, strict=True):
         expected = np.broadcast_to(one.dimensionless.p, (4, len(one.dimensionless.p)))
         np.testing.assert_allclose(other.dimensionless.p.reshape(4, -1), expected, rtol=0, atol=1e-9)

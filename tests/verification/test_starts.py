@@ -53,7 +53,7 @@ def test_continuation_ends_at_the_case_itself():
 def test_results_are_independent_of_surface_names(xi):
     """The rough fast surface at xi is the rough slow one at -xi, to the last digit of Newton's method."""
     one, other = (list(Simulation(rough(side, ratio, 1.0))) for side, ratio in (("1", xi), ("2", -xi)))
-    assert len(one) == len(other) > 40
+    assert len(one) == len(other) > 20
     assert [s.newton for s in one] == [s.newton for s in other]
     for a, b in zip(one, other, strict=True):
         np.testing.assert_allclose(a.pressure, b.pressure, rtol=0, atol=1e-9 * a.p_max)
@@ -72,7 +72,8 @@ def test_stationary_roughness_is_reached_by_time_stepping(monkeypatch):
         return found(solver, film, inputs)
 
     monkeypatch.setattr(time_stepping, "steady", only_smooth)
-    first, *_, last = Simulation(rough("1", -2.0, 8.0))
+    # a node a step, where the steady balance and that of a step are the same
+    first, *_, last = Simulation(rough("1", -2.0, 8.0, **{"time.courant": 1.0}))
     assert first.time == 0.0 and first.step == 0 and first.newton > 50
     scale = known.film_thickness[np.abs(known.film_thickness) < 1e-6].max()
     for state, tolerance in ((first, 0.05), (last, 1e-3)):

@@ -15,7 +15,7 @@ import ehlpetsc
 SHORT = {"mesh.inlet": -1.4, "mesh.outlet": 1.3, "mesh.points_per_half_width": 60, "time.travel": 1.0}
 SCENES = {
     "direct": ("table1_rough.toml", SHORT | {"fluid.viscosity": 0.001}),
-    "slow direct": ("table1_rough.toml", SHORT | {"motion.entrainment_speed": 0.03, "time.travel": 0.7}),
+    "slow direct": ("table1_rough.toml", SHORT | {"motion.entrainment_speed": 0.1, "time.travel": 0.7}),
     "mixed": ("table1_mixed.toml", SHORT | {"fluid.viscosity": 0.001}),
     "film": ("ridge.toml", SHORT | {"surface.2.synthetic.position": 0.0}),
     "dry": ("dry_hertz.toml", {}),
@@ -54,16 +54,19 @@ def eta(p, eta0):
     return eta0 * np.exp(np.log(eta0 / 63.2e-6) * ((1.0 + 5.1e-9 * p) ** z - 1.0))
 
 
-def upwind(m, behind, k):
+def beyond(m, behind, k):
     return np.maximum(m + k * (m - behind), 0.5 * m)
 
 
-def flux(p, h, void, eta0, of, dx):
-    """Through the faces between the nodes, and out of the last one [m^2/s]."""
-    m = rho(p, void) * h
-    couette = of.u * upwind(m, np.concatenate([m[:1], m[:-1]]), 0.5)
-    couette[0] = of.u * m[0]
-    gradient, film, tau0 = np.diff(p) / dx, 0.5 * (h[1:] + h[:-1]), 10e6
+def carried(m, nodes=1):
+    """One node downstream for each step; the film of the first node enters."""
+    return np.concatenate([m[:1].repeat(nodes), m[:-nodes]])
+
+
+def flux(p, h, void, eta0, of, dx, leaks):
+    """Driven by the pressure through the faces between the nodes, and out of the last one [m^2/s]."""
+    gradient, tau0 = np.diff(p) / dx, 10e6
+    film = 0.5 * (h[1:] + h[:-1]) if leaks else np.cbrt(2.0 * (h[1:] * h[:-1]) ** 2 / (h[1:] + h[:-1]))
     sigma = np.maximum(np.abs(film * gradient) / (2.0 * tau0), 1e-3)
     with np.errstate(over="ignore", invalid="ignore"):
         rolling = 3.0 * (sigma * np.cosh(sigma) - np.sinh(sigma)) / sigma**3
@@ -72,8 +75,12 @@ def flux(p, h, void, eta0, of, dx):
         (rho(at, 0.0) * np.hypot(film**3 * rolling / eta(at, eta0), film**2 * of.slip * sliding / tau0)) / 12
         for at in (p[:-1], p[1:])
     ]
-    couette[:-1] -= 0.5 * (flow[0] + flow[1]) * gradient
-    return couette
+    mean = 0.5 * (flow[0] + flow[1])
+    if not leaks:
+        ratio = np.log(flow[0] / flow[1])
+        apart = np.abs(ratio) > 1e-3
+        mean[apart] = (flow[0] - flow[1])[apart] / ratio[apart]
+    return np.append(-mean * gradient, 0.0)
 
 
 def oil_lost(case, result, of):
@@ -85,14 +92,16 @@ def oil_lost(case, result, of):
     p, h, void = result.pressure - solids, result.film_thickness, result.void_fraction
     m = rho(p, void) * h
     for k in range(len(dt)):
-        out = flux(p[k], h[k], void[k], eta0, of, dx)
+        out = flux(p[k], h[k], void[k], eta0, of, dx, case.contact.model == "direct")
         balance = out[1:] - out[:-1]
-        if k == 1:
-            balance += (m[1] - m[0])[1:] * dx / dt[1]
-        if k > 1:
-            share = dt[k] / (dt[k] + dt[k - 1])
-            now = upwind(m[k], m[k - 1], share)
-            then = upwind(m[k - 1], m[k - 2], share * dt[k] / dt[k - 1])
+        if k == 0:
+            face = np.append(m[0][0], beyond(m[0][1:], m[0][:-1], 0.5))
+            balance += of.u * (face[1:] - face[:-1])
+        if k > 0 and abs(of.u * dt[k] / dx - 1.0) > 1e-9:
+            break  # a halved step, which interpolates
+        if k > 0:
+            now = beyond(m[k], carried(m[k - 1]), 0.5)
+            then = beyond(carried(m[k - 1]), carried(m[max(k - 2, 0)], 2), 0.5)
             balance += (now - then)[1:] * dx / dt[k]
         inside = np.abs(result.x) <= of.a * (1.0 + 1e-9)
         lost.append(np.abs(balance).sum() / (of.u * max(m[k][inside].mean(), 1e-10)))
@@ -148,6 +157,8 @@ def test_oil_balance_of_every_step(run):
         assert (stored_error == 0.0).all()
         return
     lost = oil_lost(case, result, of)
+    stored_error = stored_error[: len(lost)]
+    assert len(lost) > 20
     some = lost > 1e-3
     assert some.any() == (result.in_contact.any() and case.contact.model == "direct")
     np.testing.assert_allclose(stored_error[some], lost[some], rtol=1e-3)

@@ -17,9 +17,8 @@ from support.driving import Scene
 from support.published_values import WAVINESS
 
 # wavelength/b: points per half-width, nodes a step, half periods followed after the front came to x = 0.
-# Long waves need a fine mesh for the smooth film alone, 4 % too thin at a/100, and few steps; short ones
-# at least 50 points, or the upwind scheme damps them: 0.25 b gives 0.582 at a/100, 0.668 at a/200.
-SETTINGS = {4.0: (128, 4, 4), 2.0: (128, 2, 3), 1.0: (144, 1, 3), 0.5: (144, 1, 3), 0.25: (200, 1, 3)}
+# Long waves need a fine mesh for the smooth film alone, 4 % too thin at a/100; short ones sixteen nodes.
+SETTINGS = {4.0: (128, 1, 4), 2.0: (128, 1, 3), 1.0: (96, 1, 3), 0.5: (48, 1, 3), 0.25: (64, 1, 3)}
 
 
 def amplitude_left(ratio, points, nodes, half_periods):

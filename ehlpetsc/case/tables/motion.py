@@ -197,7 +197,12 @@ TIME_KEYS = {
         choices=("smooth", "rough"),
         default="smooth",
     ),
-    "courant": Key("Courant number `u_max dt/dx`", "", 1e-3, 100, default=0.5),
+    "courant": Key(
+        "mesh spacings that the film moves in a step; less where surfaces pass it faster, "
+        "`dt = courant dx/max(|u|, |u1 - u2|/2)`",
+        *("", 1e-3, 100),
+        default=1.0,
+    ),
     "passes": Key("passes of the same stretches of both surfaces", "", 1, 10_000, kind=int, default=1),
     "pass_shift": Key("shift of the profile of surface 2 from pass to pass", "m", -1, 1, default=0.0),
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.contact.node_state import FaceGap
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
@@ -24,6 +25,11 @@ def smallest_film(contact: Contact, scales: Scales) -> float:
 
         return CompliantContact(Layer.of(contact, scales)).minimum_film
     return 0.0 if contact.boundary_film is None else contact.boundary_film / scales.h
+
+
+def face_gap(contact: Contact) -> FaceGap:
+    """What solids that are near leave open at a face: in direct contact faces leak, see `finite_volumes`."""
+    return FaceGap(contact.asperity_height or 0.0, contact.model == "direct")
 
 
 def contact_model(

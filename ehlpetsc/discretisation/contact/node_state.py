@@ -16,6 +16,20 @@ def full_of_oil(q: np.ndarray) -> np.ndarray:
     return q > -AMBIENT_TOLERANCE
 
 
+class FaceGap(NamedTuple):
+    """What solids that are near leave open at a face, last constants of :func:`.finite_volumes.flux_through`.
+
+    `layer`: rms height of a compliant layer [m], 0 without one.
+    `leaks`: whether a face next to a closed node has the mean film of both nodes.
+    """
+
+    layer: float = 0.0
+    leaks: bool = False
+
+
+OPEN_GAP = FaceGap()
+
+
 class PlasticState(NamedTuple):
     """Plastic deformation of yielding nodes; arrays of shape (nx,).
 

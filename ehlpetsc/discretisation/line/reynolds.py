@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.discretisation.contact.node_state import OPEN_GAP, FaceGap
 from ehlpetsc.discretisation.finite_volumes import M, balance
 from ehlpetsc.discretisation.step_inputs import StepInputs, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import dofs_of, n_dofs
@@ -38,7 +39,7 @@ class Reynolds:
     `film_scale`: divisor of F, in a^2/R.
     `first`, `last`: range of the evaluated rows.
     `start`: first node of the arrays that are passed in.
-    `layer`: rms height of the compliant layer [m], 0 without one.
+    `gap`: what solids that are near leave open at a face.
 
     `columns`: indices of the unknowns of the rows: q and h of the nodes i-2 .. i+1; -1: no unknown, shape
         (local nodes, 8).
@@ -49,9 +50,15 @@ class Reynolds:
     stencil, own = 4, 4
 
     def __init__(
-        self, scales: Scales, film_scale: float, first: int, last: int, start: int = 0, layer: float = 0.0
+        self,
+        scales: Scales,
+        film_scale: float,
+        first: int,
+        last: int,
+        start: int = 0,
+        gap: FaceGap = OPEN_GAP,
     ):
-        self.scales, self.film_scale, self.layer = scales, film_scale, layer
+        self.scales, self.film_scale, self.gap = scales, film_scale, gap
         n = scales.grid.n
         self.local = slice(first, last)
         self.rows = slice(max(first, 1), last)
@@ -83,7 +90,13 @@ class Reynolds:
     def face_law(self, inputs: StepInputs) -> tuple:
         """Constants of :func:`.finite_volumes.flux_through`."""
         s = self.scales
-        return s.p0 / (s.a * self.dx), s.h, *shear_constants(inputs, s), self.layer
+        return (
+            s.p0 / (s.a * self.dx),
+            s.h,
+            *shear_constants(inputs, s),
+            self.gap.layer,
+            self.gap.leaks or inputs.leaks,
+        )
 
     def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """Residual F of the local rows and its derivatives.

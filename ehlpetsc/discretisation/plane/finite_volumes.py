@@ -33,6 +33,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     H,
     M,
     P,
+    face_film,
+    face_mean,
     fluidities,
     flux_through,
     positive_extrapolation,
@@ -87,9 +89,9 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
         rise.
     `flow`: shear law, its stress at zero pressure.
     """
-    per_length, per_film, stress, rise, sliding, _, layer = law
+    per_length, per_film, stress, rise, sliding, _, layer, leaks = law
     gradient = per_length * (at[P, right] - at[P, left])
-    film = 0.5 * (at[H, left] + at[H, right])
+    film, film_l, film_r = face_film(at[H, left], at[H, right], leaks)
     if rise != 0.0:
         stress += 0.5 * rise * (at[P, left] + at[P, right])
     fluidity_l, fluidity_r = fluidities(at, left, right)
@@ -97,21 +99,23 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
     at_rest_l, at_rest_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
     now = FlowLaw(flow.kind, stress if flow.kind != NEWTON else 1.0, flow.n, flow.a)
     factor, factor_h = flow_factor(film, layer) if layer != 0.0 else (1.0, 0.0)
-    rho_l, rho_r, half = at[RHO, left], at[RHO, right], 0.5 * gradient
+    half = 0.5 * gradient
     m_l, h_l, g_l, eta_l, s_l = cross_mobility(film, at_rest_l, fluidity_l, sliding, now)
     m_r, h_r, g_r, eta_r, s_r = cross_mobility(film, at_rest_r, fluidity_r, sliding, now)
-    mean = 0.5 * (rho_l * m_l + rho_r * m_r)
-    by_film = half * 0.5 * per_film * (factor * (rho_l * h_l + rho_r * h_r) + 2.0 * factor_h * mean)
+    mean, weight_l, weight_r = face_mean(at[RHO, left] * m_l, at[RHO, right] * m_r, leaks)
+    rho_l, rho_r = weight_l * at[RHO, left], weight_r * at[RHO, right]
+    by_film = half * per_film * (factor * (rho_l * h_l + rho_r * h_r) + 2.0 * factor_h * mean)
     by_difference = factor * (mean + half * (rho_l * g_l + rho_r * g_r)) * per_length
-    by_p_l = half * factor * (at[RHO_P, left] * m_l + at[LN_ETA_P, left] * rho_l * eta_l) - by_difference
-    by_p_r = half * factor * (at[RHO_P, right] * m_r + at[LN_ETA_P, right] * rho_r * eta_r) + by_difference
+    by_state_l = weight_l * at[RHO_P, left] * m_l + at[LN_ETA_P, left] * rho_l * eta_l
+    by_state_r = weight_r * at[RHO_P, right] * m_r + at[LN_ETA_P, right] * rho_r * eta_r
+    by_p_l, by_p_r = half * factor * by_state_l - by_difference, half * factor * by_state_r + by_difference
     if rise != 0.0:  # the mobility at rest is a function of gradient over stress
         at_rest = 0.0
         if at_rest_l[0] > 0.0 and m_l > 0.0:
             at_rest -= gradient * (rho_l * g_l + rho_r * g_r)
         by_stress = factor * half * (at_rest + rho_l * s_l + rho_r * s_r) * 0.5 * rise / stress
         by_p_l, by_p_r = by_p_l + by_stress, by_p_r + by_stress
-    by_film_l = by_film_r = by_film
+    by_film_l, by_film_r = by_film * film_l, by_film * film_r
     if at.shape[0] > PROPERTIES:
         by_thermal = -half * factor * (rho_l * eta_l + rho_r * eta_r)
         by_p_l += by_thermal * at[LN_THINNING_P, left]

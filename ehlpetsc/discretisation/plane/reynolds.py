@@ -18,9 +18,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.discretisation.contact import contact_model, film_scale_of
+from ehlpetsc.discretisation.contact import contact_model, face_gap, film_scale_of
+from ehlpetsc.discretisation.contact.node_state import OPEN_GAP, FaceGap
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
-from ehlpetsc.discretisation.finite_volumes import DP, FLUIDITY, LN_ETA_P, RHO, RHO_P, P
+from ehlpetsc.discretisation.finite_volumes import (
+    DP,
+    FLUIDITY,
+    LN_ETA_P,
+    RHO,
+    RHO_P,
+    P,
+)
 from ehlpetsc.discretisation.plane.deflection import Deflection, Transposition
 from ehlpetsc.discretisation.plane.finite_volumes import OWN, STENCIL, balance, product
 from ehlpetsc.discretisation.step_inputs import Oil, StepInputs, inlet, shear_constants
@@ -42,6 +50,7 @@ class Reynolds:
     `shape`: local rows, nodes along x.
     `share`: local nodes.
     `has_sides`: whether the domain ends below the first, above the last local row.
+    `gap`: what solids that are near leave open at a face.
     """
 
     stencil, own = STENCIL, OWN
@@ -54,9 +63,9 @@ class Reynolds:
         shape: tuple[int, int],
         share: Share,
         has_sides: tuple[bool, bool],
-        layer: float = 0.0,
+        gap: FaceGap = OPEN_GAP,
     ):
-        self.scales, self.film_scale, self.layer = scales, film_scale, layer
+        self.scales, self.film_scale, self.gap = scales, film_scale, gap
         (self.dy, self.dx), self.shape, self.has_sides = spacings, shape, has_sides
         self.rows, self.owned, self.window = share.local, share.owned, share.window
 
@@ -89,7 +98,7 @@ class Reynolds:
         """Residual F of the local rows, shape (local nodes,), and its derivatives, (local nodes, 12)."""
         (n_y, n_x), s, history = self.shape, self.scales, inputs.history
         at = self.properties(q, h, inputs.oil)
-        constants = s.h, *shear_constants(inputs, s), self.layer
+        constants = s.h, *shear_constants(inputs, s), self.gap.layer, self.gap.leaks or inputs.leaks
         laws = tuple((s.p0 / (s.a * spacing), *constants) for spacing in (self.dx, self.dy))
         nothing = np.zeros(n_y * n_x)
         storage = nothing, nothing, 0.0, 0.0
@@ -176,6 +185,6 @@ def plane_problem(
     if case.fluid is None:
         reynolds: NoOil | Reynolds = NoOil(shape, share.owned)
     else:
-        layer = case.contact.asperity_height or 0.0
-        reynolds = Reynolds(scales, grid.steps, film_scale, shape, share, has_sides, layer)
+        gap = face_gap(case.contact)
+        reynolds = Reynolds(scales, grid.steps, film_scale, shape, share, has_sides, gap)
     return EHLProblem(case, scales, share, model, deflection, reynolds, film_scale)

@@ -23,6 +23,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     H,
     P,
     face,
+    face_film,
+    face_mean,
     fill_mass,
     fluidities,
 )
@@ -219,18 +221,19 @@ def faces(
     `gradient`: filled in: central :math:`dp/dx` [Pa/m], shape (nodes,).
     """
     nodes = at.shape[1] - 1
-    _, _, no_pressure, stress_rise, sliding, entrainment, _ = law
+    _, _, no_pressure, stress_rise, sliding, entrainment, _, leaks = law
     pressure_heat[:] = 0.0
     slope = 0.0
     for i in range(nodes):
         before = slope
-        drawn, film, slope, stress, (left, right) = face(at, max(i - 1, 0), i, i + 1, table, law)
+        drawn, films, slope, stress, (left, right) = face(at, max(i - 1, 0), i, i + 1, table, law)
         couette[i + 1] = entrainment * drawn[0]
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
         between_oil_nodes = oil[i] and oil[min(i + 1, nodes - 1)]
-        pressure_flow = 0.5 * (left[0] + right[0]) * abs(slope) if between_oil_nodes else 0.0
-        pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))
+        mobility, _, _ = face_mean(left[0], right[0], leaks)
+        pressure_flow = mobility * abs(slope) if between_oil_nodes else 0.0
+        pressure_flow = min(pressure_flow, max(max_flow[0] * films[0], max_flow[1]))
         heat = 0.5 * pressure_flow * abs(slope)
         pressure_heat[i] += heat
         if i < nodes - 1:
@@ -285,7 +288,7 @@ def cross_flow_heat(
             continue
         mass = flux_across(at, left, right, table, law, flow)[0]
         pressure_flow = 2.0 * abs(mass) / (at[RHO, left] + at[RHO, right])
-        film = 0.5 * (at[H, left] + at[H, right])
+        film, _, _ = face_film(at[H, left], at[H, right], law[-1])
         pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))
         half = 0.5 * pressure_flow * law[0] * abs(at[P, right] - at[P, left])
         heat[left] += half

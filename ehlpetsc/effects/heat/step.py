@@ -7,14 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact import smallest_film
+from ehlpetsc.discretisation.contact import face_gap, smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.step_inputs import (
+    FilmHistory,
     IsothermalOil,
     StepInputs,
     mirrored,
     shear_constants,
 )
+from ehlpetsc.discretisation.transport import carried, carried_with
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows, last_profile
 from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
@@ -22,7 +24,13 @@ from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.mixing import mixing
 from ehlpetsc.effects.heat.record import HeatRecord
-from ehlpetsc.effects.heat.transport import Film, explicit_transport, heat_taken_in_rows, transport_in_rows
+from ehlpetsc.effects.heat.transport import (
+    Film,
+    explicit_transport,
+    heat_taken_in_rows,
+    limited,
+    transport_in_rows,
+)
 from ehlpetsc.physics.flash_temperature import Solid
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
@@ -67,13 +75,13 @@ class HeatStep:
         self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
         # of films that close the shear would heat without limit, and not at all once they are closed
         self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
-        self.layer, self.rows = case.contact.asperity_height or 0.0, s.grid.n // s.nx
+        self.gap, self.rows = face_gap(case.contact), s.grid.n // s.nx
         self.coldest = min(self.inlet, *self.bulk)
 
     def film_heat(self, record: HeatRecord, inputs: StepInputs, step: Step) -> FilmHeat:
         """Data of the film's temperature in a solve, from the record at the beginning of the step."""
         n = self.scales.grid.n
-        stored, bodies = np.zeros(n), None
+        stored, bodies, old, flow = np.zeros(n), None, record.film, record.flow
         if step.dt is None:
             responses = [record.response_1, record.response_2]
             pairs = (record.wall_1, record.flux_1), (record.wall_2, record.flux_2)
@@ -89,7 +97,8 @@ class HeatStep:
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-        balance = explicit_transport(self.rows, stored, record.flow, record.film, self.inlet)
+                old, flow = self._carried(record.film, inputs.history), np.zeros_like(flow)
+        balance = explicit_transport(self.rows, stored, flow, old, self.inlet)
         rows = *balance, record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
@@ -118,8 +127,8 @@ class HeatStep:
         pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.grid.n)
         if self.fluid is None:
             thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            carried = blank, blank, blank, np.zeros(s.grid.n + self.rows)
-            film = Film(blank, thickness, np.ones(s.grid.n), record.film, *carried, rubbing)
+            no_oil = blank, blank, blank, np.zeros(s.grid.n + self.rows)
+            film = Film(blank, thickness, np.ones(s.grid.n), record.film, *no_oil, rubbing)
             source = spread = blank
         else:
             q = solution.nodes.reynolds_unknown
@@ -127,11 +136,16 @@ class HeatStep:
             heat = heat._replace(guess=solved)
             unit = self.capacity * s.u * s.h / s.dx
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
-            left = 1.0 + np.minimum(q, 0.0)
-            last_step = (record.rate * step.dt, record.extrapolated / step.dt) if step.dt else (blank, blank)
-            film = Film(
-                pressure, thickness, left, record.film, heat.stored, *last_step, unit * couette, rubbing
-            )
+            left, history = 1.0 + np.minimum(q, 0.0), solution.inputs.history
+            old, last_step = record.film, (blank, blank)
+            if history is not None:
+                in_rows, moved = s.grid.rows, history.moved
+                old = self._carried(old, history)
+                rate, beyond = (
+                    carried(in_rows(v), moved, 0.0).ravel() for v in (record.rate, record.extrapolated)
+                )
+                last_step = rate * step.dt, beyond / step.dt
+            film = Film(pressure, thickness, left, old, heat.stored, *last_step, unit * couette, rubbing)
             source = np.where(loads.sheared_oil, pressure_heat, 0.0)
             source = source + self._compression(record, film, gradient, step)
         heat = heat.with_rows((G, SPREAD), (source, spread))
@@ -164,10 +178,16 @@ class HeatStep:
             )
         return solved, couette, pressure_heat, spread, gradient
 
+    def _carried(self, temperatures: np.ndarray, history: FilmHistory) -> np.ndarray:
+        """Temperatures of the film one step ago where the oil was that is now at each node [K]."""
+        rows = self.scales.grid.rows
+        given = rows(history.before), rows(temperatures), history.moved, self.inlet
+        return carried_with(*given).ravel()
+
     def _face_law(self, inputs: StepInputs, spacing: float) -> tuple:
         """Constants of :func:`.finite_volumes.flux_through` between nodes `spacing` half-widths apart."""
         s = self.scales
-        return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), self.layer
+        return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), *self.gap
 
     def _max_flow(self, h: np.ndarray, oil: np.ndarray, inputs: StepInputs) -> tuple[float, float]:
         """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
@@ -250,6 +270,26 @@ class HeatStep:
         of_change = OF_CHANGE if heat.isothermal else 0.0
         mixing(fluxes, np.concatenate([record.flux_1, record.flux_2]), of_change)
         return temperatures
+
+    def rates(self, temperatures: Temperatures, film: Film, solution: Solution, step: Step) -> dict:
+        """`rate` and `extrapolated` of the record: as fast as the temperatures change along the film's path.
+
+        In a steady film they change along x alone.
+        """
+        if step.dt is not None or solution.mass is None:
+            dt = step.dt or np.inf
+            change = temperatures.film - film.old
+            return {"rate": change / dt, "extrapolated": temperatures.extrapolated * (step.dt or 0.0)}
+        s, speed = self.scales, step.conditions.entrainment
+        t = s.grid.rows(temperatures.film)
+        if speed < 0.0:
+            t = t[:, ::-1]
+        rise = np.diff(t, prepend=self.inlet)
+        following = np.diff(t, append=t[:, -1:])
+        turned = slice(None, None, -1 if speed < 0.0 else 1)
+        beyond = limited(rise, following)[:, turned].ravel() * solution.mass * self.capacity * s.h
+        rise = rise[:, turned].ravel()
+        return {"rate": rise * (abs(speed) / s.dx), "extrapolated": beyond}
 
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], in a point contact [W], and the imbalance with what takes it, over it.

@@ -84,6 +84,12 @@ def _limited(difference: float, next_one: float) -> float:
     return next_one / (difference + next_one) if difference * next_one > 0.0 else 0.0
 
 
+def limited(difference: np.ndarray, following: np.ndarray) -> np.ndarray:
+    """Differences by half an interval, limited: :func:`_limited` times the difference."""
+    both = difference * following
+    return np.divide(both, difference + following, out=np.zeros_like(both), where=both > 0.0)
+
+
 @compiled
 def _limiters(t: np.ndarray, film: np.ndarray, flow: np.ndarray, limiters: np.ndarray) -> None:
     """Fill in both limiters of every node at temperatures t; oil enters and leaves as at the end nodes."""

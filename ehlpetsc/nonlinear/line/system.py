@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.discretisation.contact import contact_model, film_scale_of
+from ehlpetsc.discretisation.contact import contact_model, face_gap, film_scale_of
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
 from ehlpetsc.discretisation.line.deflection import Deflection
 from ehlpetsc.discretisation.line.reynolds import NoOil, Reynolds
@@ -32,11 +32,11 @@ def line_problem(
     grid, film_scale = scales.grid, film_scale_of(case, scales, film_scale)
     model = contact_model(case, scales, film_scale, bound_tolerance)
     deflection = Deflection(grid.n, grid.dx, first, last)
-    start, layer = deflection.window.start, case.contact.asperity_height or 0.0
+    start = deflection.window.start
     if case.fluid is None:
         reynolds: NoOil | Reynolds = NoOil(first, last, start)
     else:
-        reynolds = Reynolds(scales, film_scale, first, last, start, layer)
+        reynolds = Reynolds(scales, film_scale, first, last, start, face_gap(case.contact))
     share = Share(first, last, deflection.window, deflection.owned)
     return EHLProblem(case, scales, share, model, deflection, reynolds, film_scale)
 
