@@ -83,7 +83,7 @@ class Result(reader.Result):
         choice = frames.Choice([self], indices, limits, field)
         figure = choice.draw(pyplot.figure(layout="constrained"))
         if path is not None:
-            style.save(figure, path)
+            style.save(figure, file_path(path))
         return figure
 
     def section(self, y: float = 0.0) -> Result:

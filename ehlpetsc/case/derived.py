@@ -72,7 +72,8 @@ def _with_approach(tables: Tables) -> Tables:
     if "approach" not in contact or not is_point(tables) or None in elastic:
         return tables
     modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
-    load = float(hertz_load(contact["approach"], *contact["radius"], modulus))
+    along, across = contact["radius"]
+    load = float(hertz_load(contact["approach"], along, across, modulus))
     if not is_allowed(CONTACT.keys["load"], load):  # reported as a load that does not follow
         return tables
     return tables | {"contact": {"load": load} | contact}

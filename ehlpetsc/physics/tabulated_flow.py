@@ -138,8 +138,8 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
     for quantity, rows in enumerate(np.split(table[:-1], 2)):
         coefficients = CubicSpline(v, CubicSpline(u, values[quantity]).c, axis=2).c  # falling powers of v, u
         rows[:] = coefficients[::-1, :, ::-1].transpose(3, 1, 0, 2).reshape(rows.shape)
-    first, last = (x[0], ln_drop[0], 1.0 / step_x, 1.0 / step), (x[-1], ln_drop[-1])
-    constants = n, *first, *last, a, NEWTONIAN ** (1.0 / sharpness)
+    ends = x[0], ln_drop[0], 1.0 / step_x, 1.0 / step, x[-1], ln_drop[-1]
+    constants = n, *ends, a, NEWTONIAN ** (1.0 / sharpness)
     table[-1, 0, : len(constants)] = constants
     return table
 

@@ -149,10 +149,8 @@ def _solve_depths(
     stress = _stresses(loads, depths * loads.a / loads.dx, prepared.materials[surface].poisson_ratio)
     for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, stress.bytes_per_sample):
         of_rows = np.repeat(lengths[points], math.prod(loads.rows))
-        found = histories(
-            *(loads, surface, motion, stress, points, QUANTUM * loads.p0),
-            show=lambda share, count=points.size * depths.size: advance(share * count),
-        )
+        show = partial(_advance_by, advance, points.size * depths.size)
+        found = histories(*(loads, surface, motion, stress, points, QUANTUM * loads.p0), show=show)
         for k, stresses in enumerate(found):
             residual = float(np.interp(depths[k], *np.transpose(table))) if table else 0.0
             for columns, count in counts:
@@ -169,6 +167,11 @@ def _stresses(loads: Loads, depths: np.ndarray, poisson_ratio: float) -> BodyStr
         return BodyStress(loads.x.size, depths)
     (ny,), width = loads.rows, loads.dy / loads.dx
     return _block_stress(ny, loads.x.size, width, tuple(depths), poisson_ratio, loads.is_periodic)
+
+
+def _advance_by(advance: Callable[[float], None], points: int, share: float) -> None:
+    """Report a share of some points as computed."""
+    advance(share * points)
 
 
 @lru_cache(maxsize=1)  # for both surfaces, and the passes of a life

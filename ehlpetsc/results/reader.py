@@ -241,10 +241,9 @@ class Result:
         else:
             x, values, unit = self.x, self.frame(name, frame), self.unit(name)
         y = self.x[:2] if self.y is None else self.y
-        steps, origin = (float(axis[1] - axis[0]) for axis in (x, y)), (float(x[0]), 0.0)
-        if self.y is not None:
-            origin = origin[0], float(y[0])
-        field = GridField(np.atleast_2d(values), *steps, name.replace("/", "_"), unit, origin)
+        dx, dy = (float(axis[1] - axis[0]) for axis in (x, y))
+        origin = float(x[0]), 0.0 if self.y is None else float(y[0])
+        field = GridField(np.atleast_2d(values), dx, dy, name.replace("/", "_"), unit, origin)
         atomic_write(target, WRITERS[target.suffix.lower()](field))
 
 

@@ -21,7 +21,7 @@ QUICK = {
     "mesh.outlet": 1.3,
     "mesh.points_per_half_width": 40,
     "time.travel": 0.05,
-    "time.courant": 0.4444,
+    "time.courant": 0.445,
 }
 
 
