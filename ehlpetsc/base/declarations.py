@@ -17,10 +17,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-if TYPE_CHECKING:
-    from ehlpetsc.stepping.observables import Observation
+from typing import Any, NamedTuple
 
 
 class Refused(ValueError):
@@ -191,7 +188,8 @@ class Field:
     integrated : bool
         Whether it is an integral over the contact: per metre of width where that has no ends.
     of : function, optional
-        Its value at an accepted time level; None: an effect returns it from `observe`, or the simulation.
+        Its value of an `ehlpetsc.stepping.observables.Observation`; None: an effect returns it from
+        `observe`, or the simulation.
     """
 
     units: str
@@ -200,7 +198,7 @@ class Field:
     dtype: str = "f8"
     only: str = ""
     integrated: bool = False
-    of: Callable[[Observation], Any] | None = None
+    of: Callable[[Any], Any] | None = None
 
 
 class Column(NamedTuple):

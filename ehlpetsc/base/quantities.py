@@ -10,15 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
-from ehlpetsc.base.declarations import Column, Field, StepScalar
-
-if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.effects.effect import Effect
+from ehlpetsc.base.declarations import Column, Field, StepScalar, Values
 
 MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
 HIGH_PRESSURE = 100e6  # Pa: of the second length in contact
@@ -31,7 +27,7 @@ REDUCTIONS: dict[str, Callable] = {"sum": sum, "min": min, "max": max, "last": l
 MEANS = ("friction_coefficient", "film_central", "lambda_ratio", "mean_gap_ratio", "contact_share")
 """Scalars whose means over the time in which both surfaces fill the contact are in the summary of a run."""
 
-SCENES: dict[str, Callable[[Case], bool]] = {
+SCENES: dict[str, Callable[[Any], bool]] = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
     "mixed": lambda case: case.contact.has_contact_pressure,
@@ -220,7 +216,21 @@ OTHERS = {
 """Coordinates and what else is neither a field nor a scalar of the step."""
 
 
-def register(kind: type[Effect]) -> None:
+class HasQuantities(Protocol):
+    """Quantities of an effect by name: of time levels, of steps, on both surfaces; cases that have it."""
+
+    name: str
+    fields: dict[str, Field]
+    scalars: dict[str, StepScalar]
+    surface: dict[str, Field]
+
+    @classmethod
+    def is_in(cls, case: Any) -> bool:
+        """Whether a case has this effect."""
+        ...
+
+
+def register(kind: type[HasQuantities]) -> None:
     """Add the quantities of an effect to the tables."""
     SCENES[kind.name] = kind.is_in
     FIELDS.update({name: replace(field, only=kind.name) for name, field in kind.fields.items()})
@@ -229,16 +239,16 @@ def register(kind: type[Effect]) -> None:
     OTHERS.update(_on_surfaces(kind))
 
 
-def of_effect(kind: type[Effect]) -> dict[str, Field]:
+def of_effect(kind: type[HasQuantities]) -> dict[str, Field]:
     """Quantities of an effect by their names in the tables."""
     return {**kind.fields, **kind.scalars, **_on_surfaces(kind)}
 
 
-def _on_surfaces(kind: type[Effect]) -> dict[str, Field]:
+def _on_surfaces(kind: type[HasQuantities]) -> dict[str, Field]:
     return {f"surface/{name}": field for name, field in kind.surface.items()}
 
 
-def of_case(table: Mapping[str, Field], case: Case) -> list[str]:
+def of_case(table: Mapping[str, Field], case: Values) -> list[str]:
     """Names of the quantities of a table in a case."""
     return [name for name, field in table.items() if SCENES[field.only](case)]
 

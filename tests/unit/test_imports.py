@@ -129,6 +129,17 @@ def test_packages_import_allowed_packages_only(name):
     assert wrong == []
 
 
+def test_base_imports_no_other_package_even_for_type_hints():
+    wrong = {
+        f"{module}: {node.module}"
+        for module, path in FILES.items()
+        if room(module) in GROUND
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and room(node.module) not in GROUND and "ehlpetsc." in node.module
+    }
+    assert wrong == set()
+
+
 def test_no_mutual_imports():
     try:
         tuple(TopologicalSorter({module: ours(module) for module in FILES}).static_order())
