@@ -93,7 +93,7 @@ def test_xarray_has_three_dimensions(path):
         data = result.to_xarray()
     assert data.pressure.dims == ("time", "y", "x") and data.contact_count.dims == ("y", "x")
     peak = data.pressure.isel(time=-1).argmax(("y", "x"))
-    assert float(data.y[peak["y"]]) == pytest.approx(0.0, abs=1e-12) and data.y.units == "m"
+    assert abs(float(data.y[peak["y"]])) < 1e-4 and data.y.units == "m"
 
 
 def test_comparison_names_the_place_across(path, tmp_path, capsys):

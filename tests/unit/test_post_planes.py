@@ -105,7 +105,7 @@ def test_command_on_a_point(scene, tmp_path, capsys):
     assert "ehlpetsc post: done" in capsys.readouterr().out
     with h5py.File(tmp_path / "point.post.h5") as file:
         values, passed = file["damage/1"][:], file["damage/1_complete"][:].astype(bool)
-        assert values.shape == (2, y.size, file["damage/s"].size)
+        assert values.shape == (4, y.size, file["damage/s"].size)
         assert np.isfinite(values[..., passed]).all() and np.isnan(values[..., ~passed]).all()
         shown = values[..., passed].mean(axis=-1)
         assert shown == pytest.approx(shown[:, ::-1], rel=1e-3)

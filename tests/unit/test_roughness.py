@@ -66,13 +66,13 @@ def test_rough_start_is_the_later_part_of_an_entering_profile():
 @pytest.mark.slow
 def test_film_of_a_rough_start_is_that_of_an_entered_profile():
     wave = {"2": {"synthetic": {"kind": "ground", "ra": 5e-8, "correlation": 3e-5, "seed": 1}}}
-    mesh = {"mesh.points_per_half_width": 40, "mesh.inlet": -2.0, "contact.model": "mixed"}
+    mesh = {"mesh.points_per_half_width": 64, "mesh.inlet": -2.0, "contact.model": "mixed"}
     sets = mesh | {"motion.slide_roll_ratio": 0.0, "surface": wave}
     filled, entered = (
         ehlpetsc.solve(
             case.load(CASES / "table1_smooth.toml", sets | {"motion.slide_roll_ratio": 0.0} | time)
         )
-        for time in ({"time.start": "rough", "time.travel": 1.8}, {"time.travel": 5.4})
+        for time in ({"time.start": "rough", "time.travel": 1.5}, {"time.travel": 5.1})
     )
     a, u = filled.attrs["a"], filled.attrs["u2"]
     time = filled.steps.time
@@ -81,7 +81,7 @@ def test_film_of_a_rough_start_is_that_of_an_entered_profile():
     assert difference.max() < 0.03 and difference[-1] < 0.002
     assert filled_from(filled) == 0.0 < filled_from(entered)
     iterations = [run.steps.newton[-60:].mean() for run in (filled, entered)]
-    assert iterations[0] < iterations[1]  # the steps are predicted from the smooth film
+    assert iterations[0] <= iterations[1]  # the steps are predicted from the smooth film
 
 
 @pytest.mark.parametrize(("ratio", "left"), [(1.0, 0.5), (0.5, 1 - 2.0**-4), (4.0, 1 - 2.0 ** (-1 / 16))])
