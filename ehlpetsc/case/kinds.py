@@ -82,15 +82,18 @@ def _plane_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) 
             f"mesh.near_field = {case.mesh.near_field}: of line contacts, not of a {case.kind}; leave it out"
         )
         faults.append(Fault("mesh.near_field", text))
-    if case.life:
-        faults.append(Fault("life", f"[life]: of line contacts, not of a {case.kind}; leave it out"))
     return faults + _size_faults(case)
+
+
+def _point_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+    life = Fault("life", "[life]: of line contacts and strips, not of a point; leave it out")
+    return [life] * bool(case.life) + _plane_faults(case, data, surfaces)
 
 
 FAULTS: dict[str, Callable[[Case, Tables, dict[str, Values | None]], list[Fault]]] = {
     LINE: _line_faults,
     "strip": _plane_faults,
-    "point": _plane_faults,
+    "point": _point_faults,
 }
 
 

@@ -9,39 +9,47 @@ import numpy as np
 
 from ehlpetsc.life import laws
 from ehlpetsc.surfaces.body_field import BodyField
-from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line
+from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line, periodic_mean
 
 if TYPE_CHECKING:
     from ehlpetsc.life.jumps import Rates
     from ehlpetsc.life.one_pass import OfBody
 
 
+NO_ROWS = np.zeros(0)
+
+
 class LifeBody(NamedTuple):
     """Columns of a body and their cells.
+
+    A line contact has one row of columns, shape (n,); a strip has rows across, (ny, n), which repeat.
 
     Attributes
     ----------
     s : shape (n,)
         Middles of the columns over the body's abscissa, equally spaced [m].
+    y : shape (ny,)
+        Middles of the rows across, equally spaced [m]; none of a line.
     edges : shape (cells + 1,)
         Depths of the edges of the cells below the surface as made [m].
-    height : shape (n,)
+    height : shape (*ny, n)
         Of the surface as made [m].
-    wear, pit : shape (n,)
+    wear, pit : shape (*ny, n)
         Depths worn off and broken out [m].
-    damage : shape (cells, n)
+    damage : shape (cells, *ny, n)
         Miner's sum; of cells that are gone that at their end.
-    failed : shape (cells, n)
+    failed : shape (cells, *ny, n)
         Passes after which D reached 1; inf: it did not.
-    is_pitted : shape (n,)
+    is_pitted : shape (*ny, n)
         Columns in which failed cells have reached the surface.
     volume
-        Worn off since the first pass, beyond the columns too [m^2].
+        Worn off since the first pass, beyond the columns too [m^2], of a strip per metre of width.
     wear_rate, damage_rate, volume_rate
-        Of a pass at the begin of the last jump: [m] and 1, shapes (n,) and (cells, n), and [m^2].
+        Of a pass at the begin of the last jump: [m] and 1, shapes of wear and damage, and [m^2].
     """
 
     s: np.ndarray
+    y: np.ndarray
     edges: np.ndarray
     height: np.ndarray
     wear: np.ndarray
@@ -55,20 +63,20 @@ class LifeBody(NamedTuple):
     volume_rate: float
 
     @classmethod
-    def new(cls, s: np.ndarray, height: np.ndarray, edges: np.ndarray) -> LifeBody:
+    def new(cls, s: np.ndarray, height: np.ndarray, edges: np.ndarray, y: np.ndarray = NO_ROWS) -> LifeBody:
         """Without wear and damage."""
-        zero, cells = np.zeros(len(s)), np.zeros((len(edges) - 1, len(s)))
+        zero, cells = np.zeros(height.shape), np.zeros((len(edges) - 1, *height.shape))
         never = np.full_like(cells, np.inf)
-        return cls(s, edges, height, zero, zero, cells, never, zero > 0.0, 0.0, zero, cells, 0.0)
+        return cls(s, y, edges, height, zero, zero, cells, never, zero > 0.0, 0.0, zero, cells, 0.0)
 
     @property
     def recession(self) -> np.ndarray:
-        """Depth of the present surface below that as made [m], shape (n,)."""
+        """Depth of the present surface below that as made [m], shape of the height."""
         return self.wear + self.pit
 
     @property
     def profile(self) -> np.ndarray:
-        """Present heights [m], shape (n,)."""
+        """Present heights [m]."""
         return self.height - self.recession
 
     @property
@@ -83,15 +91,19 @@ class LifeBody(NamedTuple):
 
     @property
     def pits(self) -> int:
-        """Number of pits, runs of neighbouring pitted columns."""
-        from scipy.ndimage import label
-
-        return int(label(self.is_pitted)[1])
+        """Number of pits, regions of neighbouring pitted columns."""
+        return laws.regions(self.is_pitted, self.y.size > 0)[1]
 
     @property
     def is_there(self) -> np.ndarray:
-        """Cells that are not gone, shape (cells, n)."""
-        return self.edges[1:, None] > self.recession
+        """Cells that are not gone, shape of the damage."""
+        return laws.below(self.edges[1:], self.height) > self.recession
+
+    @property
+    def widths(self) -> tuple[float, ...]:
+        """Widths of the columns across, if there are rows, and along [m]."""
+        across = float(self.y[1] - self.y[0]) if self.y.size > 1 else np.inf
+        return *(across,) * bool(self.y.size), float(self.s[1] - self.s[0])
 
     @property
     def largest_damage(self) -> float:
@@ -124,16 +136,20 @@ class LifeBody(NamedTuple):
         pit = self.pit
         if short_cutoff and pit.any() and short_cutoff > MIN_SPACINGS * width:
             pit = np.maximum(mean_line(self.s, pit, short_cutoff, "short_cutoff"), 0.0)
-        wear, pit = self.wear[met], pit[met]
+            pit = np.maximum(periodic_mean(pit, short_cutoff / self.widths[0]), 0.0) if self.y.size else pit
+        wear, pit = self.wear[..., met], pit[..., met]
         first, last = self.s[met][[0, -1]]
         before = max(int(np.ceil((first - reach[0]) / width)) + 1, 0)
         after = max(int(np.ceil((reach[1] - last) / width)) + 1, 0)
-        count = int(min(max(averaged / width, 1.0), len(wear)))
+        count = int(min(max(averaged / width, 1.0), wear.shape[-1]))
         # a mean of pits would be a step at the ends, which no surface has
-        beyond = [wear[part].mean() + np.median(pit[part]) for part in (slice(count), slice(-count, None))]
-        depth = np.pad(wear + pit, (before, after), constant_values=beyond)
-        faces = first + width * (np.arange(len(depth) + 1) - before - 0.5)
-        return BodyField.zero(width).add(faces, depth)
+        ends = slice(count), slice(-count, None)
+        beyond = [wear[..., part].mean() + np.median(pit[..., part]) for part in ends]
+        rows = np.atleast_2d(wear + pit)
+        padded = np.array([np.pad(row, (before, after), constant_values=beyond) for row in rows])
+        depth = padded.reshape(*self.height.shape[:-1], -1)
+        faces = first + width * (np.arange(depth.shape[-1] + 1) - before - 0.5)
+        return BodyField.zero(width, depth.shape[:-1]).add(faces, depth)
 
     def faces(self) -> np.ndarray:
         """Faces of the columns [m], shape (n + 1,)."""
@@ -141,13 +157,14 @@ class LifeBody(NamedTuple):
         return np.append(self.s - 0.5 * width, self.s[-1] + 0.5 * width)
 
     def rates(self, of_pass: OfBody) -> tuple[np.ndarray, np.ndarray]:
-        """Wear [m] and damage, shapes (n,) and (cells, n), that a pass adds to every column."""
+        """Wear [m] and damage, of their shapes, that a pass adds to every column."""
         met = self.columns_within((of_pass.s[0], of_pass.s[-1]))
-        worn = np.diff([field.means(self.faces()) for field in of_pass.depth], axis=0)[0]
-        wear = np.where(met, np.maximum(worn, 0.0), 0.0)
+        before, after = (field.means(self.faces()) for field in of_pass.depth)
+        wear = np.where(met, np.maximum(after - before, 0.0), 0.0) + np.zeros(self.height.shape)
         at = np.where(met, self.s, np.nan)
-        columns = np.array([np.interp(at, of_pass.s, row) for row in of_pass.damage])
-        columns = np.where(met, columns, 0.0)
+        rows = of_pass.damage.reshape(-1, of_pass.damage.shape[-1])
+        columns = np.array([np.interp(at, of_pass.s, row) for row in rows])
+        columns = np.where(met, columns, 0.0).reshape(*of_pass.damage.shape[:-1], -1)
         # the surface recedes within the jump: by less than the wear allowed, and cells are at its begin
         depths = laws.cell_depths(self.edges, self.recession)
         return wear, laws.damage_at(of_pass.depths, columns, depths)
@@ -160,8 +177,8 @@ class LifeBody(NamedTuple):
 
         `wear`, `added`: as of `rates`.
         """
-        tops = np.maximum(self.edges[:-1, None], self.recession)
-        thickness = np.maximum(self.edges[1:, None] - tops, 0.0)
+        tops = np.maximum(laws.below(self.edges[:-1], self.height), self.recession)
+        thickness = np.maximum(laws.below(self.edges[1:], self.height) - tops, 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             to_come = np.nan_to_num(np.cumsum(added * thickness, axis=0) / wear.mean(), posinf=np.inf)
         return float(np.max(self.damage + to_come, initial=0.0, where=self.is_there))
@@ -185,9 +202,11 @@ class LifeBody(NamedTuple):
 
         if not breaks(max_passes):
             return max_passes
-        levels = np.array([1.0, laws.WEAKENED_DAMAGE])[:, None, None] - self.damage
+        levels = laws.below(np.array([1.0, laws.WEAKENED_DAMAGE]), self.damage) - self.damage
         reached = rates.passes_to_damage(np.maximum(levels, 0.0))
-        uncovered = rates.passes_to_wear(np.maximum(self.edges[1:, None] - self.recession, 0.0))
+        uncovered = rates.passes_to_wear(
+            np.maximum(laws.below(self.edges[1:], self.height) - self.recession, 0.0)
+        )
         times = np.floor(np.append(reached, uncovered)) + 1.0
         times = np.unique(np.append(times[times < max_passes], max_passes))
         return int(times[bisect_left(times, True, hi=len(times) - 1, key=breaks)])
@@ -213,7 +232,7 @@ class LifeBody(NamedTuple):
         recession, breaks = body.recession, rule != "none"
         bottom = laws.broken_out(body.damage, body.edges, recession, rule if breaks else "above")
         if breaks:
-            bottom = laws.with_walls(bottom, recession, self.s[1] - self.s[0])
+            bottom = laws.with_walls(bottom, recession, self.widths)
         is_new = bottom > recession
         pit = bottom - body.wear if breaks else body.pit
         return body._replace(is_pitted=body.is_pitted | is_new, pit=np.where(is_new, pit, body.pit))

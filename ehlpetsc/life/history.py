@@ -29,11 +29,11 @@ from ehlpetsc.results.hdf5_file import (
 )
 from ehlpetsc.results.output_guard import replacing
 
-BODY_DATASETS = {"s": "m", "edges": "m", "height": "m"}  # of a body
+BODY_DATASETS = {"s": "m", "y": "m", "edges": "m", "height": "m"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
 ROW_DATASETS |= {"wear_rate": "m", "damage_rate": "1", "volume_rate": "m^2"}  # of a pass
 KIND = "surfaces over their life"
-FORMAT = 3
+FORMAT = 4
 COMMIT_DATASET = "passes"  # of the figures, written last
 ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
 

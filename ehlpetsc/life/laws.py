@@ -48,14 +48,39 @@ def cell_edges(thickness: float, deepest: float) -> np.ndarray:
     return np.array(edges)
 
 
+def below(depths: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """Depths (n,) as an axis ahead of those of the columns."""
+    return np.reshape(depths, (-1, *(1,) * columns.ndim))
+
+
+def regions(mask: np.ndarray, across: bool) -> tuple[np.ndarray, int]:
+    """Numbers from 1 of the connected regions of a mask, shape of the mask, and their count.
+
+    `across`: whether the last axis but one is across a strip, which repeats there: its first and last rows
+    are neighbours.
+    """
+    from scipy.ndimage import label
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    numbers, count = label(mask)
+    if not across:
+        return numbers, int(count)
+    first, last = numbers[..., 0, :], numbers[..., -1, :]
+    both = (first > 0) & (last > 0)
+    pairs = coo_matrix((both[both], (first[both], last[both])), shape=(count + 1, count + 1))
+    merged, number_of = connected_components(pairs, directed=False)  # 0, beside the regions, stays alone
+    return number_of[numbers], merged - 1
+
+
 def cell_depths(edges: np.ndarray, recession: np.ndarray) -> np.ndarray:
     """Depths of the centres of cells below the present surface [m]; nan where a cell is gone.
 
     `edges`: shape (cells + 1,). `recession`: depth of the present surface below that as made [m], shape
-    (columns,). Of a cell that is worn in part the centre of the rest counts.
+    (columns,) or (rows, columns). Of a cell that is worn in part the centre of the rest counts.
     """
-    top = np.maximum(edges[:-1, None], recession)
-    bottom = edges[1:, None]
+    top = np.maximum(below(edges[:-1], recession), recession)
+    bottom = below(edges[1:], recession)
     return np.where(bottom > recession, 0.5 * (top + bottom) - recession, np.nan)
 
 
@@ -65,7 +90,7 @@ def damage_at(depths: np.ndarray, damage: np.ndarray, at: np.ndarray) -> np.ndar
     Straight lines of ln D over depth, of D where one end is 0; 0 below the deepest.
 
     `depths`: increasing from 0 [m], shape (n,). `damage`: shape (n, columns). `at`: depths [m]; nan: 0, shape
-    (cells, columns).
+    (cells, columns). Columns may have an axis of rows before them.
     """
     if len(depths) == 1:
         return np.where(at <= depths[0], damage[0], 0.0)
@@ -95,35 +120,47 @@ def broken_out(
     * ``connected`` only cells that are connected with the surface by failed or weakened ones break out, with
       the cells above them: a crack does not grow.
 
-    `damage`: shape (cells, columns). `edges`: [m], shape (cells + 1,). `recession`: depth of the present
-    surface [m], shape (columns,).
+    `damage`: shape (cells, *columns). `edges`: [m], shape (cells + 1,). `recession`: depth of the present
+    surface [m], shape (columns,), of a strip (rows, columns).
     """
-    from scipy.ndimage import label
-
-    remains = edges[1:, None] > recession
+    bottoms = below(edges[1:], recession)
+    remains = bottoms > recession
     failed = remains & (damage >= 1.0)
     if not failed.any():
         return np.array(recession, float)
-    numbers, _ = label(remains & (damage >= WEAKENED_DAMAGE))
+    numbers, _ = regions(remains & (damage >= WEAKENED_DAMAGE), recession.ndim > 1)
     breaking = numbers[failed]
     if rule == "connected":
-        top = remains.argmax(axis=0)
-        at_surface = numbers[top, np.arange(damage.shape[1])][remains.any(axis=0)]
+        top = remains.argmax(axis=0)[None]
+        at_surface = np.take_along_axis(numbers, top, 0)[0][remains.any(axis=0)]
         breaking = np.intersect1d(at_surface, breaking)
-    bottom = np.where(np.isin(numbers, breaking), edges[1:, None], 0.0).max(axis=0)
+    bottom = np.where(np.isin(numbers, breaking), bottoms, 0.0).max(axis=0)
     return np.maximum(bottom, recession)
 
 
-def with_walls(bottom: np.ndarray, recession: np.ndarray, width: float) -> np.ndarray:
-    """Depths of pits whose walls rise at 30 degrees from the cells that break out [m].
+def with_walls(bottom: np.ndarray, recession: np.ndarray, widths: tuple[float, ...]) -> np.ndarray:
+    """Depths of pits whose walls rise at 30 degrees from the cells that break out, in all directions [m].
 
     Cracks of micropits grow at a shallow angle to the surface (Rycerz and Kadiric, Tribology Letters 67
     (2019) 63), and the width of a pit is then independent of that of the columns.
 
-    `bottom`: as of :func:`broken_out` [m], shape (columns,). `recession`: depth of the surface before [m],
-    shape (columns,). `width`: of a column [m].
+    `bottom`: as of :func:`broken_out` [m], shape (columns,), of a strip (rows, columns). `recession`: depth
+    of the surface before [m]. `widths`: of a column along each of these axes [m].
     """
-    number = np.arange(len(bottom))
-    breaks = np.flatnonzero(bottom > recession)
-    rise = WALL_SLOPE * width * np.abs(number[:, None] - breaks)
-    return np.maximum(recession, np.max(bottom[breaks] - rise, axis=1, initial=0.0))
+    rows, columns = (1, *bottom.shape)[-2:]
+    bottoms, depth = bottom.reshape(rows, columns), recession.reshape(rows, columns).copy()
+    breaks = np.argwhere(bottoms > depth)
+    if not len(breaks):
+        return np.array(recession, float)
+    width, across = widths[-1], (widths[0] if rows > 1 else np.inf)
+    reach = (bottoms.max() - depth.min()) / WALL_SLOPE
+    beside, turned = min(int(reach / width), columns), min(int(reach / across), (rows - 1) // 2 + 1)
+    turns = np.arange(max(-turned, -((rows - 1) // 2)), min(turned, rows // 2) + 1)
+    along = np.arange(-beside, beside + 1)
+    rise = WALL_SLOPE * np.hypot(width * along, (across * turns if rows > 1 else 0.0 * turns)[:, None])
+    for row, column in breaks:
+        first, last = max(column - beside, 0), min(column + beside + 1, columns)
+        wall = rise[:, first - column + beside : last - column + beside]
+        place = ((row + turns) % rows)[:, None], np.arange(first, last)
+        depth[place] = np.maximum(depth[place], bottoms[row, column] - wall)
+    return depth.reshape(bottom.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -27,8 +28,8 @@ class OfBody(NamedTuple):
     """Effects of a pass on a body.
 
     `s`: abscissas in the body of the points that passed the whole contact [m], shape (points,). `depths`:
-    below the present surface [m], shape (n,). `damage`: shape (n, points). `depth`: wear before and after the
-    pass.
+    below the present surface [m], shape (n,). `damage`: shape (n, *rows, points). `depth`: wear before
+    and after the pass.
     """
 
     s: np.ndarray
@@ -38,9 +39,9 @@ class OfBody(NamedTuple):
 
     @property
     def volume(self) -> float:
-        """Worn off [m^2]."""
+        """Worn off [m^2], of a strip per metre of width."""
         before, after = self.depth
-        return after.volume - before.volume
+        return (after.volume - before.volume) / math.prod(after.depth.shape[:-1])
 
 
 class Pass(NamedTuple):
@@ -128,5 +129,5 @@ def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]
                 )
             values = solve(prepared, side, job)
             criterion = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
-            damages.append((prepared.s[passed], loads.a * prepared.depths, criterion[:, passed]))
+            damages.append((prepared.s[passed], loads.a * prepared.depths, criterion[..., passed]))
     return damages, figures

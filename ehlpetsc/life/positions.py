@@ -17,7 +17,7 @@ from ehlpetsc.case.tables import Case
 from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.life import laws
-from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.body import NO_ROWS, LifeBody
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
@@ -73,7 +73,7 @@ class Positions:
             spec = self.case.surface.side("12"[k])
             cutoff = spec.short_cutoff if spec else None
             fields.append(body.gap_field(stretch, (faces.min(), faces.max()), averaged, cutoff))
-        records = {"wear": WearRecord(BodyFields(*fields), BodyFields.zero(self.scales.dx))}
+        records = {"wear": WearRecord(BodyFields(*fields), scene.mesh_on_bodies.zero)}
         return records | ({"plastic_deformation": plastic} if plastic else {})
 
     def _offset(self, position: int, k: int) -> float:
@@ -115,5 +115,8 @@ class Positions:
         if k == 1 and self.count > 1:
             extra = dx * np.arange(1, self._columns_more + 1)
             s = np.append(s, s[-1] + extra) if self._sign > 0 else np.append(s[0] - extra[::-1], s)
-        height = profile.height(s - offset) if profile else np.zeros(len(s))
-        return LifeBody.new(s, height, laws.cell_edges(CELL_SIZE * self.rq, of_pass.depths[-1] + 1e-12))
+        grid = self.scales.grid
+        height = profile.height(s - offset) if profile else np.zeros((*grid.shape[:-1], len(s)))
+        y = self.scales.a * grid.axes[0] if len(grid.axes) > 1 else NO_ROWS
+        edges = laws.cell_edges(CELL_SIZE * self.rq, of_pass.depths[-1] + 1e-12)
+        return LifeBody.new(s, height, edges, y)

@@ -108,9 +108,9 @@ class Round(NamedTuple):
 def _deepest(fields: list[BodyField]) -> BodyField:
     """Largest depth of several fields of a body at each point."""
     first = min(field.first for field in fields)
-    last = max(field.first + len(field.depth) for field in fields)
-    depths = np.zeros((len(fields), last - first))
-    for row, field in zip(depths, fields, strict=True):
+    last = max(field.first + field.cells for field in fields)
+    depths = np.zeros((len(fields), *fields[0].depth.shape[:-1], last - first))
+    for depth, field in zip(depths, fields, strict=True):
         begin = field.first - first
-        row[begin : begin + len(field.depth)] = field.depth
+        depth[..., begin : begin + field.cells] = field.depth
     return BodyField(fields[0].spacing, first, depths.max(axis=0))

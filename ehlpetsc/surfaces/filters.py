@@ -83,6 +83,15 @@ def mean_line(x: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarr
     return idct(spectrum * np.exp2(-np.square(exponent)), type=1)
 
 
+def periodic_mean(z: np.ndarray, cutoff: float) -> np.ndarray:
+    """Gaussian filter of `mean_line` along the first axis of z, which repeats.
+
+    `cutoff`: wavelength in spacings of this axis.
+    """
+    waves = np.fft.rfftfreq(len(z))[:, None]
+    return np.fft.irfft(np.fft.rfft(z, axis=0) * np.exp2(-np.square(waves * cutoff)), len(z), axis=0)
+
+
 def mean_surface(x: np.ndarray, y: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarray:
     r"""Mean surface of the areal Gaussian filter of ISO 16610-61.
 

@@ -183,7 +183,7 @@ def test_pits_are_as_wide_on_any_mesh(columns):
     width, middle = 20.0 / (columns - 1), columns // 2
     bottom = np.full(columns, 0.5)  # worn before
     bottom[middle] = 4.0
-    depth = laws.with_walls(bottom, np.full(columns, 0.5), width)
+    depth = laws.with_walls(bottom, np.full(columns, 0.5), (width,))
     assert depth[middle] == 4.0 and depth[0] == 0.5
     assert width * np.count_nonzero(depth > 0.5) == pytest.approx(2 * 3.5 * 3.0**0.5, abs=width)
 
