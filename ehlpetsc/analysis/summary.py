@@ -5,8 +5,9 @@
 One line for each result and scalar, over the time in which both surfaces fill the contact, or over the whole
 run if it ends before (column ``from_s``). SI units. Means and percentiles are weighted by the time step.
 ``--steps`` prints the scalars of every step of one result, ``--frame STEP`` its fields at a stored step,
-``--ensemble`` mean and deviation of each scalar over results that differ only in their seeds, by ensemble;
-with quantiles of damage where RESULT.post.h5 exists.
+``--ensemble`` mean and deviation of each scalar over results that differ only in their seeds, by ensemble,
+and the bounds within which 90 % of the means of resampled runs lie (bootstrap); with maxima and quantiles of
+damage, and lives, where RESULT.post.h5 exists.
 """
 
 from __future__ import annotations
@@ -30,8 +31,9 @@ from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
+RESAMPLINGS, CONFIDENCE, RESAMPLING_SEED = 4000, 0.9, 1  # of the bootstrap
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
-ENSEMBLE_COLUMNS = ("ensemble", "scalar", "unit", "runs", "mean", "deviation", "min", "max")
+ENSEMBLE_COLUMNS = ("ensemble", "scalar", "unit", "runs", "mean", "deviation", "min", "max", "low", "high")
 
 
 def run_scalars(result: Result) -> dict[str, float]:
@@ -57,17 +59,55 @@ def run_scalars(result: Result) -> dict[str, float]:
 
 
 def _damage(post: PostResult) -> dict[str, float]:
-    """Quantiles of damage, maximum and median flash temperature [K], over the points of each surface."""
+    """Maximum and quantiles of damage, lives, flash temperatures [K] over the points of each surface.
+
+    Of a criterion that was computed too, the names begin with its name. A life is 1/D of the most damaged
+    depth below a point [passes], of the worst point and of the points that 1 and 10 % of the surface exceed.
+    """
     found = {}
     for surface in post.surfaces:
-        for depth, values in zip(post.z, post.passed(surface), strict=True):
-            for quantile in QUANTILES if values.size else ():
-                found[f"damage_{surface} z/a={depth:g} q={quantile:g}"] = float(np.quantile(values, quantile))
+        for criterion in (None, *post.criteria):
+            values = post.passed(surface, criterion)
+            if values.size:
+                found |= _points(values, post.z, surface, criterion)
         flash = post.temperatures[surface].flash if surface in post.temperatures else np.array([np.nan])
         if np.isfinite(flash).any():
             found[f"flash_temperature_{surface} largest"] = float(np.nanmax(flash))
             found[f"flash_temperature_{surface} q=0.5"] = float(np.nanmedian(flash))
     return found
+
+
+def _points(values: np.ndarray, z: np.ndarray, surface: str, criterion: str | None) -> dict[str, float]:
+    """Statistics of the damage (depths, points) of a surface, or of the utilisation of the fatigue limit."""
+    prefix = f"{criterion} " if criterion else ""
+    quantity = "utilisation" if criterion == "dang-van" else "damage"
+    found = {}
+    for depth, row in zip(z, values, strict=True):
+        name = f"{prefix}{quantity}_{surface} z/a={depth:g}"
+        found |= {f"{name} q={q:g}": float(np.quantile(row, q)) for q in QUANTILES}
+        found[f"{name} largest"] = float(row.max())
+    if quantity == "utilisation":
+        return found
+    worst = values.max(axis=0)
+    name = f"{prefix}life_{surface}"
+    with np.errstate(divide="ignore"):
+        found[f"{name} worst"] = float(1.0 / worst.max())
+        found |= {f"{name} q={1.0 - q:g}": float(1.0 / np.quantile(worst, q)) for q in QUANTILES[:0:-1]}
+    return found
+
+
+def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
+    """Bounds of the mean of values (n,): between them lies a share `CONFIDENCE` of the means of n values
+    that are drawn from them with replacement; nan of fewer than two.
+
+    Efron, Annals of Statistics 7 (1979) 1: percentile method. Of few values it is too narrow: of ten by 15 %.
+    """
+    if values.size < 2:
+        return np.nan, np.nan
+    chosen = np.random.default_rng(RESAMPLING_SEED).integers(values.size, size=(RESAMPLINGS, values.size))
+    tails = (1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0
+    low, high = np.quantile(values[chosen].mean(axis=1), tails)
+    return float(low), float(high)
 
 
 def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
@@ -94,9 +134,11 @@ def ensemble_table(results: list[Result]) -> list[Sequence]:
     rows: list[Sequence] = [ENSEMBLE_COLUMNS]
     for ensemble, scalars in found.items():
         for name, values in scalars.items():
-            deviation = values.std(ddof=1) if values.size > 1 else np.nan
-            reduced = values.mean(), deviation, values.min(), values.max()
-            others = "K" if name.startswith("flash_temperature") else "1"
+            with np.errstate(invalid="ignore"):  # of lives without end
+                deviation = values.std(ddof=1) if values.size > 1 else np.nan
+                bounds = bootstrap_bounds(values)
+            reduced = values.mean(), deviation, values.min(), values.max(), *bounds
+            others = "K" if name.startswith("flash_temperature") else "passes" if "life_" in name else "1"
             unit = results[0].unit(f"steps/{name}") if name in results[0].scalars else others
             rows.append((ensemble, name, unit, values.size, *(f"{v:.6g}" for v in reduced)))
     return rows

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from ehlpetsc.pictures import style
 
@@ -25,15 +25,12 @@ def draw(life: LifeHistory, path: Path) -> None:
     """Draw a life and save the picture."""
     if not life.rows:
         raise OSError(f"{path}: not written, no pass is solved yet")
-    figure = Figure(figsize=(11.0, 8.5), layout="constrained")
-    top, bottom = figure.subfigures(2, 1, height_ratios=(2, 1))
+    has_rows = life.bodies[0][0].y.size > 0
+    figure = Figure(figsize=(11.0, 12.0 if has_rows else 8.5), layout="constrained")
+    top, bottom = figure.subfigures(2, 1, height_ratios=(3 if has_rows else 2, 1))
     chosen = style.spread(len(life.rows), SHOWN_INSTANTS)
-    above = top.subplots(2, len(chosen), squeeze=False)
-    for row, column in zip(chosen, above.T, strict=True):
-        for k, axes in enumerate(column):
-            image = under_profile(axes, life.bodies[row][k])
-            axes.set_title(f"surface {k + 1}, {life.rows[row]['passes']:,} passes", fontsize="small")
-    top.colorbar(image, ax=above, label="log10 D", shrink=0.6)
+    draw_bodies = _maps if has_rows else _sections
+    draw_bodies(top, life, chosen)
     passes = life("passes")
     panels = (
         ("pitted_share", "pitted share", 1.0),
@@ -54,6 +51,60 @@ def draw(life: LifeHistory, path: Path) -> None:
     steels = ", ".join(dict.fromkeys([named] if isinstance(named, str) else named))
     figure.suptitle(f"{life.title} ({steels})" if steels else life.title)
     style.save(figure, path)
+
+
+def _heading(life: LifeHistory, row: int, k: int) -> str:
+    return f"surface {k + 1}, {life.rows[row]['passes']:,} passes"
+
+
+def _sections(figure: FigureBase, life: LifeHistory, chosen: np.ndarray) -> None:
+    """Cells below both profiles of a line at some instants."""
+    above = figure.subplots(2, len(chosen), squeeze=False)
+    for row, column in zip(chosen, above.T, strict=True):
+        for k, axes in enumerate(column):
+            image = under_profile(axes, life.bodies[row][k])
+            axes.set_title(_heading(life, row, k), fontsize="small")
+    figure.colorbar(image, ax=above, label="log10 D", shrink=0.6)
+
+
+def _maps(figure: FigureBase, life: LifeHistory, chosen: np.ndarray) -> None:
+    """Damage in the most damaged layer of cells and depth of pits of both surfaces of a strip."""
+    axes = figure.subplots(4, len(chosen), squeeze=False, sharey="row")
+    layers = [worst_layer(body) for body in life.bodies[chosen[-1]]]
+    deepest = max(1e6 * body.pit.max() for body in life.bodies[chosen[-1]])
+    for row, column in zip(chosen, axes.T, strict=True):
+        for k, (body, layer) in enumerate(zip(life.bodies[row], layers, strict=True)):
+            of_damage, of_pits = column[2 * k : 2 * k + 2]
+            depth = 0.5e6 * body.edges[layer : layer + 2].sum()
+            damage = np.where(body.is_there, body.damage, np.nan)[layer]
+            with np.errstate(divide="ignore"):
+                values = np.clip(np.log10(damage), MIN_LOG_DAMAGE, 0.0)
+            limits = dict(vmin=MIN_LOG_DAMAGE, vmax=0.0, cmap="magma_r")
+            damages = _map(of_damage, body, values, **limits)
+            of_damage.set_title(f"{_heading(life, row, k)}, D {depth:.2g} µm deep", fontsize="small")
+            pits = _map(of_pits, body, 1e6 * body.pit, vmin=0.0, vmax=deepest or 1.0, cmap="cividis")
+            share = 100.0 * body.pitted_share
+            of_pits.set_title(f"{body.pits} pits, {share:.2g} % of the surface", fontsize="small")
+    figure.colorbar(damages, ax=axes, label="log10 D", shrink=0.5)
+    figure.colorbar(pits, ax=axes, label="depth of pits [µm]", shrink=0.5)
+    for one in axes[:, 0]:
+        one.set_ylabel("y [µm]")
+    for one in axes[-1]:
+        one.set_xlabel("s [µm]")
+
+
+def worst_layer(body: LifeBody) -> int:
+    """Layer with the maximum damage of cells that are not gone."""
+    return int(np.max(body.damage, axis=(1, 2), initial=0.0, where=body.is_there).argmax())
+
+
+def _map(axes: Axes, body: LifeBody, values: np.ndarray, **limits: Any) -> ScalarMappable:
+    """Map over the columns of a strip, s to the right."""
+    half = 0.5 * body.widths[0]
+    s, y = 1e6 * body.faces(), 1e6 * np.append(body.y - half, body.y[-1] + half)
+    axes.set_facecolor("0.8")  # cells that are gone
+    axes.locator_params(axis="x", nbins=5)
+    return axes.pcolormesh(s, y, values, rasterized=True, **limits)
 
 
 def under_profile(axes: Axes, body: LifeBody) -> ScalarMappable:

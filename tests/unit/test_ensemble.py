@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.made_results import change_case, make_result, with_solids
 
-from ehlpetsc.analysis.summary import ensemble_table, ensembles, run_scalars
+from ehlpetsc.analysis.summary import bootstrap_bounds, ensemble_table, ensembles, run_scalars
 from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
@@ -92,3 +92,48 @@ def test_ensemble_has_damage_quantiles(tmp_path):
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
     rows = ensemble_table(opened([path]))
     assert {unit for _, name, unit, *_ in rows if "flash" in name} == {"K"}
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_bootstrap_bounds_are_those_of_the_mean(seed):
+    """Of normal values 1.645 standard errors either side; the same bounds in every call."""
+    values = np.random.default_rng(seed).normal(3.0, 0.5, size=40)
+    error = values.std() / np.sqrt(40)
+    low, high = bootstrap_bounds(values)
+    assert (low, high) == pytest.approx(
+        (values.mean() - 1.645 * error, values.mean() + 1.645 * error), rel=0.01
+    )
+    assert high - low == pytest.approx(2 * 1.645 * error, rel=0.05)
+    assert bootstrap_bounds(values) == (low, high)
+    assert np.isnan(bootstrap_bounds(values[:1])).all()
+
+
+def test_ensemble_of_strips_has_lives_of_the_worst_points(tmp_path):
+    """Of the most damaged depth below each point, by each criterion; the band contains the mean."""
+    paths = made(tmp_path, seeds=[1, 2, 3])
+    s, y = np.arange(50.0), np.arange(4.0)
+    for factor, path in enumerate(paths, 1):
+        damage = np.linspace(1e-6, 2e-4, 200).reshape(4, 50) * factor
+        with h5py.File(path) as result, h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
+            file.attrs.update(a=1e-3, case=result.attrs["case"])
+            file["damage/s"], file["damage/y"], file["damage/z_over_a"] = s, y, [0.0, 0.01]
+            file["damage/2"] = np.stack([damage[::-1] / 10.0, damage])
+            file["damage/2_complete"] = np.ones(50)
+            file["criteria/fatemi_socie/2_damage"] = np.stack([2.0 * damage, damage])
+            file["criteria/dang_van/2_utilisation"] = np.stack([damage, damage])
+    with read_result(paths[0]) as result:
+        found = run_scalars(result)
+    assert found["damage_2 z/a=0.01 largest"] == pytest.approx(2e-4)
+    assert found["life_2 worst"] == pytest.approx(5000.0)
+    ranked = np.linspace(1e-6, 2e-4, 200)
+    for share in (0.01, 0.1):
+        assert found[f"life_2 q={share:g}"] == pytest.approx(1.0 / np.quantile(ranked, 1.0 - share))
+        key = f"fatemi-socie life_2 q={share:g}"
+        assert found[key] == pytest.approx(0.5 * found[f"life_2 q={share:g}"])
+    assert "dang-van utilisation_2 z/a=0 q=0.99" in found and "dang-van life_2 worst" not in found
+    head, *rows = ensemble_table(opened(paths))
+    row = next(dict(zip(head, row, strict=True)) for row in rows if row[1] == "life_2 worst")
+    lives = 5000.0 / np.arange(1, 4)
+    assert (row["unit"], row["runs"]) == ("passes", 3)
+    assert float(row["mean"]) == pytest.approx(lives.mean(), rel=1e-5)
+    assert lives.min() <= float(row["low"]) < float(row["mean"]) < float(row["high"]) <= lives.max()

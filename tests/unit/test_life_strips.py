@@ -15,6 +15,7 @@ from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.life.rounds import Round
+from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0, 8.0])
@@ -133,6 +134,26 @@ def test_life_file_of_a_strip(tmp_path):
     found = read_life(tmp_path / "a.life.h5")
     for one, other in zip(found.bodies[1], stored.bodies[1], strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+def test_picture_of_a_strip_has_maps_of_damage_and_of_pits(tmp_path, monkeypatch):
+    """At some instants; cells that are gone are left out."""
+    stored = LifeHistory('contact = { material = "100Cr6" }', "title")
+    for passes, bodies in ((10, life(3, "none")), (40, life(3, "above"))):
+        row = {"passes": passes, "jump": 10, "friction": 0.1}
+        for k, one in enumerate(bodies, 1):
+            row |= {f"pitted_share_{k}": one.pitted_share, f"ra_{k}": one.ra, f"wear_volume_{k}": one.volume}
+        stored.add(row, bodies, {})
+    drawn = []
+    monkeypatch.setattr(lives.style, "save", lambda figure, path: drawn.append(figure))
+    lives.draw(stored, tmp_path / "a.png")
+    titles = [axes.get_title() for axes in drawn[0].axes]
+    body = stored.bodies[-1][1]
+    assert "surface 1, 10 passes" in titles[0] and titles[7].startswith(f"{body.pits} pits, ")
+    shown = drawn[0].axes[5].collections[0].get_array()
+    layer = lives.worst_layer(body)
+    assert np.array_equal(np.ma.getmaskarray(shown).ravel(), ~body.is_there[layer].ravel())
+    assert np.allclose(np.ravel(drawn[0].axes[7].collections[0].get_array()), 1e6 * body.pit.ravel())
 
 
 def test_points_have_no_life():
