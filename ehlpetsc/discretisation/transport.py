@@ -40,26 +40,32 @@ def downstream_weights(t: float) -> np.ndarray:
 
 
 @compiled
-def value_at(values: np.ndarray, i: int, beyond: float) -> float:
-    """Value of a node; of one beyond an end `beyond`, where that is nan the value at the end."""
+def value_at(values: np.ndarray, i: int, beyond: float, as_end: bool) -> float:
+    """Value of a node; of one beyond an end `beyond`, or the value at the end."""
     if 0 <= i < len(values):
         return values[i]
-    return (values[0] if i < 0 else values[-1]) if np.isnan(beyond) else beyond
+    return (values[0] if i < 0 else values[-1]) if as_end else beyond
 
 
-@compiled
-def carried(rows: np.ndarray, nodes: float, beyond: float = np.nan) -> np.ndarray:
+def carried(rows: np.ndarray, nodes: float, beyond: float | None = None) -> np.ndarray:
     """Fields carried downstream by `nodes` nodes, upstream where negative.
 
     `rows`: along x, shape (rows, nx).
-    `beyond`: value that enters at an end; nan: that at the end.
+    `beyond`: value that enters at an end; None: that at the end.
     """
+    as_end = beyond is None
+    return _carried(rows, float(nodes), 0.0 if as_end else float(beyond), as_end)
+
+
+@compiled
+def _carried(rows: np.ndarray, nodes: float, beyond: float, as_end: bool) -> np.ndarray:
+    """Fields carried, see :func:`carried`."""
     last, shift = rows.shape[1] - 1, int(np.rint(nodes))
     out = np.empty_like(rows)
     if abs(nodes - shift) < WHOLE:
         for row in range(len(rows)):
             for i in range(last + 1):
-                out[row, i] = value_at(rows[row], i - shift, beyond)
+                out[row, i] = value_at(rows[row], i - shift, beyond, as_end)
         return out
     shift = int(np.floor(nodes))
     t = nodes - shift
@@ -68,10 +74,10 @@ def carried(rows: np.ndarray, nodes: float, beyond: float = np.nan) -> np.ndarra
         values = rows[row]
         entering = 0.0
         for i in range(-1, last + 1):
-            here = value_at(values, i - shift, beyond)
+            here = value_at(values, i - shift, beyond, as_end)
             leaving = 0.0
             for k in range(-REACH, REACH + 1):
-                leaving += weights[k + REACH] * value_at(values, i - shift + k, beyond)
+                leaving += weights[k + REACH] * value_at(values, i - shift + k, beyond, as_end)
             one, other = 0.5 * t * here, 0.5 * (1.0 + t) * here
             leaving = min(max(leaving, min(one, other)), max(one, other))
             if i >= 0:
