@@ -64,7 +64,7 @@ def _damage(post: PostResult) -> dict[str, float]:
     Of a criterion that was computed too, the names begin with its name. A life is 1/D of the most damaged
     depth below a point [passes], of the worst point and of the points that 1 and 10 % of the surface exceed.
     """
-    found = {}
+    found: dict[str, float] = {}
     for surface in post.surfaces:
         for criterion in (None, *post.criteria):
             values = post.passed(surface, criterion)
@@ -81,7 +81,7 @@ def _points(values: np.ndarray, z: np.ndarray, surface: str, criterion: str | No
     """Statistics of the damage (depths, points) of a surface, or of the utilisation of the fatigue limit."""
     prefix = f"{criterion} " if criterion else ""
     quantity = "utilisation" if criterion == "dang-van" else "damage"
-    found = {}
+    found: dict[str, float] = {}
     for depth, row in zip(z, values, strict=True):
         name = f"{prefix}{quantity}_{surface} z/a={depth:g}"
         found |= {f"{name} q={q:g}": float(np.quantile(row, q)) for q in QUANTILES}
@@ -115,7 +115,7 @@ def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
 
     The conditions are keys and values in which ensembles differ, "" for a single ensemble.
     """
-    found = {}
+    found: dict[str, float] = {}
     for name, members in groups(results, "seed").items():
         runs = [run_scalars(result) for result in members]
         common = [scalar for scalar in runs[0] if all(scalar in run for run in runs)]
