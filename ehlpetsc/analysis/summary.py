@@ -115,7 +115,7 @@ def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:
 
     The conditions are keys and values in which ensembles differ, "" for a single ensemble.
     """
-    found: dict[str, float] = {}
+    found: dict[str, dict] = {}
     for name, members in groups(results, "seed").items():
         runs = [run_scalars(result) for result in members]
         common = [scalar for scalar in runs[0] if all(scalar in run for run in runs)]
