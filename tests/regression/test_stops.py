@@ -12,7 +12,8 @@ from ehlpetsc.analysis.compare import compare
 from ehlpetsc.results.reader import read_result
 
 CASE = [ROOT / "cases" / "table1_rough.toml", *settings(*SHORT)]
-BALL = [ROOT / "cases" / "ball.toml", *settings("mesh.points_per_half_width=8", "time.travel=0.5", "time.courant=0.4")]
+BRIEF = settings("mesh.points_per_half_width=8", "time.travel=0.5", "time.courant=0.4")
+BALL = [ROOT / "cases" / "ball.toml", *BRIEF]
 
 
 @pytest.fixture(scope="session")
