@@ -19,7 +19,12 @@ SHORT = {
 
 
 @pytest.mark.parametrize(
-    "keys", [{"mesh.points_per_half_width": 20}, {"time.pass_shift": 50e-6, "life.partners": 3}]
+    "keys",
+    [
+        {"mesh.points_per_half_width": 20},
+        {"time.pass_shift": 50e-6, "life.partners": 3},
+        {"mesh.width": 1.0},  # a strip
+    ],
 )
 def test_life_is_independent_of_the_number_of_ranks(keys, tmp_path):
     from mpi4py import MPI
