@@ -125,7 +125,7 @@ def test_lost_pass_index_is_rewritten(tmp_path, uninterrupted):
     copied(uninterrupted, tmp_path, "running_in.passes.json")
     done = run(CASE, *BRIEF, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "restart: running_in.pass1.restart.h5, step 24, " in done.stdout
+    assert "restart: running_in.pass1.restart.h5, step 11, " in done.stdout
     assert_as_uninterrupted(tmp_path, uninterrupted)
 
 
