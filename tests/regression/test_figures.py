@@ -42,7 +42,7 @@ def thin_ones_and_collisions(stack, index):
 @pytest.fixture(scope="module")
 def figure_4(tmp_path_factory):
     values = [0.010, 0.0085, 0.007, 0.0055, 0.004, 0.0025, 0.001]
-    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values, "time.courant=0.5")
+    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values, "time.courant=0.25")
 
 
 def test_film_reaches_zero_at_the_extrapolated_viscosity(figure_4):
@@ -82,7 +82,7 @@ def test_contacts_persist_at_lower_viscosity(figure_4):
 
 def test_little_contact_at_high_speed(figure_4, tmp_path):
     """Figure 3: at 25 m/s contact comes at lower viscosities than at 5 m/s."""
-    index = series(tmp_path, "fig3", 80, 1.7, [0.007, 0.004, 0.001], "time.courant=0.5")
+    index = series(tmp_path, "fig3", 80, 1.7, [0.007, 0.004, 0.001], "time.courant=0.25")
     with ExitStack() as stack:
         fast, values, found = thin_ones_and_collisions(stack, index)
         slow, slow_values, _ = thin_ones_and_collisions(stack, figure_4)
