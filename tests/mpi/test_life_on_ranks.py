@@ -23,7 +23,7 @@ SHORT = {
     [
         {"mesh.points_per_half_width": 20},
         {"time.pass_shift": 50e-6, "life.partners": 3},
-        {"mesh.width": 1.0},  # a strip
+        {"mesh.width": 1.5},  # a strip, with rows for three ranks
     ],
 )
 def test_life_is_independent_of_the_number_of_ranks(keys, tmp_path):
