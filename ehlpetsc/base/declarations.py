@@ -61,7 +61,7 @@ class Key:
     below
         Key of the same table below which the value must be.
     words
-        Texts in place of a value that follows from other tables.
+        Texts in place of a value that follows from other tables; of a bool: further values.
     equation
         In which the key appears, where it is too long for messages.
     table, variants

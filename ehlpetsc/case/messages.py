@@ -33,7 +33,8 @@ def _kind(key: Key) -> str:
         return f"{NAMES[key.kind]} or a list of two {plural}"
     if key.many:
         return f"a list{' of two' if key.many == 'two' else ' of' if plural else ''} {plural or ''}".strip()
-    return NAMES[key.kind]
+    words = "".join(f' or "{word}"' for word in key.words if key.kind is bool)
+    return f"{NAMES[key.kind]}{words}"
 
 
 def allowed(key: Key) -> str:

@@ -68,6 +68,8 @@ def _item(key: Key, value: object) -> Any:
         if not all(bound is None or holds(value, bound) for holds, bound in bounds):
             raise NotAllowed
         return key.kind(value)
+    if key.kind is bool and is_word(key, value):
+        return value
     if not isinstance(value, key.kind) or key.choices and value not in key.choices:
         raise NotAllowed
     longest = key.max_items if key.max_items and not key.many else math.inf

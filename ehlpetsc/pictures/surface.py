@@ -4,7 +4,7 @@ FILE is a profile or map as in ``[surface.1]``, whose keys ``--set unit=um``, ``
 on set. The least-squares line or plane is subtracted, except with ``--set level=false``. Without a cutoff the
 parameters are those of the primary profile. ``--csv FILE.csv`` writes the power spectral density, of a map
 those along and across its rows. ``-o FILE.gsf``, ``.x3p`` or ``.vti`` writes the surface as used, in place of
-the picture.
+the picture. ``--minus OTHER`` takes the difference of two maps of one part, with the same keys.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import areal_surface, style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
+from ehlpetsc.surfaces.difference import difference
 from ehlpetsc.surfaces.exports import WRITERS, GridField
 from ehlpetsc.surfaces.parameters import (
     MIN_POINTS,
@@ -51,6 +52,7 @@ def arguments() -> CommandParser:
     parser.add_argument(
         "-o", "--output", help="picture [FILE.surface.png]; .gsf, .x3p, .vti: the surface as used"
     )
+    parser.add_argument("--minus", metavar="FILE", help="map to subtract, moved to where both correlate best")
     parser.add_argument("--no-picture", action="store_true", help="the parameters alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="power spectral density over the wavenumber")
     parser.add_argument(
@@ -68,16 +70,20 @@ def main(words: list[str]) -> int:
 def run(chosen: argparse.Namespace) -> None:
     """Print the parameters, write picture and spectrum."""
     path, spec = Path(chosen.file), _spec(chosen.file, chosen.set)
+    inputs = [path, *([Path(chosen.minus)] if chosen.minus else [])]
     target = None if chosen.no_picture else Path(chosen.output or path.with_suffix(".surface.png"))
     for file, endings, option in (
         (target, (*PICTURES, *WRITERS), "-o"),
         (chosen.csv, (".csv", ".txt"), "--csv"),
     ):
         if file is not None:
-            check_derived(Path(file), [path], endings, option)
+            check_derived(Path(file), inputs, endings, option)
     try:
         if holds_map(Path(), spec):
-            return _run_map(chosen, areal_samples(Path(), spec, 0.0, False), target)
+            surface = areal_samples(Path(), spec, 0.0, False)
+            return _run_map(chosen, _minus(surface, chosen) if chosen.minus else surface, target)
+        if chosen.minus:
+            raise ProfileError("a profile; allowed for --minus: maps")
         profile = samples(Path(), spec)
         if profile.X.size < MIN_POINTS:
             raise ProfileError(f"{profile.X.size} points; allowed for parameters: at least {MIN_POINTS}")
@@ -91,6 +97,14 @@ def run(chosen: argparse.Namespace) -> None:
         atomic_write(chosen.csv, csv({"": spectrum}).encode())
         print(chosen.csv)
     _write(target, GridField(z[np.newaxis], dx, dx), lambda: draw(path.name, profile, parameters, spectrum))
+
+
+def _minus(surface: Topography, chosen: argparse.Namespace) -> Topography:
+    """Difference of the map and that of ``--minus``."""
+    try:
+        return difference(surface, areal_samples(Path(), _spec(chosen.minus, chosen.set), 0.0, False))
+    except ProfileError as error:
+        raise CaseError([f"{chosen.minus}: {error}"]) from None
 
 
 def _write(target: Path | None, heights: GridField, picture: Callable[[], Figure]) -> None:

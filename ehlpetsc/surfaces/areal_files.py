@@ -62,7 +62,10 @@ def read_map(path: Path, layout: Layout) -> Map:
     by the packages named in `READERS`, if they are installed.
     """
     is_matrix = path.suffix.lower() in TEXT | {".npy"}
-    found = checked((_matrix if is_matrix else _instrument_file)(path, layout), layout)
+    found = (_matrix if is_matrix else _instrument_file)(path, layout)
+    if layout.mask:
+        found = found._replace(z=_masked(found.z, path.parent / layout.mask))
+    found = checked(found, layout)
     found.z.flags.writeable = False
     return found
 
@@ -76,6 +79,19 @@ def _matrix(path: Path, layout: Layout) -> Map:
         raise ProfileError(f"numbers of type {z.dtype}; allowed: real numbers")
     _check_shape(z)
     return Map(*in_metres(with_axes(z.astype(float), ""), "", layout))
+
+
+def _masked(z: np.ndarray, path: Path) -> np.ndarray:
+    """Heights that are missing where the matrix in a file is not 0."""
+    if not path.is_file():
+        raise ProfileError(f"mask: no such file: {path}")
+    mask = _by_numpy(path) if path.suffix.lower() == ".npy" else text_columns(path, None, None)[0].T
+    if mask.shape != z.shape:
+        shapes = [" x ".join(map(str, values.shape)) for values in (mask, z)]
+        raise ProfileError(
+            f"mask: {path.name} has {shapes[0]} values; allowed: as many as heights, {shapes[1]}"
+        )
+    return np.where(mask != 0, np.nan, np.ma.filled(np.ma.asarray(z, float), np.nan))
 
 
 def _by_numpy(path: Path) -> np.ndarray:

@@ -12,7 +12,7 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.areal_files import Map, checked, is_map, read_map
 from ehlpetsc.surfaces.continued_spline import Continuation
-from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, mean_surface, without_form
+from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, levelled, mean_surface, without_form
 from ehlpetsc.surfaces.profile_files import UNITS
 from ehlpetsc.surfaces.samples import centred, layout_of, samples, without_short_waves
 from ehlpetsc.surfaces.synthetic import POINTS_PER_WAVE
@@ -36,7 +36,9 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
         surface = synthetic_map(spec.synthetic, spec.direction or 0.0, width, is_strip)
         return replace(surface, z=spec.scale * surface.z)
     if not holds_map(folder, spec):
-        _refuse(spec, ("spacing_across", "direction", "position_across"), "of a map, not of a profile")
+        _refuse(
+            spec, ("spacing_across", "direction", "position_across", "mask"), "of a map, not of a profile"
+        )
         profile = samples(folder, spec)
         along: Continuation = "mirrored" if profile.repeats else "zero"
         return Topography(
@@ -81,7 +83,9 @@ def _step(values: list[float], key: str, spec: Values) -> float:
 def _processed(found: Map, spec: Values) -> Topography:
     z, dx, dy, notes = found
     X, Y = dx * np.arange(z.shape[1]), dy * np.arange(z.shape[0])
-    if degree := spec.form or int(spec.level):
+    if spec.level == "rows":
+        z = levelled(X, z)
+    elif degree := spec.form or int(spec.level):
         z = without_form((Y, X), z, degree)
     if spec.cutoff is not None:
         z = z - mean_surface(X, Y, z, spec.cutoff, "cutoff")

@@ -25,9 +25,9 @@ def deviations(z: np.ndarray, given: np.ndarray | None = None) -> np.ndarray:
 
 
 def levelled(x: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Heights minus their least-squares line."""
-    x = x - x.mean()
-    return z - z.mean() - x * (x @ z / (x @ x))
+    """Heights minus their least-squares line along the last axis."""
+    x, z = x - x.mean(), z - z.mean(axis=-1, keepdims=True)
+    return z - np.multiply.outer(z @ x / (x @ x), x)
 
 
 def without_form(axes: Sequence[np.ndarray], z: np.ndarray, degree: int) -> np.ndarray:

@@ -35,6 +35,7 @@ class Layout:
     `header_lines`: lines before the numbers.
     `fill_gaps`: widest gap of missing heights that is filled [m].
     `bridge_spikes`: whether the spline bridges the spikes of optical instruments.
+    `mask`: file of a matrix, beside that of a map, which is not 0 where heights are missing.
     """
 
     unit: str | None = None
@@ -46,6 +47,7 @@ class Layout:
     header_lines: int | None = None
     fill_gaps: float | None = None
     bridge_spikes: bool = False
+    mask: str | None = None
 
 
 KEYS = tuple(Layout.__dataclass_fields__)

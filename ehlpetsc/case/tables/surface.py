@@ -91,9 +91,9 @@ def _check_source(profile: Values) -> dict[str, Any]:
         raise Refused(f"y has {len(profile.y)} values, z {len(profile.z)} rows; allowed: as many")
     if profile.level and profile.form:
         raise Refused("level is the form of degree 1: write one of them")
-    of_text = [key for key in ("columns", "decimal", "header_lines") if key in given]
-    if profile.z is not None and of_text:
-        raise Refused(f"{', '.join(of_text)}: for a file, not for heights z")
+    of_file = [key for key in ("columns", "decimal", "header_lines", "mask") if key in given]
+    if profile.z is not None and of_file:
+        raise Refused(f"{', '.join(of_file)}: for a file, not for heights z")
     for_a_file = [key for key in values if key in given and key not in (*SOURCES, "scale", "direction")]
     if profile.synthetic and for_a_file:
         raise Refused(f"{', '.join(for_a_file)}: for a file, not for a synthetic profile")
@@ -121,7 +121,13 @@ KEYS = {
     ),
     "x": Key("of the heights z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
     "y": Key("of the rows of z, in x_unit; with spacing left out", "", -1e9, 1e9, many="list", min_items=4),
-    "level": Key("subtract the least-squares line or plane", kind=bool, default=False),
+    "level": Key(
+        'subtract the least-squares line or plane; "rows": the line of each row',
+        kind=bool,
+        default=False,
+        words=("rows",),
+    ),
+    "mask": Key("of a map: file of a matrix beside it; where it is not 0, heights are missing", kind=str),
     "form": Key("degree of the least-squares polynomial subtracted", "", 1, 12, kind=int),
     "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave `L` loses `2^(-(cutoff/L)^2)` of it", *LENGTH),
     "short_cutoff": Key(
@@ -158,12 +164,14 @@ def file_digests(case: Case) -> dict[str, str]:
     digests = {}
     for side in SIDES:
         table = case.surface.side(side)
-        if table and table.file:
-            try:
-                with open(case.path.parent / table.file, "rb") as file:
-                    digests[f"surface.{side}.file"] = file_digest(file, "sha256").hexdigest()
-            except OSError:
-                digests[f"surface.{side}.file"] = ""
+        names = {"file": table.file, "mask": table.mask} if table and table.file else {}
+        for key, name in names.items():
+            if name:
+                try:
+                    with open((case.path.parent / table.file).parent / name, "rb") as file:
+                        digests[f"surface.{side}.{key}"] = file_digest(file, "sha256").hexdigest()
+                except OSError:
+                    digests[f"surface.{side}.{key}"] = ""
     return digests
 
 
@@ -173,7 +181,7 @@ def check_unchanged(case: Case) -> None:
         raise CaseError([f"{case.path}: {changed}: changed since the case was read; load the case again"])
 
 
-OF_MAPS = ("spacing_across", "direction", "position_across")
+OF_MAPS = ("spacing_across", "direction", "position_across", "mask")
 OF_SYNTHETIC_MAPS = ("wavelength_across", "correlation_across", "peklenik")
 
 
