@@ -1,0 +1,117 @@
+"""Nodes of a contact; depth fields fixed to bodies that slide through it conserve volume and place."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.interpolate import PchipInterpolator
+
+from ehlpetsc.physics.grid import Grid
+from ehlpetsc.surfaces.body_field import CELLS_PER_MESH_CELL, BodyField, MeshOnBodies
+
+A = 2e-4  # half-width [m]
+X, Y = np.linspace(-1.5, 1.0, 26), np.linspace(-0.6, 0.6, 7)
+AXES = {"line": (X,), "strip": (Y, X), "point": (Y, X)}
+DX, DY = X[1] - X[0], Y[1] - Y[0]
+SPACINGS = {"line": (DX * A,), "strip": (DY * A, DX * A), "point": (DY * A, DX * A)}
+
+
+def grid_of(kind):
+    axes, curvatures = AXES[kind], {"line": (1.0,), "strip": (0.0, 1.0), "point": (0.5, 1.5)}
+    half_widths = {"line": (1.0,), "strip": (np.inf, 1.0), "point": (0.4, 1.0)}
+    parts = SPACINGS[kind], half_widths[kind], curvatures[kind]
+    return Grid(axes, *parts, load=1.0, periodic=kind == "strip")
+
+
+@pytest.mark.parametrize(
+    ("kind", "shape", "cell", "cell_size", "distance", "undeformed"),
+    [  # the last two at y = -0.4 and x = -1.2
+        ("line", (26,), DX, DX * A, 1.2, 0.72),
+        ("strip", (7, 26), DX * DY, DX * A / 7, 1.2, 0.72),
+        ("point", (7, 26), DX * DY, DX * DY * A**2, np.hypot(1.2, 1.0), 0.25 * 0.16 + 0.75 * 1.44),
+    ],
+)
+def test_grid(kind, shape, cell, cell_size, distance, undeformed):
+    grid, near = grid_of(kind), pytest.approx
+    assert (grid.shape, grid.n) == (shape, np.prod(shape))
+    assert grid.x is X and grid.dx == near(0.1) and grid.steps[-1] == near(0.1)
+    assert grid.steps == near([axis[1] - axis[0] for axis in AXES[kind]])
+    assert (grid.cell, grid.cell_size) == (near(cell, rel=1e-12), near(cell_size, rel=1e-12))
+    node = np.ravel_multi_index((1, 3)[-len(shape) :], shape)
+    assert [c[node] for c in grid.coordinates] == near([-0.4, -1.2][-len(shape) :])
+    assert grid.distance[node] == near(distance)
+    assert grid.undeformed[node] == near(undeformed)
+    np.testing.assert_array_equal(grid.rows(np.arange(grid.n))[-1], np.arange(grid.n)[-26:])
+    edges, first = grid.edges(), 26 * np.arange(grid.n // 26)
+    np.testing.assert_array_equal(edges.pop("inlet"), first)
+    np.testing.assert_array_equal(edges.pop("outlet"), first + 25)
+    if kind == "point":
+        sides = np.concatenate([np.arange(26), np.arange(26) + 6 * 26])
+        np.testing.assert_array_equal(edges.pop("width"), sides)
+    assert not edges
+
+
+def test_nodes_inside():
+    grid = grid_of("point")
+    assert grid.inside(1.0).sum() == (grid.distance <= 1.0).sum() > 50
+    between = Grid((X + 0.04,), (DX * A,), (1.0,), (1.0,), 1.0)  # no node in the middle
+    assert np.flatnonzero(between.inside(0.0)).tolist() == [np.argmin(np.abs(X + 0.04))]
+    np.testing.assert_array_equal(between.inside(0.2), np.abs(X + 0.04) <= 0.2)
+
+
+def test_interpolation_along_both_axes():
+    grid = grid_of("point")
+    fine = Grid(
+        (np.linspace(-0.7, 0.7, 15), np.linspace(-2.0, 0.9, 30)), (1.0, 1.0), (1.0, 1.0), (1.0, 1.0), 1.0
+    )
+    y, x = grid.coordinates
+    field = np.exp(-(x**2) - 2.0 * y**2)
+    found = grid.interpolated(field, fine).reshape(fine.shape)
+    rows = PchipInterpolator(Y, field.reshape(grid.shape), axis=0)(np.clip(fine.axes[0], -0.6, 0.6))
+    expected = PchipInterpolator(X, rows, axis=1)(np.clip(fine.x, -1.5, 1.0))
+    np.testing.assert_allclose(found, expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize("kind", AXES)
+def test_growing_field_of_sliding_bodies_conserves_volume(kind):
+    """Depths are added step by step while both bodies slide; every deepened stretch remains in place."""
+    grid = grid_of(kind)
+    offsets = (0.31 * DX * A, -0.17 * DX * A)
+    mesh = MeshOnBodies(SimpleNamespace(grid=grid, dx=DX * A, x=X, a=A), offsets)
+    rng, fields, whole = np.random.default_rng(4), mesh.zero, 0.0
+    cell = DX * A * ({"line": 1.0, "strip": 1.0 / 7, "point": DY * A}[kind])
+    for step in range(40):
+        travelled = (0.37 * step * DX * A, -1.45 * step * DX * A)
+        depths = [np.where(np.abs(np.tile(X, grid.n // 26)) < 0.8, rng.random(grid.n), 0.0) for _ in range(2)]
+        before = mesh.means(fields, travelled)
+        fields = mesh.add(fields, travelled, depths)
+        whole += sum(depth.sum() for depth in depths)
+        assert mesh.volume(fields) == pytest.approx(cell * whole, rel=1e-12)
+        for now, then, depth in zip(mesh.means(fields, travelled), before, depths, strict=True):
+            sums = [part.reshape(-1, 26).sum(axis=1) for part in (now - then, depth)]
+            np.testing.assert_allclose(*sums, rtol=1e-12)  # a row keeps to itself
+    assert all(field.depth.min() >= 0.0 for field in fields)
+    for field in fields:  # within the mesh and what has passed, no more than two cells on either side
+        assert field.cells <= CELLS_PER_MESH_CELL * (16 + 1.45 * 39 + 2) + 4
+    centres = [field.edges[:-1] + 0.5 * field.spacing - o for field, o in zip(fields, offsets, strict=True)]
+    for found, field in zip(mesh.at_points(fields, [*centres]), fields, strict=True):
+        np.testing.assert_allclose(found, field.depth, rtol=1e-9, atol=1e-12)
+    assert mesh.at_points(fields, [None, None]) == [None, None]
+
+
+def test_cells_of_a_body():
+    """Whole cells keep their depth, others get their share; a field reaches a cell beyond both ends."""
+    field = BodyField.zero(1.0)
+    assert (field.spacing, field.cells, field.volume) == (0.25, 0, 0.0)
+    assert field.means(np.arange(3.0)).tolist() == [0.0, 0.0]
+    assert field.add(np.arange(3.0), np.zeros(2)) is field
+    one = field.add(np.arange(5.0), np.array([0.0, 2.0, 3.0, 0.0]))  # from 1 to 3
+    assert (one.first, one.cells) == (3, 10)
+    np.testing.assert_allclose(one.depth, [0.0, *[2.0] * 4, *[3.0] * 4, 0.0])
+    np.testing.assert_allclose(one.edges, np.arange(3, 14) * 0.25)
+    assert one.add(np.array([1.0, 3.0]), np.array([1.0])).first == 3
+    both = one.add(np.array([-1.1, -0.6]), np.array([4.0])).add(np.array([5.1, 5.35]), np.array([6.0]))
+    assert (both.first, both.first + both.cells) == (-6, 23)
+    assert both.volume == pytest.approx(5.0 + 2.0 + 1.5, rel=1e-14)
+    np.testing.assert_allclose(both.depth[:5], [0.0, 1.6, 4.0, 2.4, 0.0], atol=1e-14)
+    np.testing.assert_allclose(both.depth[-4:], [0.0, 3.6, 2.4, 0.0], atol=1e-14)
