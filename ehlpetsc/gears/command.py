@@ -5,7 +5,8 @@ table and draws them along the path. ``--csv FILE`` writes the path as a table f
 results, prints friction and losses of the mesh beside the standards and draws pressure, films and friction
 along the path and, if RESULT.post.h5 exists, the damage along both flanks. With the index of a series,
 draws them over the torque. ``--run RESULT.h5`` runs a case with ``bulk_temperature = "losses"`` until the
-bulk temperatures are those of its own losses.
+bulk temperatures are those of its own losses. ``--crowned C "10 um"`` prints a case
+of the point contact at C of teeth with this crown or end relief at both ends of the face.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.analysis.gear_run import GearRun, lines, panels
-from ehlpetsc.base.command_line import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status, put
 from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.case.derived import modulus_of, rating_of
 from ehlpetsc.case.loading import load
+from ehlpetsc.gears.crowning import crowned
 from ehlpetsc.gears.path import path_of_contact
 from ehlpetsc.gears.standards import bulk_temperatures
 from ehlpetsc.gears.table import csv, rows
@@ -37,6 +39,9 @@ def arguments() -> CommandParser:
     parser.add_argument("-o", "--output", help="picture [CASE.path.png, RESULT.gears.png]")
     parser.add_argument("--no-picture", action="store_true", help="the table alone")
     parser.add_argument("--csv", metavar="FILE.csv", help="the path as a table for [operation]")
+    parser.add_argument(
+        "--crowned", nargs=2, metavar=("POINT", "DEPTH"), help="case of the point contact of crowned teeth"
+    )
     parser.add_argument(
         "--run", metavar="RESULT.h5", help="repeat the run until bulk temperatures are those of its losses"
     )
@@ -59,6 +64,8 @@ def run(chosen: argparse.Namespace) -> None:
     case = load(file, chosen.set)
     if case.gears is None:
         raise CaseError([f"{file}: no [gears] table; allowed: a case with one"])
+    if chosen.crowned:
+        return put(crowned(case, modulus_of(case), *chosen.crowned), chosen)
     path, modulus, rating = path_of_contact(case.gears.pair), modulus_of(case), rating_of(case, file.parent)
     target = _picture(chosen, "path")
     if chosen.csv is not None:

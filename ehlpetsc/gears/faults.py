@@ -9,6 +9,7 @@ import numpy as np
 from ehlpetsc.gears.geometry import GearPair, involute
 
 TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
+MAX_CONTACT_RATIO = 3  # above it four pairs would share the load
 MIN_TIP_THICKNESS = 0.2  # of the module: thinner tips chip
 LOAD_RATIO = 2 / 3, 3 / 2  # of given loads to that of the torque: room for dynamic and face load factors
 FITTING_LOAD_RATIO = 0.9, 1.1  # without a note
@@ -43,6 +44,11 @@ def faults(pair: GearPair) -> list[str]:
                 f"allowed: above {2.0 * abs(r):.5g} m"
             )
     found = found or _faults_of_the_path(pair) or _faults_of_the_shift(pair)
+    if not found and pair.load_sharing == "thirds" and pair.fewest_pairs > 1:
+        found.append(
+            f'load_sharing = "thirds": of contact ratios below 2, here {pair.contact_ratio:.3f}; allowed: '
+            '"stiffness"'
+        )
     found = found or _faults_of_the_ring(pair)
     found = found or _faults_of_the_tips(pair) or _faults_of_the_load(pair)
     return [f"gears.{fault}" for fault in found]
@@ -154,9 +160,9 @@ def _faults_of_the_path(pair: GearPair) -> list[str]:
                 f"{2.0 * math.hypot(length, r):.5g} m"
             )
     ratio = pair.contact_ratio
-    if not found and not 1.0 <= ratio < 2.0:
+    if not found and not 1.0 <= ratio < MAX_CONTACT_RATIO:
         found.append(
             f"tip_diameter = {list(map(abs, pair.tip_diameter))}: contact ratio {ratio:.3f}, at a "
-            f"distance of the centres of {abs(pair.centre_distance):g} m; allowed: 1 to 2"
+            f"distance of the centres of {abs(pair.centre_distance):g} m; allowed: 1 to {MAX_CONTACT_RATIO}"
         )
     return found

@@ -144,7 +144,8 @@ class GearPair:
         """Load sharing rule: `load_sharing`, by default according to load, helix and tip relief."""
         if self.load is not None:
             return "load_file"
-        default = "tip-relief" if self.tip_relief > 0.0 else "stiffness" if self.helix_angle else "thirds"
+        is_shared = self.helix_angle or self.fewest_pairs > 1
+        default = "tip-relief" if self.tip_relief > 0.0 else "stiffness" if is_shared else "thirds"
         return self.load_sharing or default
 
     @property
@@ -213,12 +214,12 @@ class GearPair:
     def points(self) -> dict[str, float]:
         """Positions of A, B, C, D and E [m]: dict of str to float.
 
-        A: tip of the wheel, contact begins; E: tip of the pinion, contact ends; a single pair carries between
-        B and D; C: pitch point, which may lie beyond A or E.
+        A: tip of the wheel, contact begins; E: tip of the pinion, contact ends; from A to B and from D to E
+        one pair more is in contact than the `fewest_pairs`; C: pitch point, which may lie beyond A or E.
         """
-        a, e = self._a_and_e()
+        (a, e), others = self._a_and_e(), self.fewest_pairs * self.base_pitch
         c = self.base_radii[0] * math.tan(self.working_angle)
-        return {"A": a, "B": e - self.base_pitch, "C": c, "D": a + self.base_pitch, "E": e}
+        return {"A": a, "B": e - others, "C": c, "D": a + others, "E": e}
 
     @property
     def points_on_path(self) -> dict[str, float]:
@@ -231,6 +232,11 @@ class GearPair:
         r""":math:`\varepsilon_\alpha=(\rho_E-\rho_A)/p_b`."""
         a, e = self._a_and_e()
         return (e - a) / self.base_pitch
+
+    @property
+    def fewest_pairs(self) -> int:
+        """Number of pairs that are in contact at any time: the whole part of the contact ratio, from 1 on."""
+        return max(int(self.contact_ratio), 1)
 
     def _a_and_e(self) -> tuple[float, float]:
         rho = [

@@ -89,15 +89,18 @@ def loss_factor(pair: GearPair) -> float:
 
     .. math:: H_V=\frac{\pi(i+1)}{z_1i\cos\beta_b}(1-\varepsilon_\alpha+\varepsilon_1^2+\varepsilon_2^2)
 
-    with the gear ratio i and the contact ratios :math:`\varepsilon_{1,2}` from C to E and from A to C: the
-    integral of a load that is halved outside B to D, with the pitch point between them. Its value for any
-    pitch point is :math:`\frac12(e|e|-a|a|+d|d|-b|b|)` in place of the bracket, a to e the distances of the
-    points from C in base pitches.
+    with the gear ratio i and the contact ratios :math:`\varepsilon_{1,2}` from C to E and from A to C: twice
+    the integral of :math:`|x|/n`, x the distance from C in base pitches, of a load that the n pairs in
+    contact share equally, one or two, with the pitch point where one carries; here for any such point and n.
     """
     points, i = pair.points, pair.teeth[1] / pair.teeth[0]
-    a, b, d, e = ((points[name] - points["C"]) / pair.base_pitch for name in "ABDE")
+    a, e = ((points[name] - points["C"]) / pair.base_pitch for name in "AE")
+    steps = np.arange(pair.fewest_pairs + 1)
+    x = np.unique(np.concatenate([a + steps, e - steps]))
+    middle = 0.5 * (x[1:] + x[:-1])
+    pairs = np.floor(middle - a) + np.floor(e - middle) + 1.0
     factor = np.pi * (i + 1.0) / (pair.teeth[0] * i * np.cos(pair.base_helix_angle))
-    return float(0.5 * factor * (e * abs(e) - a * abs(a) + d * abs(d) - b * abs(b)))
+    return float(factor * (np.diff(x * np.abs(x)) / pairs).sum())
 
 
 def bulk_temperatures(

@@ -472,7 +472,7 @@ def test_values_that_follow_from_gears_are_refused(case, key):
         ({"tip_diameter": [72e-3, 108e-3]}, ["tip_diameter = [0.072, 0.108]: ", " 0.0915 m"]),
         (
             {"tip_diameter": [78e-3, 114e-3]},
-            ["tip_diameter = [0.078, 0.114]: contact ratio 0.786, ", " 1 to 2"],
+            ["tip_diameter = [0.078, 0.114]: contact ratio 0.786, ", " 1 to 3"],
         ),
         ({"tip_diameter": [60e-3, 118.4e-3]}, ["tip_diameter = 0.06 of the pinion: ", " 0.067658 m"]),
         ({"tip_diameter": [82.5e-3, 130e-3]}, ["tip_diameter: ", "(interference)", " wheel: below 0.1232 m"]),

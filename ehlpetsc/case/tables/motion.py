@@ -122,7 +122,9 @@ GEARS_KEYS = {
     "tip_relief": Key("depth at both tips, linear from B and D on", "m", 0, 1e-3, default=0.0),
     "tip_radius": Key("of the tip edges; left out: 0.05 module", "m", 1e-7, 0.1),
     "load_sharing": Key(
-        "left out: tip-relief with a relief, stiffness with helix_angle, else thirds", choices=tuple(RULES)
+        "left out: tip-relief with a relief, stiffness with helix_angle or a contact ratio from 2 on, else "
+        "thirds",
+        choices=tuple(RULES),
     ),
     "mesh_stiffness": Key("`c'` of a tooth pair per width; left out: by ISO 6336-1, steel", "Pa", 1e6, 1e12),
     "load_file": Key(
