@@ -69,7 +69,8 @@ class LifeFile:
         """
         if self._file:
             with contextlib.suppress(OSError, RuntimeError, OutputLost):  # its rows are complete
-                self._place.check()
+                if self._place:
+                    self._place.check()
                 self._file.attrs.modify("status", np.bytes_(status.encode()))
                 self._file.close()
         self._file = None
@@ -106,8 +107,9 @@ def _values_of(history: LifeHistory, number: int) -> Iterator:
         for name in ROW_DATASETS:
             yield f"surface/{k}/{name}", np.asarray(getattr(body, name))[None]
     for name, value in history.plastic[number].items():
-        yield f"records/{name}", np.atleast_1d(value)
-        yield f"lengths/{name}", np.array([np.size(value)])
+        cells = np.moveaxis(np.atleast_1d(value), -1, 0)  # rows of a strip do not change in number
+        yield f"records/{name}", cells
+        yield f"lengths/{name}", np.array([len(cells)])
 
 
 def _lay_out(file: h5py.File, history: LifeHistory) -> None:
@@ -217,4 +219,6 @@ def _records(file: h5py.File, name: str, count: int) -> list:
     dataset, lengths = file[f"records/{name}"], file[f"lengths/{name}"][:count]
     ends = np.cumsum(lengths)
     values = np.split(dataset[: ends[-1] if count else 0], ends[:-1])
-    return [value[0] for value in values] if dataset.attrs["is_number"] else values
+    if dataset.attrs["is_number"]:
+        return [value[0] for value in values]
+    return [np.moveaxis(value, 0, -1) for value in values]

@@ -129,9 +129,12 @@ def test_life_file_of_a_strip(tmp_path):
             LifeBody.new(np.arange(5.0), np.ones((3, 5)), EDGES, np.arange(3.0))._replace(volume=k + passes)
             for k in (1, 2)
         )
-        stored.add({"passes": passes, "jump": 10, "friction": 0.1}, bodies, {})
+        plastic = {"depth": np.arange(3.0 * (passes - 10)).reshape(3, -1), "first": passes}  # none at first
+        stored.add({"passes": passes, "jump": 10, "friction": 0.1}, bodies, plastic)
     save_life(stored, tmp_path / "a.life.h5")
     found = read_life(tmp_path / "a.life.h5")
+    for one, other in zip(found.plastic, stored.plastic, strict=True):
+        assert one["first"] == other["first"] and np.array_equal(one["depth"], other["depth"])
     for one, other in zip(found.bodies[1], stored.bodies[1], strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
 
