@@ -24,6 +24,8 @@ SOLVER = ("mpi4py", "petsc4py")
 NEEDED = (*NUMERICS, "numba", *SOLVER)
 MPIRUN_VARIABLES = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 RANK_VARIABLES = (*MPIRUN_VARIABLES, "SLURM_PROCID")  # the last one also in the script of a batch job
+# of Open MPI, of MPICH and Intel MPI, of MVAPICH, of srun; not SLURM_NTASKS, which a batch script has too
+SIZE_VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS")
 OLDEST_PYTHON = (3, 11)
 
 
@@ -91,6 +93,22 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
 def first_rank() -> bool:
     """Whether this process is rank 0 of mpirun, or alone; also before MPI is initialised."""
     return next((os.environ[name] for name in RANK_VARIABLES if name in os.environ), "0") == "0"
+
+
+def other_mpi(ranks: int) -> str:
+    """Fault of processes that a launcher started together and that are alone in this MPI; "" without one.
+
+    `ranks`: number of ranks of MPI's world.
+    """
+    name = next((name for name in SIZE_VARIABLES if name in os.environ), "")
+    started = os.environ.get(name, "")
+    if ranks > 1 or not started.isdecimal() or int(started) < 2:
+        return ""
+    return (
+        f"{started} processes were started together ({name}) and each of them is alone, so that all would "
+        "compute the same: the launcher is not that of mpi4py's MPI; start that one's mpirun, or, where each "
+        f"process has its own case, unset {name}"
+    )
 
 
 def _is_own_python(names: Iterable[str]) -> bool:

@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from ehlpetsc.base.environment import other_mpi
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 
 if TYPE_CHECKING:
@@ -124,6 +125,8 @@ def run(chosen: argparse.Namespace, stop: StopRequest) -> int:
     from mpi4py import MPI
     from petsc4py import PETSc
 
+    if fault := other_mpi(MPI.COMM_WORLD.size):
+        raise UsageError(fault)
     options = PETSc.Options()
     options.delValue(NO_SIGNAL_HANDLER)  # not an option of the run
     try:
