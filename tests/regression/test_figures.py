@@ -23,6 +23,9 @@ import entrapment
 
 pytestmark = pytest.mark.slow
 SHORT = ["mesh.inlet=-1.4", "mesh.outlet=1.3"]
+# Steps of one node of the faster surface, whose unfiltered asperities are a node or two wide and would be
+# other ones between the nodes; slide/roll ratios of 0.25 and 0.1.
+NODE, NODE_OF_FIG3 = f"time.courant={1 / 1.125}", f"time.courant={1 / 1.05}"
 
 
 def series(folder, name, points, travel, values, *more):
@@ -42,7 +45,7 @@ def thin_ones_and_collisions(stack, index):
 @pytest.fixture(scope="module")
 def figure_4(tmp_path_factory):
     values = [0.010, 0.0085, 0.007, 0.0055, 0.004, 0.0025, 0.001]
-    return series(tmp_path_factory.mktemp("fig4"), "fig4", 80, 1.7, values, "time.courant=0.25")
+    return series(tmp_path_factory.mktemp("fig4"), "fig4", 160, 1.7, values, NODE)
 
 
 def test_film_reaches_zero_at_the_extrapolated_viscosity(figure_4):
@@ -82,7 +85,7 @@ def test_contacts_persist_at_lower_viscosity(figure_4):
 
 def test_little_contact_at_high_speed(figure_4, tmp_path):
     """Figure 3: at 25 m/s contact comes at lower viscosities than at 5 m/s."""
-    index = series(tmp_path, "fig3", 80, 1.7, [0.007, 0.004, 0.001], "time.courant=0.25")
+    index = series(tmp_path, "fig3", 160, 1.7, [0.007, 0.004, 0.001], NODE_OF_FIG3)
     with ExitStack() as stack:
         fast, values, found = thin_ones_and_collisions(stack, index)
         slow, slow_values, _ = thin_ones_and_collisions(stack, figure_4)
@@ -108,14 +111,14 @@ def test_meshes_agree_on_collisions(tmp_path):
 
 
 def test_entrapment_between_two_contacts(tmp_path):
-    """Figure 5, at four times the time step and up to the collision alone."""
-    short = settings("mesh.outlet=1.2", "time.travel=1.7", "time.courant=2.0")
+    """Figure 5, in steps of two nodes of the faster surface and up to the collision alone."""
+    short = settings("mesh.outlet=1.2", "time.travel=1.5", f"time.courant={2 / 1.125}")
     done = run(ROOT / "cases" / "fig5.toml", *short, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     with read_result(tmp_path / "fig5.h5") as result:
         best = entrapment.find(result)[0]
         assert best.excess > 2.0  # over the higher of both contacts
-        assert result.x[best.peak] / result.attrs["a"] == pytest.approx(-0.9825, abs=0.003)
+        assert result.x[best.peak] / result.attrs["a"] == pytest.approx(-0.95, abs=0.003)
         film = result.frame("film_thickness", best.frame)[best.left : best.right + 1]
         assert film[0] == film[-1] == 0.0 and film[1:-1].min() > 0.0
         assert len(entrapment.instants(result, best)) == 4

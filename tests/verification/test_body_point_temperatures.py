@@ -1,4 +1,9 @@
-"""Surface temperatures of body points of the damage case, against a quadrature of its stored fluxes."""
+"""Surface temperatures of body points of the damage case, against a quadrature of its stored fluxes.
+
+Its profiles are filtered and carry a compliant layer, so that the mesh resolves the fluxes. Those of rigid
+contacts are spikes of one node: quadratures of fluxes that are linear at fixed places, linear in the body, or
+cubic there then differ by a tenth from each other.
+"""
 
 from pathlib import Path
 
@@ -27,12 +32,20 @@ CHANGES = {
     "mesh.inlet": -1.4,
     "mesh.outlet": 1.3,
     "time.travel": 5.8,
-    "time.courant": 0.4444444444444444,  # half a node of the faster surface
+    "time.courant": 0.4,  # half a node of the faster surface
+    "contact.model": "mixed",
+    "contact.asperity_height": 200e-9,
+    **{
+        f"surface.{side}.{key}": value
+        for side in "12"
+        for key, value in (("short_cutoff", 60e-6), ("scale", 1.0))
+    },
     "output.fields": FIELDS,
     "post.depths": [0.0],
 }
 BEFORE = 0.2  # half-widths outside the mesh at time 0: what came before does not reach such a point
 EVERY = 6  # frames between those at which a temperature is recomputed
+WITHIN = 0.02
 GAUSS = np.polynomial.legendre.leggauss(3)
 
 
@@ -86,9 +99,9 @@ def test_temperatures_equal_a_quadrature_of_stored_fluxes(heated, surface):
             peak = history.argmax()
             kept = np.unique(np.r_[0 : frames.size : EVERY, max(peak - 3, 0) : peak + 4])
             rise = rise_of_point(loads, surface, speed, s, flux, frames[kept])
-            assert known.flash[j] == pytest.approx(rise.max(), rel=0.05)
+            assert known.flash[j] == pytest.approx(rise.max(), rel=WITHIN)
             inside = np.abs(place[frames[kept]]) <= loads.a
             time = loads.time[frames[kept]][inside]
             mean = trapezoid(rise[inside], time) / (time[-1] - time[0])
-            assert known.mean[j] - BULK == pytest.approx(mean, rel=0.05)
-            assert np.sqrt(np.mean((history[kept] - BULK - rise) ** 2)) < 0.05 * rise.max()
+            assert known.mean[j] - BULK == pytest.approx(mean, rel=WITHIN)
+            assert np.sqrt(np.mean((history[kept] - BULK - rise) ** 2)) < WITHIN * rise.max()
