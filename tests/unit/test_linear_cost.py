@@ -1,4 +1,4 @@
-"""Linear solves of short rough runs: GMRES iterations and preconditioners built, bounded from above."""
+"""Linear solves of short rough runs: GMRES iterations, convolutions and preconditioners built, bounded."""
 
 import numpy as np
 import petsc4py
@@ -70,11 +70,26 @@ def test_cost(kind, contact, newton, iterations, builds):
     solver = simulation.stepper.solver
     elimination = getattr(solver.system.matrices, "elimination", None)
     before = elimination.builds if elimination else 0
+    convolutions = counted_convolutions(solver.problem.deflection) if elimination else [0]
     states = [simulation.advance() for _ in range(STEPS)]
     assert states[-1].scalars["contact_share"] > 0.0 or kind == "line"
     assert sum(s.scalars["newton"] for s in states) <= 1.04 * newton
     assert sum(s.scalars["gmres"] for s in states) <= 1.04 * iterations
     assert (elimination.builds if elimination else 0) - before <= 1.04 * builds
+    # one for each residual, those of guesses and of the kept factors included, and for each GMRES iteration
+    assert convolutions[0] <= sum(s.scalars["newton"] + s.scalars["gmres"] for s in states) + STEPS + 1
+
+
+def counted_convolutions(deflection):
+    """Number of convolutions from now on, in a list."""
+    count, convolution = [0], deflection.convolution
+
+    def counted(values):
+        count[0] += 1
+        return convolution(values)
+
+    deflection.convolution = counted
+    return count
 
 
 def nodes_of_all_kinds():

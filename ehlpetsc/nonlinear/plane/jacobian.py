@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -14,7 +14,17 @@ from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.ranks import all_ranks
 from ehlpetsc.nonlinear.two_fields import Jacobian
 
-SAME_PRESSURE = 1e-6  # relative: the elimination leaves out what asperities carry in a cavity
+# of the relative tolerance of GMRES, change of the pressures that a known deflection may leave out: the
+# elimination neglects soft asperities in a cavity, a few millionths; a tolerance of its own would refuse them
+SAME_PRESSURE = 0.03
+
+
+class KnownDeflection(NamedTuple):
+    """Deflection of the local nodes and load of all, by a change of the local unknowns."""
+
+    change: np.ndarray
+    deflection: np.ndarray
+    load: float
 
 
 class Elimination(Protocol):
@@ -32,19 +42,25 @@ class PlaneJacobian(Jacobian):
 
     `elimination`: of the preconditioner, kept between solves.
 
-    `deflected`: last change of the unknowns whose deflection is known, that deflection and load: the
-        preconditioner, which computes them for the vector that GMRES multiplies next, saves every second
-        convolution.
+    `linear_rtol`: relative tolerance of GMRES.
+
+    `known`: what the preconditioner has computed for the vector that GMRES multiplies next; it saves every
+        second convolution.
     """
 
     exchange: PlaneExchange
-    deflected: tuple[np.ndarray, np.ndarray, float] | None = None
+    known: KnownDeflection | None = None
 
     def __init__(
-        self, problem: EHLProblem, exchange: PlaneExchange, ranks: MPI.Comm, elimination: Elimination
+        self,
+        problem: EHLProblem,
+        exchange: PlaneExchange,
+        ranks: MPI.Comm,
+        elimination: Elimination,
+        linear_rtol: float,
     ):
         super().__init__(problem, exchange, ranks)
-        self.elimination = elimination
+        self.elimination, self.linear_rtol = elimination, linear_rtol
 
     def pressure_of(self, v: np.ndarray) -> np.ndarray:
         """Change of the local pressures by a change of the local unknowns."""
@@ -53,18 +69,19 @@ class PlaneJacobian(Jacobian):
         return by[0, 0, owned] * pairs[:, 0] + by[0, 1, owned] * pairs[:, 1]
 
     def remember(self, v: np.ndarray, pressure: np.ndarray, sums: PressureSums) -> None:
-        """Store the deflection for the next product, if it is that by the change v of the unknowns."""
-        missed = np.linalg.norm(self.pressure_of(v) - pressure)
-        fits = missed <= SAME_PRESSURE * np.linalg.norm(pressure)
-        self.deflected = (v, sums.deflection, float(sums.load[0])) if all_ranks(self.ranks, fits) else None
+        """Store deflection and load by local pressures, if they are those of the change v of the unknowns."""
+        missed, allowed = self.pressure_of(v) - pressure, SAME_PRESSURE * self.linear_rtol
+        fits = np.linalg.norm(missed) <= allowed * np.linalg.norm(pressure)
+        is_known = all_ranks(self.ranks, fits)
+        self.known = KnownDeflection(v, sums.deflection, float(sums.load[0])) if is_known else None
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
         p, by = self.problem, self.derivatives
         local, owned = n_dofs(p.local), p.owned
         pairs = v[:local].reshape(-1, 2)
-        if self.deflected is not None and all_ranks(self.ranks, np.array_equal(self.deflected[0], v)):
-            _, deflection, load = self.deflected
+        if self.known is not None and all_ranks(self.ranks, np.array_equal(self.known.change, v)):
+            _, deflection, load = self.known
         else:
             deflection, loads = self.exchange.sums(self.pressure_of(v))
             load = loads[0]

@@ -44,7 +44,7 @@ class PlaneMatrices:
     def jacobian(self, ksp: PETSc.KSP) -> PlaneJacobian:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
         self.elimination = Elimination(self.problem, self.ranks, ksp.comm)
-        return PlaneJacobian(self.problem, self.exchange, self.ranks, self.elimination)
+        return PlaneJacobian(self.problem, self.exchange, self.ranks, self.elimination, ksp.rtol)
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; none."""
