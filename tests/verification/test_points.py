@@ -1,4 +1,4 @@
-"""Point contacts: dry ellipses, smooth films, starved inlets, conservation of oil, Newton's order, waves."""
+"""Point contacts: dry ellipses, smooth films, starved inlets, conservation of oil, Newton's order."""
 
 import numpy as np
 import pytest
@@ -175,25 +175,3 @@ def test_newton_is_quadratic_with_exact_linear_solves(contact):
     simulation.advance()
     for before, after in zip(norms[-4:-1], norms[-3:], strict=True):
         assert after < 10.0 * before**2
-
-
-@pytest.mark.slow
-def test_amplitude_of_a_small_wave():
-    """cos kx cos ky in pure rolling, M = 200, L = 10, a wave of one half-width on 20 nodes, to .04.
-
-    Ad/Ai = 1/(1 + .15 n + .015 n^2), n = lambda/a (M/L)^(1/2).
-    """
-    points, depth = 20, 5e-9
-    near = {"mesh.inlet": -2.0}
-    smooth = Simulation(load(point(200.0, 10.0, points, near, width=3.0)))
-    film = smooth.advance().film_thickness
-    wave = {"kind": "sine", "amplitude": depth, "wavelength": smooth.scales.a}
-    wave |= {"wavelength_across": smooth.scales.a}
-    tables = point(200.0, 10.0, points, near, width=3.0)
-    tables |= {"surface": {"1": {"synthetic": wave}}, "time": {"travel": 4.0, "courant": 1.0}}
-    simulation = Simulation(load(tables))
-    middle = smooth.scales.grid.distance < 1e-9
-    found = [(state.film_thickness - film).ravel()[middle].item() for state in simulation][-points:]
-    left = 2.0 * np.abs(np.mean(found * np.exp(2j * np.pi * np.arange(points) / points))) / depth
-    n = 20.0**0.5
-    assert left == pytest.approx(1.0 / (1.0 + 0.15 * n + 0.015 * n * n), abs=0.04)

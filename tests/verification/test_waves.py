@@ -1,0 +1,47 @@
+"""Roughness on meshes of few nodes to its shortest wave; limits are those of 32 and 64 nodes a wave.
+
+``python3 tests/benchmarks/waves.py`` prints the whole table; it is on the page of accuracy.
+"""
+
+import pytest
+from support.waves import line_wave, mixed_pass, point_wave
+
+pytestmark = pytest.mark.slow
+QUARTER, HALF, POINT = 0.678, 0.395, 0.759  # amplitudes left in pure rolling of waves of a/4, a/2; of a point
+FASTER, SLOWER, PASSING = 0.2423, 0.3257, 2.080  # ripples, slide/roll 0.5 and 1.9
+FRICTION = 0.0149  # of the measured profiles with a layer, their load on the solids 0.0055
+
+
+@pytest.mark.parametrize(("courant", "within"), [(1.0, 0.06), (0.5, 0.08)])
+def test_eight_nodes_a_wave_keep_its_amplitude(courant, within):
+    assert line_wave(0.25, 8, courant=courant).film == pytest.approx(QUARTER, rel=within)
+
+
+def test_sixteen_nodes_keep_a_long_wave():
+    assert line_wave(0.5, 16).film == pytest.approx(HALF, rel=0.06)
+
+
+def test_ten_nodes_a_wave_keep_that_of_a_point():
+    """M = 200, L = 10: also Ad/Ai = 1/(1 + .15 n + .015 n^2), n = lambda/a (M/L)^(1/2), to .04."""
+    left, n = point_wave(0.5, 10).film, 0.5 * 20.0**0.5
+    assert left == pytest.approx(POINT, rel=0.03)
+    assert left == pytest.approx(1.0 / (1.0 + 0.15 * n + 0.015 * n * n), abs=0.04)
+
+
+@pytest.mark.parametrize(
+    ("sliding", "side", "limit", "within"),
+    [(0.5, 2, SLOWER, 0.02), (0.5, 1, FASTER, 0.11), (1.9, 1, PASSING, 0.05)],
+)
+def test_pressure_ripple_of_a_wave_that_slides_past_the_film(sliding, side, limit, within):
+    """The film that a faster wave leaves has fewer nodes to its wave: 6.4 for 8, and 9 % less ripple."""
+    assert line_wave(0.125, 8, sliding, side).ripple == pytest.approx(limit, rel=within)
+
+
+def test_friction_and_share_of_a_rough_mixed_contact_on_coarse_meshes():
+    """On a/50, a/100: +39 %, +18 %, shares .038, .0215; the coarsest mesh has four nodes a wave."""
+    coarse, fine = mixed_pass(50), mixed_pass(100)
+    assert coarse.friction == pytest.approx(0.021, rel=0.03)
+    assert fine.friction == pytest.approx(FRICTION, rel=0.19)
+    assert fine.share < 0.6 * coarse.share
+    assert max(coarse.mass_error, fine.mass_error) < 8e-7
+    assert fine.newton < 6.0 * fine.steps
