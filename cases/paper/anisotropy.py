@@ -22,7 +22,7 @@ import argparse
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -188,8 +188,33 @@ def enclosed(result: Result, closed: float) -> float:
     return float(np.mean(shares))
 
 
+class Film(NamedTuple):
+    """Means over the time; lengths in m, `enclosed` as of :func:`enclosed`."""
+
+    lambda_ratio: float
+    friction: float
+    share: float
+    length: float
+    central: float
+    p_max: float
+    enclosed: float
+    iterations: int
+    steps: int
+
+
 def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
-    """Means over the time."""
+    """Means over the time, as a line."""
+    of = lubricated(chosen, lay, speed)
+    return (
+        f"lambda {of.lambda_ratio:.2f}, friction {of.friction:.4f}, share {of.share:.4f}, "
+        f"length {of.length / HALF_WIDTH:.4f} a, film {1e9 * of.central:.0f} nm, "
+        f"highest pressure {of.p_max / 1e9:.2f} GPa, enclosed {of.enclosed:.3f}, "
+        f"{of.iterations} iterations in {of.steps} steps"
+    )
+
+
+def lubricated(chosen: argparse.Namespace, lay: float, speed: float) -> Film:
+    """Means of a lubricated contact over the time."""
     case, sq = contact(chosen, lay, 1e9), sq_down_to(chosen.border) if lay else 0.0
     layer = float(np.sqrt(SQ**2 - sq**2))
     stiffness = 2 * np.pi * layer / (chosen.border if lay else ROLL_OFF)
@@ -210,13 +235,9 @@ def film(chosen: argparse.Namespace, lay: float, speed: float) -> str:
     output = chosen.output and chosen.output / f"lay{lay:.2g}_{speed:g}.h5"
     result = solve(case, output, progress=False)
     layer, weights = result.case.contact.asperity_height, filled_weights(result)
-    ratio, friction, share, length, thickness, highest = (mean(result, name, weights) for name in MEANS)
-    return (
-        f"lambda {ratio:.2f}, friction {friction:.4f}, share {share:.4f}, "
-        f"length {length / HALF_WIDTH:.4f} a, film {1e9 * thickness:.0f} nm, "
-        f"highest pressure {highest / 1e9:.2f} GPa, enclosed {enclosed(result, CLOSED * layer):.3f}, "
-        f"{result.steps('newton').sum()} iterations in {len(weights) - 1} steps"
-    )
+    means = (float(mean(result, name, weights)) for name in MEANS)
+    iterations = int(result.steps("newton").sum())
+    return Film(*means, enclosed(result, CLOSED * layer), iterations, len(weights) - 1)
 
 
 TABLES: dict[str, tuple[Callable[[argparse.Namespace, float, float], str], tuple[float, ...]]] = {
@@ -227,8 +248,8 @@ TABLES: dict[str, tuple[Callable[[argparse.Namespace, float, float], str], tuple
 }
 
 
-def main(words: list[str] | None = None) -> None:
-    """Run the command."""
+def arguments() -> argparse.ArgumentParser:
+    """Arguments of the command."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -242,9 +263,14 @@ def main(words: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--map", type=Path, help="of film: file of a measured map")
     parser.add_argument("--travel", type=float, default=4.0, help="of the faster surface [half-widths]")
-    parser.add_argument("--courant", type=float, default=0.5)
+    parser.add_argument("--courant", type=float, default=1.0)
     parser.add_argument("-o", "--output", type=Path, metavar="FOLDER", help="of film: results with all steps")
-    chosen = parser.parse_args(words)
+    return parser
+
+
+def main(words: list[str] | None = None) -> None:
+    """Run the command."""
+    chosen = arguments().parse_args(words)
     row, values = TABLES[chosen.table]
     for lay in chosen.lays:
         for at in chosen.at or values:

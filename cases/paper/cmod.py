@@ -1,17 +1,19 @@
-"""Friction of FZG gears of type C-mod over the speed beside measurements: table on two meshes and picture.
+"""Friction of FZG gears of type C-mod over the speed beside measurements: tables and picture.
 
-``./run_mpi.sh python cases/paper/cmod.py [-o PICTURE]`` computes `cases/cmod.toml` with all roughness of both
-flanks in the compliant layer, and as a strip of isotropic roughness; prints friction and the share of the
-solids beside `MEASURED` and draws them over the speed. Results are files `cmod_MODEL_SPEED_POINTS.h5`; those
-that exist are used.
+``./run_mpi.sh python cases/paper/cmod.py [MODEL ...] [-o PICTURE]`` computes `cases/cmod.toml` by each of
+`MODELS`, prints friction and the share of the solids beside `data/cmod.csv` on two meshes and, at 8.3 m/s,
+the effect of each of `CHANGES`, and draws friction and share over the speed. Results are files
+`cmod_MODEL_SPEED_POINTS*.h5`; those that exist are used.
 """
 
 from __future__ import annotations
 
 import argparse
+import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import measured_data
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -23,8 +25,25 @@ from ehlpetsc.pictures import style
 
 CASE = Path(__file__).parents[1] / "cmod.toml"
 BOUNDARY = 0.065  # friction of the solids
-# of a flank of Ra 0.2 um, waves of 40 um and longer; those from 2.5 um on have 0.25 um
-WAVES = {"kind": "self-affine", "sq": 0.226e-6, "hurst": 0.8, "roll_off": 80e-6, "short_cutoff": 40e-6}
+SPEED_OF_CHANGES = 8.3  # m/s
+
+
+def waves(sq: float, border: float, seed: int) -> dict[str, Any]:
+    """Isotropic roughness of a flank of Ra 0.2 um from `border` [m] on; waves from 2.5 um on have 0.25 um."""
+    spectrum = {"sq": sq, "hurst": 0.8, "roll_off": 80e-6, "short_cutoff": border}
+    return {"synthetic": {"kind": "self-affine", "seed": seed} | spectrum}
+
+
+def strip(border: float, sq: float, layer: float, width: float, seeds: tuple[int, int]) -> dict[str, Any]:
+    """Keys of a strip: waves from `border` [m] on are on the mesh, the others in the layer (rms [m])."""
+    return {
+        "contact.model": "mixed",
+        "contact.asperity_height": layer,
+        "mesh.width": width,
+        "mesh.inlet": -2.5,
+        "surface.1": waves(sq, border, seeds[0]),
+        "surface.2": waves(sq, border, seeds[1]),
+    }
 
 
 class Model(NamedTuple):
@@ -35,26 +54,33 @@ class Model(NamedTuple):
     keys: dict[str, Any]
 
 
+LONG = 79e-6, 0.168e-6, 0.262e-6, 1.0  # border, Sq of a flank and rms of the layer [m], width
+SHORT = 40e-6, 0.226e-6, 0.151e-6, 0.5
 MODELS = {
+    "smooth": Model("smooth flanks", (20, 40), {}),
     "layer": Model(
         "all roughness in the layer",  # rms of both flanks, waves below 80 um
         (20, 40),
-        {"contact.asperity_height": 0.354e-6, "contact.asperity_stiffness": 0.0278},
-    ),
-    "strip": Model(
-        "strip of isotropic roughness",
-        (16, 32),
         {
-            "contact.asperity_height": 0.151e-6,  # rms of both flanks, waves below 40 um
-            "mesh.width": 0.5,
-            "mesh.inlet": -2.5,
-            "time.courant": 1.0,
-            "surface.1": {"synthetic": WAVES | {"seed": 2}},
-            "surface.2": {"synthetic": WAVES | {"seed": 3}},
+            "contact.model": "mixed",
+            "contact.asperity_height": 0.354e-6,
+            "contact.asperity_stiffness": 0.0278,
         },
     ),
+    "strip": Model("strip of isotropic roughness", (20, 40), strip(*LONG, (2, 3))),
 }
-COLOURS = {"layer": style.SINGLE, "strip": style.SECOND}
+COLOURS = {"smooth": style.DARK, "layer": style.SINGLE, "strip": style.SECOND}
+CHANGES: dict[str, dict[str, Any]] = {
+    "isothermal": {"heat": None, "fluid.temperature": 363.15},
+    "46 W/(m K) of soft steel": {"heat.conductivity": 46.0},
+    "FVA 3 as oil m100": {"fluid.oil": "m100"},
+}
+CHANGES_OF_STRIPS = {
+    "seeds 4, 5": strip(*LONG, (4, 5)),
+    "seeds 6, 7": strip(*LONG, (6, 7)),
+    "border 40 um, a/32": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 32},
+}
+"""What moves friction, with the changed keys, on the coarser mesh."""
 
 
 class Point(NamedTuple):
@@ -66,14 +92,7 @@ class Point(NamedTuple):
     share: float
 
 
-MEASURED = (
-    Point(0.5, 130.5, 0.063, 0.90),
-    Point(2.0, 522.0, 0.060, 0.74),
-    Point(5.0, 1305.0, 0.055, 0.53),
-    Point(8.3, 2166.0, 0.050, 0.38),
-    Point(20.0, 5218.0, 0.034, 0.14),
-)
-"""Hinterstoisser 2014, by the fit of Arana et al. (2.5 %); share by electric resistance, 1 - erf(lambda)."""
+MEASURED = tuple(Point(*row) for row in zip(*measured_data.read("cmod.csv").columns.values(), strict=True))
 
 
 class Found(NamedTuple):
@@ -83,15 +102,24 @@ class Found(NamedTuple):
     solids: float
     share: float
 
+    def __str__(self) -> str:
+        oil = (self.friction - self.solids) / (1.0 - self.share)
+        return f"{self.friction:.4f}, share {self.share:.2f}, oil over its own load {oil:.4f}"
 
-def found(model: str, rotation: float, points: int, folder: Path = Path()) -> Found:
+
+def found(
+    model: str, rotation: float, points: int, folder: Path = Path(), change: str | None = None
+) -> Found:
     """Computed values at a speed of the pinion [1/min], on a mesh of so many nodes per half-width."""
-    file = folder / f"cmod_{model}_{rotation:g}_{points}.h5"
+    name = f"cmod_{model}_{rotation:g}_{points}" + (f"_{change}" if change else "")
+    file = folder / (re.sub(r"\W+", "_", name) + ".h5")
+    keys = {"gears.speed": rotation, "mesh.points_per_half_width": points} | MODELS[model].keys
+    case = load(CASE, keys | (CHANGES | CHANGES_OF_STRIPS).get(change or "", {}))
     if not file.exists():
-        keys = {"contact.model": "mixed", "gears.speed": rotation, "mesh.points_per_half_width": points}
-        case = load(CASE, keys | MODELS[model].keys)
         solve(case, file, progress=False).close()
     run = GearRun(file)
+    if "contact_share" not in run.scalars:
+        return Found(mean_friction(run.path, run.friction_on_path()), 0.0, 0.0)
     share = np.interp(run.path.rho, run.rho, run.scalars["contact_share"])
     solids = mean_friction(run.path, BOUNDARY * share)
     return Found(mean_friction(run.path, run.friction_on_path()), solids, run.mean("contact_share"))
@@ -105,11 +133,14 @@ def draw(computed: dict[str, list[Found]]) -> Figure:
         colour, parts = COLOURS[model], ("of the solids", "of the oil") if model == "layer" else ("", "")
         friction, solids, share = np.array(values).T
         panels[0].plot(speeds, friction, color=colour, label=model)
-        panels[0].plot(speeds, solids, "--", color=colour, lw=1.0, label=parts[0])
-        panels[0].plot(speeds, friction - solids, ":", color=colour, lw=1.0, label=parts[1])
-        panels[1].plot(speeds, share, color=colour, label=model)
+        if model != "smooth":
+            panels[0].plot(speeds, solids, "--", color=colour, lw=1.0, label=parts[0])
+            panels[0].plot(speeds, friction - solids, ":", color=colour, lw=1.0, label=parts[1])
+            panels[1].plot(speeds, share, color=colour, label=model)
     panels[0].plot(speeds, [point.friction for point in MEASURED], "ko", label="measured")
-    panels[1].plot(speeds, [point.share for point in MEASURED], "ko", label="by resistance")
+    panels[1].plot(
+        speeds, [point.share for point in MEASURED], "ko", label="1 - erf(lambda), fitted to discs"
+    )
     labels = "mean friction coefficient", "share of load on the solids"
     for panel, label in zip(panels, labels, strict=True):
         panel.set(xscale="log", xlabel="speed at the pitch circle [m/s]", ylabel=label)
@@ -121,27 +152,40 @@ def draw(computed: dict[str, list[Found]]) -> Figure:
     return figure
 
 
+def influences(model: str) -> None:
+    """Print the effect of each change at `SPEED_OF_CHANGES` on the coarser mesh."""
+    (rotation,) = (point.rotation for point in MEASURED if point.speed == SPEED_OF_CHANGES)
+    points = MODELS[model].meshes[0]
+    print(f"{model} at {SPEED_OF_CHANGES} m/s on a/{points}: {found(model, rotation, points)}")
+    for change in CHANGES | (CHANGES_OF_STRIPS if model == "strip" else {}):
+        print(f"{change}: {found(model, rotation, points, change=change)}", flush=True)
+
+
 def main(words: list[str] | None = None) -> None:
-    """Print the table and write the picture."""
+    """Print the tables and write the picture."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("models", nargs="*", choices=[*MODELS, []], metavar="MODEL", help=", ".join(MODELS))
     parser.add_argument("-o", "--output", default="cmod_friction.png", help="picture [cmod_friction.png]")
     chosen = parser.parse_args(words)
     computed: dict[str, list[Found]] = {}
-    for model, (description, points, _) in MODELS.items():
-        meshes = ", ".join(f"a/{number}" for number in points)
-        print(f"{description}\nspeed [m/s]: measured, share; computed on {meshes}, share, ratio")
+    for model in chosen.models or MODELS:
+        description, points, _ = MODELS[model]
+        print(
+            f"{description}\nspeed [m/s]: measured, share; computed on " + ", ".join(f"a/{n}" for n in points)
+        )
         computed[model] = []
         for point in MEASURED:
             both = [found(model, point.rotation, number) for number in points]
-            of, last = ", ".join(f"{one.friction:.4f}" for one in both), both[-1]
+            ratio = both[-1].friction / point.friction
+            text = "; ".join(map(str, both))
             print(
-                f"{point.speed:g}: {point.friction:.3f}, {point.share:.2f}; {of}, {last.share:.2f}, "
-                f"{last.friction / point.friction:.2f}",
+                f"{point.speed:g}: {point.friction:.3f}, {point.share:.2f}; {text}; ratio {ratio:.2f}",
                 flush=True,
             )
-            computed[model].append(last)
+            computed[model].append(both[-1])
+        influences(model)
     style.save(draw(computed), chosen.output)
     print(chosen.output)
 

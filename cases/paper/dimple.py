@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 from typing import NamedTuple
 
+import measured_data
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -52,29 +53,18 @@ class Line(NamedTuple):
     """Measured film along y = 0: position of the dimple, positions [um] and films [nm]."""
 
     at: float
-    x: tuple[int, ...]
-    film: tuple[int, ...]
+    x: np.ndarray
+    film: np.ndarray
 
 
 DIMPLES = (Dimple(7e-6, 15e-6), Dimple(1.3e-6, 26e-6), Dimple(0.175e-6, 20e-6))
 """Of radius 15.5, 21.5 and 15.5 um: of the width at which measured lines leave the range of the optics."""
-MEASURED = {
-    (DIMPLES[0], 0.0): Line(
-        25.0,
-        (-146, -138, -131, -121, -108, -82, -65, -47, -24, -7, 0, 8)
-        + (43, 52, 63, 76, 86, 93, 101, 116, 122, 125, 129, 139, 147, 153, 157),
-        (338, 287, 256, 224, 210, 216, 210, 210, 210, 205, 200, 223)
-        + (193, 198, 205, 210, 215, 223, 215, 208, 201, 190, 166, 199, 235, 281, 336),
-    ),
-    (DIMPLES[1], -1.0): Line(
-        -12.0,
-        (-144, -139, -129, -112, -98, -91, -79, -71, -61, -53, -42, -36)
-        + (9, 21, 70, 90, 110, 117, 124, 132, 146, 151, 158),
-        (304, 278, 243, 218, 213, 198, 208, 205, 206, 210, 221, 206)
-        + (261, 233, 235, 241, 232, 231, 200, 180, 194, 243, 278),
-    ),
-}
-"""Digitised from the article by Hansen et al. (2022), github.com/ErikHansenGit/EHL, public domain."""
+
+
+def measured_line(dimple: Dimple, ratio: float) -> Line | None:
+    """Measured line of a dimple at a slide/roll ratio."""
+    data = measured_data.read("dimple.csv").where(depth=round(1e6 * dimple.depth, 3), slide_roll_ratio=ratio)
+    return Line(data["position"][0], data["x"], data["film"]) if len(data["x"]) else None
 
 
 def line(dimple: Dimple, ratio: float, at: float, points: int) -> tuple[np.ndarray, np.ndarray]:
@@ -111,7 +101,7 @@ def draw(lines: dict[tuple[Dimple, float], tuple[np.ndarray, np.ndarray]]) -> Fi
     for (dimple, ratio), (x, film) in lines.items():
         panel = panels[RATIOS.index(ratio), DIMPLES.index(dimple)]
         panel.plot(1e6 * x, 1e9 * film, color=style.SINGLE, lw=1.4, label="computed")
-        if measured := MEASURED.get((dimple, ratio)):
+        if measured := measured_line(dimple, ratio):
             panel.plot(measured.x, measured.film, "o", ms=3, color=style.DARK, label="measured")
             panel.legend(loc="lower center", **style.SMALL)
         panel.set_title(f"depth {dimple.depth * 1e6:g} µm, slide/roll {ratio:g}", fontsize="small")
@@ -136,15 +126,14 @@ def main(words: list[str] | None = None) -> None:
     lines = {}
     for ratio in RATIOS:
         for dimple in DIMPLES:
-            measured = MEASURED.get((dimple, ratio))
+            measured = measured_line(dimple, ratio)
             at, means = measured.at if measured else 0.0, []
             for points in MESHES:
                 x, film = line(dimple, ratio, at, points)
                 means.append(sides(dimple, 1e-6 * at, x, 1e9 * film))
             lines[dimple, ratio] = x, film
             if measured:
-                in_metres = 1e-6 * np.array(measured.x), np.array(measured.film)
-                means.append(sides(dimple, 1e-6 * at, *in_metres))
+                means.append(sides(dimple, 1e-6 * at, 1e-6 * measured.x, measured.film))
             figures = "; ".join(f"{behind:.0f}, {ahead:.0f}" for behind, ahead in means)
             print(f"{dimple.depth * 1e6:g}, {ratio:g}: {figures}", flush=True)
     style.save(draw(lines), chosen.output)

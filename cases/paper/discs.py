@@ -1,17 +1,17 @@
-"""Friction of twin discs beside measurements: table on two meshes and picture.
+"""Friction of twin discs beside measurements: table, influences and picture.
 
-``./run_mpi.sh python cases/paper/discs.py [-o PICTURE]`` computes `cases/discs.toml` with the oils and
-    speeds of
-`MEASURED` on a/30 and a/60, prints measured and computed friction with their ratio, and draws them over the
-slide/roll ratio.
+``./run_mpi.sh python cases/paper/discs.py [-o PICTURE]`` computes `cases/discs.toml` with the oils and speeds
+of `data/discs.csv` on a/60, prints measured and computed friction with their ratio, the effect of each of
+`CHANGES`, and draws friction over the slide/roll ratio.
 """
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import measured_data
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -20,46 +20,78 @@ from ehlpetsc.pictures import style
 from ehlpetsc.run.simulation import Simulation
 
 CASE = Path(__file__).parents[1] / "discs.toml"
-RATIOS = (0.01, 0.03, 0.1, 0.3)
 DENSE = np.geomspace(0.003, 0.4, 15)  # of the curves
 SHIFTS = (0.95, 1.0, 1.05)  # of measured points, so that their bars do not overlap
-MESHES = (30, 60)  # nodes per half-width
+POINTS = 60  # nodes per half-width
 BAND = 0.005  # of the measured coefficients
-PANELS = {"FVA 3": ("m100",), "at 4 m/s": ("m100", "n100", "pao100")}
-NAMES = {"m100": "FVA 3, mineral", "n100": "N100, naphthenic", "pao100": "PAO100"}
+SECOND_OIL = "m100"  # FVA 3, measured by Arana et al.
+PANELS = {"FVA 3": ("fva3",), "at 4 m/s": ("fva3", "n100", "pao100")}
+NAMES = {"fva3": "FVA 3, mineral", "n100": "N100, naphthenic", "pao100": "PAO100"}
+CHANGES: dict[str, dict[str, Any]] = {
+    "a/30": {"mesh.points_per_half_width": 30},
+    "46 W/(m K) of soft steel": {"heat.conductivity": 46.0},
+    "isothermal": {"heat": None, "fluid.temperature": 333.15},
+    "no limit of the shear stress": {"fluid.limiting_shear": 1.0},
+    "Eyring stress constant over pressure": {"fluid.eyring_stress_pressure": 0.0},
+    "FVA 3 as oil m100": {"fluid.oil": SECOND_OIL},
+}
+"""What moves friction, with the changed keys."""
 
 
 class Curve(NamedTuple):
-    """Friction coefficients of an oil at a mean speed [m/s] over `RATIOS`."""
+    """Friction coefficients of an oil at a mean speed [m/s] over slide/roll ratios."""
 
     oil: str
     speed: float
-    friction: tuple[float, float, float, float]
+    ratios: np.ndarray
+    friction: np.ndarray
 
 
-MEASURED = (
-    Curve("m100", 1.0, (0.0273, 0.0368, 0.0458, 0.0470)),
-    Curve("m100", 4.0, (0.0314, 0.0394, 0.0436, 0.0391)),
-    Curve("m100", 8.0, (0.0338, 0.0394, 0.0378, 0.0280)),
-    Curve("n100", 4.0, (0.0530, 0.0530, 0.0530, 0.0530)),
-    Curve("pao100", 4.0, (0.0062, 0.0137, 0.0216, 0.0233)),
-)
-"""1 GPa, 60 degrees C, smooth: Mann 1995, by the fit of Arana et al., Proc. IMechE J 233 (2019) 303."""
+def _curves() -> tuple[Curve, ...]:
+    data = measured_data.read("discs.csv")
+    keys = zip(data.columns["oil"], data.columns["entrainment_speed"], strict=True)
+    rows = {key: data.where(oil=key[0], entrainment_speed=key[1]) for key in dict.fromkeys(keys)}
+    return tuple(
+        Curve(str(oil), float(speed), of["slide_roll_ratio"], of["friction"])
+        for (oil, speed), of in rows.items()
+    )
 
 
-def friction(oil: str, speed: float, ratio: float, points: int) -> float:
-    """Computed friction coefficient at a slide/roll ratio, on a mesh of so many nodes per half-width."""
+MEASURED = _curves()
+
+
+def friction(oil: str, speed: float, ratio: float, changes: dict[str, Any] | None = None) -> float:
+    """Computed friction coefficient at a slide/roll ratio; `changes`: keys of the case."""
     keys = {"fluid.oil": oil, "motion.entrainment_speed": speed, "motion.slide_roll_ratio": float(ratio)}
-    case = load(CASE, keys | {"series": None, "mesh.points_per_half_width": points})
+    case = load(CASE, keys | {"series": None, "mesh.points_per_half_width": POINTS} | (changes or {}))
     (state,) = Simulation(case)
     return float(state.scalars["friction_coefficient"])
+
+
+def computed(changes: dict[str, Any] | None = None) -> np.ndarray:
+    """Computed friction coefficients, a row for each of `MEASURED`; another oil replaces FVA 3 alone."""
+    others = {key: value for key, value in (changes or {}).items() if key != "fluid.oil"}
+    return np.array(
+        [
+            [friction(m.oil, m.speed, ratio, changes if m.oil == "fva3" else others) for ratio in m.ratios]
+            for m in MEASURED
+        ]
+    )
+
+
+def agreement(found: np.ndarray) -> str:
+    """Points within 8 and 15 %, and mean ratio of FVA 3, as a line."""
+    ratios = found / np.array([m.friction for m in MEASURED])
+    error, mean = np.abs(ratios - 1.0), ratios[[m.oil == "fva3" for m in MEASURED]].mean()
+    inside = " and ".join(str((error <= limit).sum()) for limit in (0.08, 0.15))
+    return f"{inside} of {error.size} points within 8 and 15 %, mean ratio of FVA 3 {mean:.2f}"
 
 
 def draw() -> Figure:
     """Friction over the slide/roll ratio, for the speeds of FVA 3 and for three oils at one speed."""
     figure, panels = style.new_figure(1, 2, (9.0, 4.2), sharey=True)
     curves = {
-        of: [friction(*of, ratio, MESHES[0]) for ratio in DENSE]
+        of: [friction(*of, ratio, CHANGES["a/30"]) for ratio in DENSE]
         for of in {(m.oil, m.speed) for m in MEASURED}
     }
     for panel, (title, oils) in zip(panels, PANELS.items(), strict=True):
@@ -68,7 +100,7 @@ def draw() -> Figure:
             label = f"{measured.speed:g} m/s" if len(oils) == 1 else NAMES[measured.oil]
             panel.plot(DENSE, curves[measured.oil, measured.speed], color=colour, lw=1.4, label=label)
             bars = dict(fmt="o", ms=4, lw=0.8, capsize=2, color=colour)
-            panel.errorbar(np.array(RATIOS) * shift, measured.friction, yerr=BAND, **bars)
+            panel.errorbar(measured.ratios * shift, measured.friction, yerr=BAND, **bars)
         panel.set(xscale="log", xlabel=style.UNITS["motion.slide_roll_ratio"], ylim=(0.0, 0.06))
         panel.set_title(title, fontsize="medium")
         panel.xaxis.set_major_formatter("{x:g}")
@@ -80,18 +112,23 @@ def draw() -> Figure:
 
 
 def main(words: list[str] | None = None) -> None:
-    """Print the table and write the picture."""
+    """Print the tables and write the picture."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("-o", "--output", default="discs.png", help="picture [discs.png]")
     chosen = parser.parse_args(words)
-    print("oil, speed [m/s], slide/roll ratio: measured; computed on " + ", ".join(f"a/{n}" for n in MESHES))
-    for measured in MEASURED:
-        for ratio, value in zip(RATIOS, measured.friction, strict=True):
-            found = [friction(measured.oil, measured.speed, ratio, points) for points in MESHES]
+    print(f"oil, speed [m/s], slide/roll ratio: measured; computed on a/{POINTS}")
+    published = computed()
+    for measured, row in zip(MEASURED, published, strict=True):
+        for ratio, value, found in zip(measured.ratios, measured.friction, row, strict=True):
             at = f"{measured.oil}, {measured.speed:g}, {ratio:g}: {value:.4f}"
-            print(f"{at}; {found[0]:.4f}, {found[1]:.4f}; ratio {found[1] / value:.3f}", flush=True)
+            print(f"{at}; {found:.4f}; ratio {found / value:.3f}")
+    print(agreement(published), flush=True)
+    for name, changes in CHANGES.items():
+        found = computed(changes)
+        change = 100.0 * (found / published - 1.0)
+        print(f"{name}: {change.min():+.1f} to {change.max():+.1f} %; {agreement(found)}", flush=True)
     style.save(draw(), chosen.output)
     print(chosen.output)
 

@@ -11,6 +11,7 @@ import argparse
 from pathlib import Path
 from typing import NamedTuple
 
+import measured_data
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -28,51 +29,31 @@ RANGE = (0.06, 1.1)  # m/s, of the mean ratio: slower films scatter, faster ones
 
 
 class Oil(NamedTuple):
-    """Oil by name, title and temperature [degrees C] with its films [m/s, nm].
+    """Oil by name, title and temperature [degrees C] of its films, `changes`: keys of `[fluid]` beside it.
 
     `logged_index`: refractive index with which the films were logged.
-    `changes`: keys of `[fluid]` beside the oil.
     """
 
     name: str
     title: str
     temperature: float
     logged_index: float
-    speeds: tuple[float, ...]
-    logged: tuple[float, ...]
     changes: dict[str, float | None] = {}
+
+    @property
+    def speeds(self) -> np.ndarray:
+        """Measured speeds [m/s]."""
+        return DATA.where(oil=self.name)["entrainment_speed"]
 
     @property
     def films(self) -> np.ndarray:
         """Measured films [nm], by the refractive index of the oil at ambient pressure."""
-        return np.array(self.logged) * self.logged_index / INDEX
+        return DATA.where(oil=self.name)["film"] * self.logged_index / INDEX
 
 
-FVA3 = Oil(
-    "fva3",
-    "FVA 3",
-    25.0,
-    1.48,
-    (
-        *(0.0210, 0.02435, 0.02885, 0.03553, 0.04226, 0.05008, 0.06013, 0.07135, 0.08593, 0.1028, 0.1239),
-        *(0.1486, 0.1777, 0.2122, 0.2549, 0.3064, 0.3664, 0.4408, 0.5289, 0.6353, 0.7624, 0.9149, 1.098),
-        *(1.318, 1.584, 1.899),
-    ),
-    (
-        *(49.7, 55.9, 66.5, 81.3, 94.3, 108.5, 132.5, 153.5, 167.5, 187.0, 220.0),
-        *(249.8, 284.4, 321.2, 372.5, 412.7, 464.6, 524.6, 589.4, 652.7, 724.1, 800.9, 860.2),
-        *(945.7, 992.8, 1199.0),
-    ),
-)
-"""Steel ball of 19.05 mm driven by the disc, 20 N: github.com/ngocminhdao88/dao_masterarbeit (logs, 2018)."""
-SHC320 = Oil(
-    "shc320",
-    "SHC 320",
-    38.8,
-    1.40,
-    (0.1205, 0.1725, 0.2480, 0.4282, 0.6142, 0.8853, 1.064),
-    (191.9, 235.2, 292.0, 390.1, 461.9, 530.7, 576.5),
-)
+DATA = measured_data.read("optical_films.csv")
+FVA3 = Oil("fva3", "FVA 3", 25.0, 1.48)
+SHC320 = Oil("shc320", "SHC 320", 38.8, 1.40)
 THINNING = SHC320._replace(
     title="SHC 320, Carreau",
     changes={"fluid.carreau_stress": 0.5e6, "fluid.carreau_exponent": 0.3, "fluid.eyring_stress": None},
@@ -99,7 +80,7 @@ def hamrock_dowson(oil: Oil) -> np.ndarray:
     case = case_of(oil, 1.0, MESHES[0])
     scales, fluid = Scales.of(case), case.fluid
     W = case.contact.load / (scales.E * scales.R**2)
-    U = fluid.viscosity * np.array(oil.speeds) / (scales.E * scales.R)
+    U = fluid.viscosity * oil.speeds / (scales.E * scales.R)
     G = fluid.pressure_viscosity * scales.E
     return 1e9 * scales.R * np.array([hamrock_dowson_films(u, G, W, 1.0)[0] for u in U])
 
@@ -137,7 +118,7 @@ def table(oil: Oil) -> np.ndarray:
         computed[k] = [film(oil, speed, points) for points in MESHES]
         figures = ", ".join(f"{value:.1f}" for value in (measured, *computed[k], published[k]))
         print(f"{oil.title}, {speed:g}: {figures}; ratio {measured / computed[k, -1]:.3f}", flush=True)
-    inside = (np.array(oil.speeds) > RANGE[0]) & (np.array(oil.speeds) < RANGE[1])
+    inside = (oil.speeds > RANGE[0]) & (oil.speeds < RANGE[1])
     mean, index = float((oil.films / computed[:, -1])[inside].mean()), index_under_pressure(oil)
     print(f"mean ratio of {inside.sum()} films from {RANGE[0]:g} to {RANGE[1]:g} m/s: {mean:.3f}; ", end="")
     print(f"with the refractive index {index:.3f} at p0: {mean * INDEX / index:.3f}")

@@ -61,13 +61,6 @@ RIDGE = {
 
 It travels at 0.875 u from Xc = -2 with the load held; computed by a dense solver."""
 
-
-CMOD_FRICTION = 0.0402
-"""Mean friction coefficient of smooth gears of type C-mod, 183.4 N m, 8.3 m/s, FVA 3 at 90 degrees C.
-
-Computed before the oil had a name. Hinterstoisser 2014 measured 0.050 with Ra 0.2 um (by Arana's fit, 2.5 %).
-"""
-
 SHC_320 = {
     20: (
         [
