@@ -37,7 +37,7 @@ def crowned(case: Case, modulus: float, point: str, depth: str) -> str:
     """
     pair, place = case.gears.pair, f"--crowned {point} {depth}"
     try:
-        deep = float(converted(depth, "m"))
+        deep = float(str(converted(depth, "m")))
     except ValueError:
         deep = math.nan
     path, face = path_of_contact(pair), pair.face_width
@@ -47,7 +47,7 @@ def crowned(case: Case, modulus: float, point: str, depth: str) -> str:
     if point not in allowed.split(", ") or not 0.0 < deep < face:
         raise CaseError([f'{place}: allowed: a loaded point, {allowed}, and a depth, as "10 um" [m]'])
     k = path.index(point)
-    load, radii = float(path.load[k]) * face, [float(path.radius[k]), face**2 / (8.0 * deep)]
+    load, radii = float(path.load[k]) * face, (float(path.radius[k]), face**2 / (8.0 * deep))
     wide = 2.0 * hertz_ellipse(load, *radii, modulus).b
     if wide > face:
         raise CaseError(

@@ -28,9 +28,9 @@ def difference(before: Topography, after: Topography) -> Topography:
     if before.is_ridge or after.is_ridge:
         raise ProfileError("a profile; allowed for a difference: maps")
     if not np.allclose(after.spacings, before.spacings, rtol=SPACING_TOLERANCE, atol=0.0):
-        own, other = (" x ".join(f"{1e6 * step:.4g}" for step in of.spacings) for of in (after, before))
+        found, asked = (" x ".join(f"{1e6 * step:.4g}" for step in of.spacings) for of in (after, before))
         raise ProfileError(
-            f"points {own} um apart; allowed for a difference: {other} um, as of the first map"
+            f"points {found} um apart; allowed for a difference: {asked} um, as of the first map"
         )
     from scipy.ndimage import shift
 
