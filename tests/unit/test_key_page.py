@@ -2,16 +2,19 @@
 
 import re
 import sys
+import tomllib
 
 import numpy as np
 import pytest
 from support import ROOT, refused
 
+import ehlpetsc
 from ehlpetsc.__main__ import main
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.case.keys import keys, template
+from ehlpetsc.case.keys import EXAMPLES, keys, template
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.laws import density
+from ehlpetsc.run.explain import explain
 
 sys.path.append(str(ROOT / ".github" / "site"))
 import key_page
@@ -64,6 +67,19 @@ def test_template_is_a_case(tmp_path, kind):
     path.write_text(template(kind))
     case = load(path)
     assert case.fluid.viscosity < 0.03 and (case.conditions is None) == (kind != "gears")  # of hot oil
+
+
+@pytest.mark.parametrize("kind", EXAMPLES)
+def test_template_expects_contact_and_resolves_its_waves(kind):
+    text = explain(load(tomllib.loads(template(kind))))
+    assert 0.4 < float(re.search(r"Lambda ratio ([\d.]+)", text)[1]) < 1.3
+    nodes = [float(number) for number in re.findall(r"([\d.]+) nodes to the shortest one", text)]
+    assert len(nodes) == (kind in ("point", "strip")) and all(number > 16.0 for number in nodes)
+
+
+def test_template_of_a_roller_shows_contact():
+    steps = ehlpetsc.solve(load(tomllib.loads(template("roller")))).steps
+    assert 0.1 < steps.contact_share[0] < 0.3 and 0.03 < steps.friction_coefficient[0] < 0.05
 
 
 def test_commands_print_keys_and_template(capsys):

@@ -20,6 +20,9 @@ from ehlpetsc.run.validity import heat_warnings, limits, warnings
 from ehlpetsc.surfaces.roughness import Roughness
 
 POINT, STRIP = (tomllib.loads(template(kind)) for kind in ("point", "strip"))
+del POINT["contact"]["asperity_height"]  # a full film over waves that the mesh hardly resolves
+POINT["motion"]["entrainment_speed"] = "1 m/s"
+POINT["surface"]["1"]["synthetic"] |= {"sq": "0.03 um", "roll_off": "80 um", "short_cutoff": "25 um"}
 
 
 def fault(tables, **overrides):
