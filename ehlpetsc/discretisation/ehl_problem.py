@@ -3,9 +3,9 @@ r"""The discrete contact problem: one interleaved system for q, w and the approa
 Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same order,
 because SNESVI pairs row with unknown:
 
-* row of q: deflection, :mod:`ehlpetsc.discretisation.line.deflection`;
-* row of w: Reynolds equation, :class:`ehlpetsc.discretisation.line.reynolds.Reynolds`, in direct contact
-  complementary to the bound of the film; without oil :class:`ehlpetsc.discretisation.line.reynolds.NoOil`;
+* row of q: deflection, :mod:`.line.deflection`, :mod:`.plane.deflection`;
+* row of w: Reynolds equation, :class:`.reynolds.Reynolds`, in direct contact complementary to the bound of
+  the film; without oil :class:`.reynolds.NoOil`;
 * last row: :mod:`.balance`, of the load :math:`\sum p\,\Delta x=\pi/2`.
 
 The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from
@@ -20,8 +20,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.discretisation.balance import balance_of
+from ehlpetsc.discretisation.contact import contact_model, face_gap, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
+from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
@@ -110,7 +112,7 @@ class EHLProblem:
         share: Share,
         model: ContactModel,
         deflection: Any,
-        reynolds: Any,
+        reynolds: NoOil,
         film_scale: float,
     ):
         self.scales, self.grid, self.share = scales, scales.grid, share
@@ -191,3 +193,27 @@ class EHLProblem:
         if self.border:
             residual[-1] = self.balance.residual(h00, sums.load[-1], inputs)
         return Evaluation(model, state, residual, derivatives)
+
+
+def problem_of(
+    case: Case,
+    scales: Scales,
+    film_scale: float,
+    share: Share,
+    deflection: Any,
+    has_sides: tuple[bool, bool] | None = None,
+    bound_tolerance: float = 0.0,
+) -> EHLProblem:
+    """Problem of the nodes of a rank.
+
+    `film_scale`: expected film in a^2/R.
+    `has_sides`: whether the domain ends below and above the local rows; of a line left out.
+    `bound_tolerance`: of the active set in a^2/R: films this close to their bound count as on it.
+    """
+    film_scale = film_scale_of(case, scales, film_scale)
+    model = contact_model(case, scales, film_scale, bound_tolerance)
+    if case.fluid is None:
+        reynolds = NoOil(scales.grid, share)
+    else:
+        reynolds = Reynolds(scales, film_scale, share, has_sides, face_gap(case.contact))
+    return EHLProblem(case, scales, share, model, deflection, reynolds, film_scale)

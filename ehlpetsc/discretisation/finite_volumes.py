@@ -27,6 +27,9 @@ from ehlpetsc.physics.rheology import mobilities
 from ehlpetsc.physics.tabulated_flow import tabulated_mobilities
 
 ONE = unsigned(1)
+# Coefficients of a row, of q and h of each node: i-2, i-1, i, i+1 along x; in the plane i below and above.
+ALONG, STENCIL = 4, 6  # nodes
+OWN, BELOW, ABOVE = 4, 8, 10  # index of q of the node i and of the neighbours across, followed by h
 # Nodal properties, rows of one array (a tuple of arrays costs ten times the loop):
 P, DP = 0, 1  # pressure in p0, dp/dq
 H = 2  # film [m]
@@ -230,55 +233,66 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
 
 
 @compiled
-def balance(at: np.ndarray, first: int, law: tuple, table: np.ndarray, storage: tuple, rows: tuple) -> None:
-    """Fill in the mass balance of the cells, outflow - inflow + rate of storage, and its derivatives.
+def balance(
+    at: np.ndarray, layout: tuple, law: tuple, table: np.ndarray, storage: tuple, breadth: float, rows: tuple
+) -> None:
+    """Fill in the mass balance of cells in rows along x, outflow - inflow + storage, and its derivatives.
 
     Parameters
     ----------
     at : shape (10 or 13, nodes)
-        Nodal properties, with one node at least on either side of the cells.
-    first
-        Index of the first cell's node.
+        Nodal properties, with one node at least before and behind the cells of a row.
+    layout
+        Number of rows; cells of a row; index in `at` of the first cell, and its distance to that of the next
+        row; the same among the filled rows; whether there are two nodes before the cells.
     law, table
         As of :func:`flux_through`.
     storage
-        `m`, `extrapolated`, shape (cells,), and `k` of :class:`.step_inputs.FilmHistory`;
-        spacing / time step, 0: steady.
+        `m`, `extrapolated`, at the filled rows, and `k` of :class:`.step_inputs.FilmHistory`; cell over time
+        step, 0: steady.
+    breadth
+        Weight of the fluxes.
     rows
-        Filled in: residual, shape (cells,); derivatives with respect to q and h of the nodes i-2 .. i+1,
-        shape (cells, 8).
+        Filled in: residual, shape (rows,); derivatives with respect to q and h of the `ALONG` nodes, (rows, 8
+        or more).
     """
     (m_old, extrapolated, k, rate), (residual, derivatives) = storage, rows
-    first = unsigned(first)  # numba takes longer over indices that may be negative
-    left = first - ONE
-    behind = left - ONE if left > 0 else left
-    inflow = flux_through(at, behind, left, first, table, law)
-    for i in range(unsigned(len(residual))):
-        node, row = first + i, derivatives[i]
-        outflow = flux_through(at, node - ONE, node, node + ONE, table, law)
-        stored, by_m, _ = positive_extrapolation(at[M, node], m_old[i], k)
-        residual[i] = outflow[0] - inflow[0] + (stored - extrapolated[i]) * rate
-        row[0], row[1] = -inflow[1], -inflow[2]
-        row[2], row[3] = outflow[1] - inflow[3], outflow[2] - inflow[4]
-        row[4] = outflow[3] - inflow[5] + by_m * at[M_Q, node] * rate
-        row[5] = outflow[4] - inflow[6] + by_m * at[M_H, node] * rate
-        row[6], row[7] = outflow[5], outflow[6]
-        inflow = outflow
+    n_rows, cells, first, stride, filled, filled_stride, has_behind = layout
+    for line in range(unsigned(n_rows)):  # numba takes longer over indices that may be negative
+        begin = unsigned(first) + line * unsigned(stride)
+        place = unsigned(filled) + line * unsigned(filled_stride)
+        left = begin - ONE
+        behind = left - ONE if has_behind else left
+        inflow = flux_through(at, behind, left, begin, table, law)
+        for i in range(unsigned(cells)):
+            node, here = begin + i, place + i
+            by = derivatives[here]
+            outflow = flux_through(at, node - ONE, node, node + ONE, table, law)
+            stored, by_m, _ = positive_extrapolation(at[M, node], m_old[here], k)
+            residual[here] = breadth * (outflow[0] - inflow[0]) + (stored - extrapolated[here]) * rate
+            by[0], by[1] = -breadth * inflow[1], -breadth * inflow[2]
+            by[2], by[3] = breadth * (outflow[1] - inflow[3]), breadth * (outflow[2] - inflow[4])
+            by[4] = breadth * (outflow[3] - inflow[5]) + by_m * at[M_Q, node] * rate
+            by[5] = breadth * (outflow[4] - inflow[6]) + by_m * at[M_H, node] * rate
+            by[6], by[7] = breadth * outflow[5], breadth * outflow[6]
+            inflow = outflow
 
 
 @compiled
 def reynolds_product(
-    derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int, out: np.ndarray
+    derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, n_x: int, first: int, out: np.ndarray
 ) -> None:
     """Fill in the derivatives of the Reynolds rows times a vector.
 
     Parameters
     ----------
-    derivatives : shape (rows, 8)
-        With respect to q and h of the nodes i-2 .. i+1; zero where there is no such node.
-    v_q, v_h : shape (nx,)
+    derivatives : shape (rows, 8 or 12)
+        With respect to q and h of the `ALONG` nodes and of those across; zero where there is no such node.
+    v_q, v_h : shape (window,)
+    n_x
+        Nodes along x.
     first
-        Node of the first row.
+        Index in the window of the node of the first row.
     out : shape (rows,)
     """
     first, last = unsigned(first), unsigned(len(v_q) - 1)
@@ -291,19 +305,11 @@ def reynolds_product(
         total = by[0] * v_q[behind] + by[1] * v_h[behind] + by[2] * v_q[left] + by[3] * v_h[left]
         total = total + by[4] * v_q[here] + by[5] * v_h[here]
         out[row] = total + by[6] * v_q[right] + by[7] * v_h[right]
-
-
-@compiled
-def reynolds_rounding(derivatives: np.ndarray, q: np.ndarray, h: np.ndarray, first: int) -> float:
-    """Sum of squares of the errors of the Reynolds rows from rounding of all q and h.
-
-    Parameters as in :func:`reynolds_product`.
-    """
-    last, total = len(q) - 1, 0.0
-    for row in range(len(derivatives)):
-        change = 0.0
-        for k in range(4):
-            node = min(max(first + row + k - 2, 0), last)
-            change += abs(derivatives[row, 2 * k] * q[node]) + abs(derivatives[row, 2 * k + 1] * h[node])
-        total += (1.1e-16 * change) ** 2
-    return total
+    if derivatives.shape[1] > BELOW:
+        stride = unsigned(n_x)
+        for row in range(unsigned(len(derivatives))):
+            here, by = first + row, derivatives[row]
+            below = here - stride if here >= stride else here
+            above = here + stride if here + stride <= last else here
+            out[row] += by[BELOW] * v_q[below] + by[BELOW + 1] * v_h[below]
+            out[row] += by[ABOVE] * v_q[above] + by[ABOVE + 1] * v_h[above]

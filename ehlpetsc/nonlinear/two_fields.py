@@ -20,7 +20,6 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
-from ehlpetsc.discretisation.finite_volumes import reynolds_rounding
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import (
     Rows,
@@ -104,6 +103,7 @@ def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> 
     return matrix
 
 
+LAST_DIGIT = 1.1e-16  # relative rounding error of a number
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
 STEP_LIMIT = 0.3  # p0: largest change of pressure in one Newton step
@@ -276,8 +276,10 @@ class TwoFields:
         """
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
-        local = reynolds_rounding(evaluation.reynolds_derivatives, unknown, film, self.problem.owned.start)
-        return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, local)))
+        derivatives, first = np.abs(evaluation.reynolds_derivatives), self.problem.owned.start
+        changes = self.problem.reynolds.product(derivatives, np.abs(unknown), np.abs(film), first)
+        changes *= LAST_DIGIT
+        return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, float(changes @ changes))))
 
 
 def owned(owner: object, *objects: object) -> list:

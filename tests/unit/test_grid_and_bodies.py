@@ -36,6 +36,7 @@ def test_grid(kind, shape, cell, cell_size, distance, undeformed):
     assert (grid.shape, grid.n) == (shape, np.prod(shape))
     assert grid.x is X and grid.dx == near(0.1) and grid.steps[-1] == near(0.1)
     assert grid.steps == near([axis[1] - axis[0] for axis in AXES[kind]])
+    assert (grid.growth, grid.breadth) == (1.0, 1.0)
     assert (grid.cell, grid.cell_size) == (near(cell, rel=1e-12), near(cell_size, rel=1e-12))
     node = np.ravel_multi_index((1, 3)[-len(shape) :], shape)
     assert [c[node] for c in grid.coordinates] == near([-0.4, -1.2][-len(shape) :])

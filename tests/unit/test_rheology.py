@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from ehlpetsc.base.compiled import address_of
-from ehlpetsc.discretisation.plane.finite_volumes import cross_mobility
+from ehlpetsc.discretisation.plane.cross_flow import cross_mobility
 from ehlpetsc.physics import rheology, tabulated_flow, traction
 
 STEP = 1e-30

@@ -11,7 +11,8 @@ from support import CASES
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
 from ehlpetsc.discretisation.contact import face_gap
-from ehlpetsc.discretisation.line.reynolds import Reynolds
+from ehlpetsc.discretisation.ehl_problem import Share
+from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import IsothermalOil
 from ehlpetsc.effects.heat.step import HeatStep, Temperatures
 from ehlpetsc.effects.heat.transport import Film
@@ -58,8 +59,9 @@ def test_oil_balance_of_the_stored_state(name, keys):
         state = simulation.dimensionless
         temperature = StoredTemperature(case, accepted.film_temperature, simulation.scales)
         inputs = replace(state.solution.inputs, oil=temperature)
-        gap = face_gap(case.contact)
-        reynolds = Reynolds(simulation.scales, 1.0, 0, simulation.scales.nx, gap=gap)
+        n = simulation.scales.nx
+        share = Share(0, n, slice(0, n), slice(0, n))
+        reynolds = Reynolds(simulation.scales, 1.0, share, gap=face_gap(case.contact))
         nodes = state.solution.nodes
         defect, _ = reynolds.evaluate(nodes.reynolds_unknown, nodes.film, inputs)
         carried = state.m[np.abs(simulation.scales.x) <= 1.0].mean()

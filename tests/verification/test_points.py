@@ -8,7 +8,7 @@ from support.points import R, lowest, moes_film, point
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.finite_volumes import flux_through
-from ehlpetsc.discretisation.plane.finite_volumes import flux_across
+from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.step_inputs import shear_constants
 from ehlpetsc.physics.hertz import hertz_ellipse
 from ehlpetsc.physics.rheology import flow_law

@@ -28,7 +28,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     fill_mass,
     fluidities,
 )
-from ehlpetsc.discretisation.plane.finite_volumes import flux_across
+from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, last_before
 from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
@@ -278,7 +278,7 @@ def cross_flow_heat(
 
     `at`, `oil`, `max_flow`: as of :func:`faces_in_rows`. `shape`: rows, nodes along x.
     `is_periodic`: whether the last row is next to the first one.
-    `laws`: law, flow and table of :func:`.plane.finite_volumes.flux_across`.
+    `laws`: law, flow and table of :func:`.plane.cross_flow.flux_across`.
     """
     (rows, n), (law, flow, table) = shape, laws
     heat = np.zeros(rows * n)

@@ -15,6 +15,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE
 from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
 from ehlpetsc.nonlinear.line.jacobian import pivot_regularisation
@@ -230,8 +231,7 @@ class BandedJacobian:
         Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, LINE).
         """
         self._fill_deflection(entries)
-        film = self.problem.reynolds.own + 1
-        put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, film, self.values)
+        put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
         return self.columns
 
     def _fill_deflection(self, entries: BandEntries) -> None:

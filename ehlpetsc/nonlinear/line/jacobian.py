@@ -14,9 +14,10 @@ from petsc4py import PETSc
 from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState, directional_derivative
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.finite_volumes import reynolds_product
+from ehlpetsc.discretisation.finite_volumes import ALONG, reynolds_product
 from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE, deflection_rows
 from ehlpetsc.discretisation.unknowns import (
+    dofs_of,
     n_dofs,
     q_columns,
     q_index,
@@ -106,7 +107,8 @@ class NearFieldMatrix:
         approach = np.full((p.local, 1), -d.end_row_coefficient)
         nodes = np.arange(p.first, p.last, dtype=np.int32)
         set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
-        set_rows(self.matrix, w_index(nodes), p.reynolds.columns, self._by_unknowns(state, derivatives))
+        columns = reynolds_columns(p.first, p.last, p.n)
+        set_rows(self.matrix, w_index(nodes), columns, self._by_unknowns(state, derivatives))
         if p.border:
             load = np.zeros(n_dofs(p.n) + 1)  # with the zero on the diagonal, which LU needs
             q_of(load, p.n)[:], w_of(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
@@ -116,7 +118,7 @@ class NearFieldMatrix:
     def _by_unknowns(self, state: NodeState, derivatives: np.ndarray) -> np.ndarray:
         """Derivatives of the Reynolds rows with respect to q and w."""
         p, values = self.problem, derivatives.copy()
-        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, p.reynolds.stencil - 2)
+        nodes = np.arange(p.first, p.last)[:, None] + np.arange(-2, ALONG - 2)
         nodes = np.clip(nodes, 0, p.n - 1)
         by_unknown, by_film = q_columns(derivatives), w_columns(derivatives)
         w_columns(values)[:] = by_film * state.h_w[nodes]
@@ -124,6 +126,15 @@ class NearFieldMatrix:
             q_columns(values)[:] = by_unknown * state.plastic.reynolds_q[nodes]
             w_columns(values)[:] += by_unknown * state.plastic.reynolds_w[nodes]
         return values
+
+
+def reynolds_columns(first: int, last: int, n: int) -> np.ndarray:
+    """Indices of the unknowns of the Reynolds rows first .. last-1 of n; -1: no unknown, shape (rows, 8)."""
+    rows = np.arange(first, last)[:, None]
+    node = rows + np.arange(-2, ALONG - 2)
+    columns = dofs_of(node)
+    columns[(node < 0) | (node >= n) | ((rows == 0) & (node != 0))] = -1
+    return columns.reshape(len(node), -1).astype(np.int32)
 
 
 def set_rows(matrix: PETSc.Mat, rows: np.ndarray, columns: np.ndarray, values: np.ndarray) -> None:
@@ -150,7 +161,7 @@ def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out:
     for k in range(3):
         directional_derivative(by[k + 1], nodes, ZERO, change[k])
     deflection_rows(change[2], h00, curvature, load, form, out[0:local:2])
-    reynolds_product(derivatives, change[0], change[1], form[0], out[1:local:2])
+    reynolds_product(derivatives, change[0], change[1], 0, form[0], out[1:local:2])
     if len(out) > local:
         out[local] = load[2]
     for i in inactive_nodes:

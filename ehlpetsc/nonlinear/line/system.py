@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.discretisation.contact import contact_model, face_gap, film_scale_of
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share, problem_of
 from ehlpetsc.discretisation.line.deflection import Deflection
-from ehlpetsc.discretisation.line.reynolds import NoOil, Reynolds
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.preconditioner import Factors, FarFieldBand
 from ehlpetsc.nonlinear.ranks import LineExchange, first_nodes
@@ -29,16 +27,9 @@ def line_problem(
     `film_scale`: expected film in a^2/R.
     `bound_tolerance`: of the active set in a^2/R: films this close to their bound count as on it.
     """
-    grid, film_scale = scales.grid, film_scale_of(case, scales, film_scale)
-    model = contact_model(case, scales, film_scale, bound_tolerance)
-    deflection = Deflection(grid.n, grid.dx, first, last)
-    start = deflection.window.start
-    if case.fluid is None:
-        reynolds: NoOil | Reynolds = NoOil(first, last, start)
-    else:
-        reynolds = Reynolds(scales, film_scale, first, last, start, face_gap(case.contact))
+    deflection = Deflection(scales.grid.n, scales.grid.dx, first, last)
     share = Share(first, last, deflection.window, deflection.owned)
-    return EHLProblem(case, scales, share, model, deflection, reynolds, film_scale)
+    return problem_of(case, scales, film_scale, share, deflection, bound_tolerance=bound_tolerance)
 
 
 class LineMatrices:

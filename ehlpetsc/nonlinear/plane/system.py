@@ -10,8 +10,9 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.plane.reynolds import plane_problem
+from ehlpetsc.discretisation.contact import film_scale_of
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
+from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.discretisation.unknowns import pairs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
@@ -109,6 +110,8 @@ def plane_system(
     cuts = first_rows(grid.shape[0], ranks.size)
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)
     transposition = RankTransposition(cuts, ranks) if ranks.size > 1 else None
-    problem = plane_problem(case, scales, film_scale, share, has_sides, bound_tolerance, transposition)
+    law = scales.stiffness, film_scale_of(case, scales, film_scale), grid.periodic
+    deflection = Deflection(grid.shape, grid.steps, *law, share.owned, transposition)
+    problem = problem_of(case, scales, film_scale, share, deflection, has_sides, bound_tolerance)
     exchange = PlaneExchange(problem, ranks, grid.periodic)
     return PlaneFields(problem, exchange, PlaneMatrices(problem, exchange, ranks), comm)

@@ -1,8 +1,7 @@
-r"""Finite volumes of the Reynolds equation in the plane: balance of the cells (compiled).
+r"""Finite volumes of the Reynolds equation: flow across, in strips and points (compiled).
 
-Along x the fluxes are those of a line contact (:mod:`ehlpetsc.discretisation.finite_volumes`). Across there
-is no entrainment; the pressure flow between two rows is central, with the film of the face and both nodes'
-fluidities, as along x.
+Across the direction of motion there is no entrainment; the pressure flow between two rows is central, with
+the film of the face and both nodes' fluidities, as along x.
 
 Flow across a sliding non-Newtonian film: the stress of sliding, :math:`\tau_m`, is along x and of the order
 of the Eyring stress, the one of the cross flow is small beside it. It then flows with the viscosity
@@ -21,32 +20,26 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.finite_volumes import (
+    ABOVE,
+    BELOW,
     DP,
     LN_ETA_P,
     LN_THINNING_H,
     LN_THINNING_P,
-    M_H,
-    M_Q,
+    ONE,
+    OWN,
     PROPERTIES,
     RHO,
     RHO_P,
     H,
-    M,
     P,
     face_film,
     face_mean,
     fluidities,
-    flux_through,
-    positive_extrapolation,
 )
 from ehlpetsc.physics.asperities import flow_factor
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_stress, mobilities
 from ehlpetsc.physics.tabulated_flow import tabulated_mobilities
-
-STENCIL = 6  # nodes i-2, i-1, i, i+1 along x, then i in the row below and in the row above
-OWN = 4  # index of q_i among the coefficients of a row, followed by h_i
-BELOW, ABOVE = 8, 10  # of q of the neighbours across
-ONE = unsigned(1)
 
 
 @compiled
@@ -132,19 +125,10 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
 
 
 @compiled
-def balance(
-    at: np.ndarray,
-    shape: tuple,
-    laws: tuple,
-    flow: FlowLaw,
-    table: np.ndarray,
-    storage: tuple,
-    weights: tuple,
-    rows: tuple,
+def add_across(
+    at: np.ndarray, shape: tuple, law: tuple, flow: FlowLaw, table: np.ndarray, breadth: float, rows: tuple
 ) -> None:
-    """Fill in the mass balance of the cells, outflow - inflow + rate of storage, and its derivatives.
-
-    The first node of each row, the inlet, is left out.
+    """Add the flow across to the mass balance of the cells and to its derivatives.
 
     Parameters
     ----------
@@ -152,80 +136,31 @@ def balance(
         Nodal properties of the local rows, of one more on either side and of a node beyond the outlet in
         each.
     shape
-        n_y, n_x: local rows, nodes along x.
-    laws
-        Constants of the flux along x and across, see `flux_through`.
-    storage
-        `m`, `extrapolated`, shape (n_y n_x,), and `k` of :class:`.step_inputs.FilmHistory`; cell over time
-            step, 0:
-        steady.
-    weights
-        Of the fluxes along x and across.
+        n_y, n_x: local rows, nodes along x. The first node of each, the inlet, is left out.
+    law, flow, table
+        As of :func:`flux_across`.
+    breadth
+        Weight of the fluxes.
     rows
-        Filled in: residual, shape (n_y n_x,); derivatives with respect to q and h of the `STENCIL`, (n_y
-        n_x, 12).
+        Residual, shape (n_y n_x,); derivatives with respect to q and h of the `STENCIL`, (n_y n_x, 12).
     """
-    (n_y, n_x), (along, across), (m_old, extrapolated, k, rate) = shape, laws, storage
-    (weight_x, weight_y), (residual, derivatives) = weights, rows
+    (n_y, n_x), (residual, derivatives) = shape, rows
     stride = unsigned(n_x + 1)
-    for row in range(unsigned(n_y)):
-        first = (row + ONE) * stride
-        inflow = flux_through(at, first, first, first + ONE, table, along)
-        for i in range(ONE, unsigned(n_x)):
-            here, node = first + i, row * unsigned(n_x) + i
-            outflow = flux_through(at, here - ONE, here, here + ONE, table, along)
-            stored, by_m, _ = positive_extrapolation(at[M, here], m_old[node], k)
-            residual[node] = weight_x * (outflow[0] - inflow[0]) + (stored - extrapolated[node]) * rate
-            by = derivatives[node]
-            by[0], by[1] = -weight_x * inflow[1], -weight_x * inflow[2]
-            by[2] = weight_x * (outflow[1] - inflow[3])
-            by[3] = weight_x * (outflow[2] - inflow[4])
-            by[4] = weight_x * (outflow[3] - inflow[5]) + by_m * at[M_Q, here] * rate
-            by[5] = weight_x * (outflow[4] - inflow[6]) + by_m * at[M_H, here] * rate
-            by[6], by[7] = weight_x * outflow[5], weight_x * outflow[6]
-            inflow = outflow
     for row in range(unsigned(n_y + 1)):
         for i in range(ONE, unsigned(n_x)):
             below = row * stride + i
-            flux = flux_across(at, below, below + stride, table, across, flow)
+            flux = flux_across(at, below, below + stride, table, law, flow)
             if row > 0:
                 node = (row - ONE) * unsigned(n_x) + i
-                residual[node] += weight_y * flux[0]
+                residual[node] += breadth * flux[0]
                 by = derivatives[node]
-                by[OWN] += weight_y * flux[1]
-                by[OWN + 1] += weight_y * flux[2]
-                by[ABOVE], by[ABOVE + 1] = weight_y * flux[3], weight_y * flux[4]
+                by[OWN] += breadth * flux[1]
+                by[OWN + 1] += breadth * flux[2]
+                by[ABOVE], by[ABOVE + 1] = breadth * flux[3], breadth * flux[4]
             if row < n_y:
                 node = row * unsigned(n_x) + i
-                residual[node] -= weight_y * flux[0]
+                residual[node] -= breadth * flux[0]
                 by = derivatives[node]
-                by[OWN] -= weight_y * flux[3]
-                by[OWN + 1] -= weight_y * flux[4]
-                by[BELOW], by[BELOW + 1] = -weight_y * flux[1], -weight_y * flux[2]
-
-
-@compiled
-def product(
-    derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, n_x: int, first: int, out: np.ndarray
-) -> None:
-    """Fill in the derivatives of the Reynolds rows times a vector.
-
-    Parameters
-    ----------
-    derivatives : shape (rows, 12)
-        Zero where there is no such node.
-    v_q, v_h : shape (window,)
-    n_x
-        Nodes along x.
-    first
-        Index in the window of the first local node.
-    out : shape (rows,)
-    """
-    last = len(v_q) - 1
-    for row in range(len(derivatives)):
-        here, by, total = first + row, derivatives[row], 0.0
-        for k in range(STENCIL):
-            node = here + (k - 2 if k < 4 else -n_x if k == 4 else n_x)
-            node = min(max(node, 0), last)
-            total += by[2 * k] * v_q[node] + by[2 * k + 1] * v_h[node]
-        out[row] = total
+                by[OWN] -= breadth * flux[3]
+                by[OWN + 1] -= breadth * flux[4]
+                by[BELOW], by[BELOW + 1] = -breadth * flux[1], -breadth * flux[2]

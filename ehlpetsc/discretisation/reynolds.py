@@ -1,0 +1,198 @@
+r"""Discrete Reynolds equation with mass-conserving cavitation, on any number of rows of nodes along x.
+
+.. math:: F\equiv\frac{\partial\rho h(1-\theta)}{\partial t}+\frac{\partial}{\partial x}\Big[\rho\bar
+   uh(1-\theta)- M_x\frac{\partial p}{\partial x}\Big]-\frac{\partial}{\partial y}\Big[M_y\frac{\partial
+   p}{\partial y}\Big]=0,\qquad M_x=\frac{\rho h^3S}{12\eta}
+
+(Holmes et al. 2005, eq. (1), its sign turned), p the oil's pressure. One unknown q a node carries pressure
+and cavitation: p = max(q, 0), void fraction = max(-q, 0). Lengths are in half-widths, films in a^2/R,
+pressures in p0; F is divided by u times a film scale, so that the sum over nodes is the relative mass defect
+(in the plane over that of a film that enters over a half-width across).
+
+Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes` along x,
+:mod:`ehlpetsc.discretisation.plane.cross_flow` across. Beyond the outlet and, in a point contact, beyond the
+sides the oil has ambient pressure and the film of the last node. A strip is periodic across.
+
+Without oil the Reynolds unknown vanishes: in direct contact q is then the pressure of the solids,
+complementary to the gap; in mixed contact, whose solids have a pressure of their own, q = 0.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ehlpetsc.discretisation.contact.node_state import OPEN_GAP, FaceGap
+from ehlpetsc.discretisation.finite_volumes import (
+    ABOVE,
+    ALONG,
+    BELOW,
+    DP,
+    FLUIDITY,
+    LN_ETA_P,
+    OWN,
+    RHO,
+    RHO_P,
+    STENCIL,
+    P,
+    balance,
+    reynolds_product,
+)
+from ehlpetsc.discretisation.step_inputs import StepInputs, inlet, shear_constants
+from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.laws import density
+from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.discretisation.ehl_problem import Share
+    from ehlpetsc.discretisation.step_inputs import Oil
+
+AMBIENT = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
+
+
+class NoOil:
+    """Reynolds' rows of a dry contact: q of the node itself.
+
+    `share`: local nodes: a part of a row, or whole rows.
+    """
+
+    def __init__(self, grid: Grid, share: Share):
+        self.local, self.owned, self.n_x = share.local, share.owned, grid.shape[-1]
+        self.size = share.last - share.first
+        self.width = n_dofs(ALONG if len(grid.axes) == 1 else STENCIL)
+
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Fluid) -> np.ndarray | None:
+        r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at the nodes; None without oil."""
+        return None
+
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
+        """Residual of the local rows, shape (local nodes,), and its derivatives.
+
+        `q`, `h`: of the window.
+
+        Derivatives: with respect to q and h of the nodes of :mod:`.finite_volumes`, shape (local nodes, 8),
+        in the plane (local nodes, 12).
+        """
+        derivatives = np.zeros((self.size, self.width))
+        derivatives[:, OWN] = 1.0
+        return q[self.owned], derivatives
+
+    def product(self, derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int) -> np.ndarray:
+        """Derivatives of the local rows times a vector of the window, whose local nodes begin at `first`."""
+        out = np.empty(len(derivatives))
+        reynolds_product(derivatives, v_q, v_h, self.n_x, first, out)
+        return out
+
+
+class Reynolds(NoOil):
+    """Rows of the Reynolds equation of the local nodes.
+
+    `film_scale`: divisor of F, in a^2/R.
+    `has_sides`: whether the domain ends below the first, above the last local row; of a line left out.
+    `gap`: what solids that are near leave open at a face.
+
+    `shape`: local rows, local nodes along x.
+    """
+
+    def __init__(
+        self,
+        scales: Scales,
+        film_scale: float,
+        share: Share,
+        has_sides: tuple[bool, bool] | None = None,
+        gap: FaceGap = OPEN_GAP,
+    ):
+        grid = scales.grid
+        super().__init__(grid, share)
+        self.scales, self.film_scale, self.gap, self.has_sides = scales, film_scale, gap, has_sides
+        self.dx, self.dy, self.cell = grid.dx, 1.0 if has_sides is None else grid.steps[0], grid.cell
+        rows = max(self.size // self.n_x, 1)
+        self.shape = n_y, n_x = rows, self.size // rows
+        begin = share.first % self.n_x
+        self.has_inlet, self.has_outlet = begin == 0, begin + n_x == self.n_x
+        cells, inlets, behind = n_x - self.has_inlet, int(self.has_inlet), begin > 1
+        if has_sides is not None:
+            from ehlpetsc.discretisation.plane.cross_flow import add_across
+
+            self._add_across = add_across
+            self.input_nodes, self.nodes = slice(None), share.window
+            self.layout = n_y, cells, n_x + 1 + inlets, n_x + 1, inlets, n_x, behind
+            return
+        start, stop = max(share.owned.start - 2, 0), min(share.owned.stop + 1, share.window_size)
+        self.input_nodes = slice(start, stop)  # all that the local rows need
+        self.nodes = slice(share.window.start + start, share.window.start + stop)
+        self.layout = 1, cells, share.owned.start - start + inlets, 0, inlets, 0, behind
+
+    def mass_per_area(self, q: np.ndarray, h: np.ndarray, fluid: Fluid) -> np.ndarray:
+        """See :class:`NoOil`."""
+        rho = density(np.maximum(q, 0.0) * self.scales.p0, fluid)[0]
+        return rho * (1.0 + np.minimum(q, 0.0)) * h
+
+    def properties(self, q: np.ndarray, h: np.ndarray, oil: Oil) -> np.ndarray:
+        """Properties of the nodes on which the local rows depend, in the rows of :mod:`.finite_volumes`.
+
+        Of a line with a node beyond the outlet. In the plane with one in each row and with rows beyond the
+        sides, shape (properties, (n_y + 2) (n_x + 1)), where the oil is that beyond the outlet, under the
+        film of the last row.
+        """
+        q, h = q[self.input_nodes], h[self.input_nodes]
+        if self.has_sides is None:
+            at = np.empty((oil.rows, len(q) + self.has_outlet))
+            oil.fill(q, h, self.nodes, at)
+            return at
+        (n_y, n_x), (has_lower, has_upper), rows = self.shape, self.has_sides, len(q) // self.n_x
+        flat = np.empty((oil.rows, len(q) + rows))
+        oil.fill(q, h, self.nodes, flat)
+        at = np.empty((oil.rows, n_y + 2, n_x + 1))
+        inner = at[:, int(has_lower) : n_y + 2 - int(has_upper)]
+        inner[:, :, :n_x] = flat[:, : len(q)].reshape(oil.rows, rows, n_x)
+        inner[:, :, n_x] = flat[:, len(q) :]
+        for has_side, beyond, last in ((has_lower, 0, 1), (has_upper, -1, -2)):
+            if has_side:
+                at[:, beyond] = at[:, last]
+                at[AMBIENT, beyond] = at[AMBIENT, last, n_x:]
+        return at.reshape(oil.rows, -1)
+
+    def face_law(self, inputs: StepInputs, spacing: float) -> tuple:
+        """Constants of :func:`.finite_volumes.flux_through` between nodes `spacing` half-widths apart."""
+        s, leaks = self.scales, self.gap.leaks or inputs.leaks
+        return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), self.gap.layer, leaks
+
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
+        """See :class:`NoOil`."""
+        history, table = inputs.history, inputs.flow_table
+        at, law = self.properties(q, h, inputs.oil), self.face_law(inputs, self.dx)
+        residual, derivatives = np.zeros(self.size), np.zeros((self.size, self.width))
+        if history is None:
+            nothing = np.zeros(self.size)
+            storage = nothing, nothing, 0.0, 0.0
+        else:
+            local, rate = self.local, self.cell / history.dt
+            storage = history.m[local], history.extrapolated[local], history.k, rate
+        balance(at, self.layout, law, table, storage, self.dy, (residual, derivatives))
+        if self.has_sides is not None:
+            law, rows = self.face_law(inputs, self.dy), (residual, derivatives)
+            self._add_across(at, self.shape, law, inputs.flow, table, self.dx, rows)
+        self._beyond_edges(derivatives.reshape(*self.shape, -1))
+        residual /= self.film_scale
+        derivatives *= 1.0 / self.film_scale
+        if self.has_inlet:
+            first = slice(None, None, self.shape[1])
+            of_inlet = inlet(q[self.owned][first], h[self.owned][first], inputs.inlet_film)
+            residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = of_inlet
+        return residual, derivatives
+
+    def _beyond_edges(self, derivatives: np.ndarray) -> None:
+        """Add derivatives by the film beyond an edge to those of the film of the last node."""
+        has_lower, has_upper = self.has_sides or (False, False)
+        for is_edge, edge, at in (
+            (self.has_outlet, derivatives[:, -1], OWN + 2),
+            (has_lower, derivatives[0], BELOW),
+            (has_upper, derivatives[-1], ABOVE),
+        ):
+            if is_edge:
+                edge[..., OWN + 1] += edge[..., at + 1]
+                edge[..., at : at + 2] = 0.0
