@@ -7,6 +7,7 @@ import pytest
 petsc4py.init([])
 
 from petsc4py import PETSc
+from scipy.sparse import bsr_matrix
 from support.points import point
 
 from ehlpetsc.case.loading import load
@@ -16,6 +17,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
+from ehlpetsc.nonlinear.plane.screened_poisson import fill
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -137,3 +139,31 @@ def test_options_of_a_run_inside_of_another_one_are_its_own():
         assert table.getAll() == before
         assert outer.given == {"snes_max_it": "7"}
     assert not table.getAll()
+
+
+@pytest.mark.parametrize(("name", "block"), [("layer", 3), ("strip", 4)])
+def test_blocks_filled_in_place_are_those_of_the_matrix(name, block):
+    system, state, inputs = scene(name)
+    options = RunOptions(kind="point")
+    with options:
+        NewtonSolver(system, options)
+        system.set_initial_guess(state, inputs)
+        system.linearise(system.x)
+        elimination = system.matrices.elimination
+        elimination.prepare(system.jacobian)
+    form, p = elimination.factors.sparse, system.problem
+    assert form.block == block
+    blocks = np.zeros((len(form.columns), block, block))
+    whole = tuple(np.ascontiguousarray(part[p.owned]) for part in elimination.reduction[:6])
+    scales, rows = (p.deflection.row_scale, *p.grid.steps), (0, 0, p.n, form.pointers, form.places)
+    derivatives = system.jacobian.reynolds_derivatives
+    fill(whole, derivatives, form.terms, scales, form.mesh, rows, blocks, form.by)
+    expected = bsr_matrix((blocks.transpose(0, 2, 1), form.columns, form.pointers))
+    form.b.array[:] = np.random.default_rng(4).standard_normal(p.n * block)
+    form.matrix.mult(form.b, form.u)
+    np.testing.assert_allclose(form.u.array, expected @ form.b.array, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(("nodes", "functions"), [(65, 22), (129, 22), (257, 33), (513, 47)])
+def test_coarse_space_grows_as_the_root_of_the_nodes(nodes, functions):
+    assert CoarseSpace(np.zeros((2, nodes)), False).counts[1] == functions

@@ -18,7 +18,9 @@ import numpy as np
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csr_matrix, diags, kron
 
-INTERVALS = 32  # between coarse nodes along the longer side of the mesh
+# Between coarse nodes along the longer side of a mesh of up to OF_NODES; on finer ones they grow as the root
+# of the nodes: more waves are too long for the incomplete factorisation, and each iteration costs more.
+INTERVALS, OF_NODES = 24, 129
 
 
 def linear_functions(n: int, spacing: int, periodic: bool) -> csr_matrix:
@@ -39,7 +41,9 @@ class CoarseSpace:
 
     def __init__(self, kernel: np.ndarray, periodic: bool):
         self.shape, self.periodic = kernel.shape, periodic
-        self.spacing = max(-(-max(self.shape) // INTERVALS), 2)
+        longer = max(self.shape)
+        intervals = round(INTERVALS * np.sqrt(max(longer / OF_NODES, 1.0)))
+        self.spacing = max(-(-longer // intervals), 2)
         n_y, n_x = self.shape
         across, along = (
             linear_functions(n_y, self.spacing, periodic),

@@ -17,6 +17,7 @@ than `MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 
 from __future__ import annotations
 
+import ctypes
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +42,6 @@ from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitt
 from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
-ROWS = 1024  # nodes whose rows are filled in at a time, in the processor's cache
 MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
 
 
@@ -87,7 +87,6 @@ class SparseForm:
         self.matrix = PETSc.Mat().createBAIJ(
             (sizes, sizes), block, csr=(self.pointers, self.columns), comm=comm
         )
-        self.matrix.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         self.pc.setOptionsPrefix(PREFIX)
@@ -96,23 +95,19 @@ class SparseForm:
         self.b, self.u = self.matrix.createVecs()
         self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
         self.by = np.empty((local, 2 * STENCIL))
+        self.parts = self._parts()
 
     def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray) -> None:
         """Assemble and factor for a state; arguments as of :func:`.screened_poisson.fill`."""
         p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.steps)
-        blocks = np.empty((STENCIL * min(ROWS, p.local), self.block, self.block))
-        for begin in range(p.first, p.last, ROWS):
-            end = min(begin + ROWS, p.last)
-            pointers = self.pointers[begin - p.first : end - p.first + 1]
-            rows, filled = (
-                (p.first, begin, end, self.pointers, self.places),
-                blocks[: pointers[-1] - pointers[0]],
-            )
-            filled[:] = 0.0
-            fill(tuple(whole), derivatives, self.terms, scales, self.mesh, rows, filled, self.by)
-            columns, nodes = self.columns[pointers[0] : pointers[-1]], np.arange(begin, end, dtype=np.int32)
-            self.matrix.setValuesBlockedIJV(pointers - pointers[0], columns, filled, rowmap=nodes)
-        self.matrix.assemble()
+        is_split = len(self.parts) > 1
+        blocks = np.empty((len(self.columns), self.block, self.block)) if is_split else self.parts[0]
+        blocks[:] = 0.0
+        rows = p.first, p.first, p.last, self.pointers, self.places
+        fill(tuple(whole), derivatives, self.terms, scales, self.mesh, rows, blocks, self.by)
+        if is_split:
+            self.parts[0][:], self.parts[1][:] = blocks[self.is_own], blocks[~self.is_own]
+        self.matrix.stateIncrease()
         self.pc.setUp()
         self.kind, self.p_s = whole[0][p.first : p.last], whole[5][p.first : p.last]
         kind, nodes = self.kind, self.block * np.arange(p.local)
@@ -120,6 +115,27 @@ class SparseForm:
         self.has_reynolds, self.has_pressure = kind != BOUND, (kind != VOID) & (kind != STIFF)
         self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
         self.deflection_rows = nodes[self.touching] + TERMS
+
+    def _parts(self) -> list[np.ndarray]:
+        """PETSc's own arrays of the blocks, in the order of the columns: on one rank all; else own, others.
+
+        `setValuesBlocked` looks up the place of each block and copies it, which takes longer than filling it
+        in. By MatMPIBAIJGetSeqBAIJ and MatSeqBAIJGetArray, which petsc4py lacks.
+        """
+        library, whole = ctypes.CDLL(PETSc.__file__), ctypes.c_void_p(self.matrix.handle)
+        parts, counts = [whole], [len(self.columns)]
+        if self.matrix.comm.size > 1:
+            own, others, unused = (ctypes.c_void_p() for _ in range(3))
+            library.MatMPIBAIJGetSeqBAIJ(whole, *map(ctypes.byref, (own, others, unused)))
+            self.is_own = (self.columns >= self.problem.first) & (self.columns < self.problem.last)
+            parts, counts = [own, others], [self.is_own.sum(), (~self.is_own).sum()]
+        found = []
+        for part, count in zip(parts, counts, strict=True):
+            values = ctypes.POINTER(ctypes.c_double)()
+            library.MatSeqBAIJGetArray(part, ctypes.byref(values))
+            found.append(np.ctypeslib.as_array(values, (int(count), self.block, self.block)))
+            library.MatSeqBAIJRestoreArray(part, ctypes.byref(values))
+        return found
 
     def solve(self, reynolds: np.ndarray, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes.

@@ -58,7 +58,7 @@ def neighbour(i: int, k: int, mesh: tuple) -> int:
 def pattern(
     mesh: tuple, first: int, last: int, pointers: np.ndarray, columns: np.ndarray, places: np.ndarray
 ) -> int:
-    """Blocks of the rows of the nodes first .. last - 1; return their number.
+    """Blocks of the rows of the nodes first .. last - 1, in PETSc's order; return their number.
 
     `pointers`, `columns`: of the blocks, for `STENCIL` in each row.
     `places`: of the stencil's nodes among the blocks of a row, -1: none; shape (last - first, STENCIL).
@@ -69,14 +69,18 @@ def pattern(
         pointers[row] = begin
         for k in range(STENCIL):
             near, at = neighbour(i, k, mesh), begin
-            places[row, k] = -1
-            if near < 0:
-                continue
-            while at < count and columns[at] != near:  # both neighbours across in a period of two rows
+            while at < count and columns[at] < near:
                 at += 1
-            if at == count:
-                columns[at], count = near, count + 1
-            places[row, k] = at - begin
+            if near < 0 or at < count and columns[at] == near:  # both across in a period of two rows
+                continue
+            for behind in range(count, at, -1):
+                columns[behind] = columns[behind - 1]
+            columns[at], count = near, count + 1
+        for k in range(STENCIL):
+            near, places[row, k] = neighbour(i, k, mesh), -1
+            for at in range(begin, count):
+                if columns[at] == near:
+                    places[row, k] = at - begin
     pointers[last - first] = count
     return count
 
