@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from ehlpetsc.discretisation.contact.compliant import CompliantContact, Layer
-from ehlpetsc.discretisation.contact.direct import clip_cavities, close_overlaps, pressure_change
+from ehlpetsc.discretisation.contact.direct import (
+    DirectContact,
+    clip_cavities,
+    close_overlaps,
+    pressure_change,
+)
 from ehlpetsc.discretisation.contact.mixed import MixedContact
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.contact.yielding import (
@@ -44,9 +49,21 @@ def test_pressure_change_is_limited_in_oil():
 )
 def test_cavities_keep_a_minimum_of_oil(q, dq, h, dh, expected):
     now, step = pairs((q, h)), pairs((dq, dh))
-    clip_cavities(now, step, 0.0)
+    clip_cavities(now, step, 0.0, 1e-3)
     assert now[0, 0] - step[0, 0] == pytest.approx(expected, rel=1e-6)
     assert step[0, 1] == dh
+
+
+@pytest.mark.parametrize("film", [0.0, 1e-16])  # what is left of a film is contact as well
+def test_solids_that_touch_are_not_pulled(film):
+    """They lose their pressure first, then contact, as F = 0 of a gap without oil has no sign."""
+    model = DirectContact(0.0, 1e-8)
+    now, step = pairs((0.5, film)), pairs((0.7, 0.0))
+    model.clip_step(now, step, 1e-3)
+    assert now - step == pytest.approx(np.array([[PRESSURE_AFTER_REFILL, film]]), rel=1e-6)
+    now, step = now - step, pairs((0.7, 0.0))
+    model.clip_step(now, step, 1e-3)
+    assert (now - step)[0, 1] == pytest.approx(1e-3, rel=1e-4)
 
 
 def test_overlaps_are_clipped_to_contact():

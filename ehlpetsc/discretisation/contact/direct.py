@@ -32,7 +32,7 @@ class DirectContact(ContactModel):
 
     def __init__(self, bound: float, tolerance: float = 0.0):
         self.lower_bound = self.minimum_film = bound
-        self.bound_tolerance = tolerance
+        self.bound_tolerance, self._closed = tolerance, bound + tolerance
 
     def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         return np.maximum(q, self.lowest_pressure)
@@ -49,7 +49,7 @@ class DirectContact(ContactModel):
     def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """Nodes without a Reynolds equation: at the bound, or within its tolerance with F > 0."""
         at_bound = w <= self.lower_bound
-        return at_bound | ((w <= self.lower_bound + self.bound_tolerance) & (reynolds_residual > 0.0))
+        return at_bound | ((w <= self._closed) & (reynolds_residual > 0.0))
 
     def w_from_film(self, h: np.ndarray) -> np.ndarray:
         return np.maximum(h, self.lower_bound)
@@ -66,13 +66,14 @@ class DirectContact(ContactModel):
 
     def linearised(self, state: NodeState, owned: slice, ranks_sum: Callable) -> NodeState:
         """A node in contact and cavitated at once would leave its deflection row without an entry for q."""
-        return state._replace(p_q=np.where(state.film <= self.lower_bound, 1.0, state.p_q))
+        return state._replace(p_q=np.where(state.film <= self._closed, 1.0, state.p_q))
 
     def pressure_change(self, now: np.ndarray, step: np.ndarray) -> float:
         return pressure_change(now, step, self.lower_bound, self.lowest_pressure)
 
     def clip_step(self, now: np.ndarray, step: np.ndarray, film_after_release: float) -> None:
-        clip_cavities(now, step, self.lower_bound)
+        released = self._closed + max(film_after_release, self.bound_tolerance)
+        clip_cavities(now, step, self._closed, released)
 
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float
@@ -94,7 +95,7 @@ class DirectContact(ContactModel):
         The shear of a film within the tolerance of the bound would be rounding: solids rub there.
         """
         mask, pressure = self.contact_mask(w, reynolds_residual), self.pressure(q, w)
-        rubbing = h <= self.lower_bound + self.bound_tolerance
+        rubbing = h <= self._closed
         return SurfaceLoads(
             mask,
             pressure,
@@ -129,13 +130,21 @@ def pressure_change(now: np.ndarray, step: np.ndarray, bound: float, lowest: flo
 
 
 @compiled
-def clip_cavities(now: np.ndarray, step: np.ndarray, bound: float) -> None:
-    """Limit steps in place where a cavity fills or empties; a void does not hold touching solids apart."""
+def clip_cavities(now: np.ndarray, step: np.ndarray, closed: float, released: float) -> None:
+    """Limit steps in place where a cavity fills or empties; a void does not hold touching solids apart.
+
+    Solids that would be pulled although they already touch without pressure get the film `released`: without
+    oil between them F is zero but for rounding, whose sign must not keep them in contact.
+
+    `closed`: film up to which solids touch.
+    """
     for i in range(len(now)):
         q, dq = now[i, 0], step[i, 0]
         step[i, 0] = limit_cavitation(q, dq)
-        if q - dq < 0.0 and now[i, 1] - step[i, 1] <= bound:
+        if q - dq < 0.0 and now[i, 1] - step[i, 1] <= closed:
             step[i, 0] = q - PRESSURE_AFTER_REFILL
+            if step[i, 1] == 0.0 and q < 2.0 * PRESSURE_AFTER_REFILL:
+                step[i, 1] = now[i, 1] - released
 
 
 @compiled
