@@ -19,13 +19,12 @@ from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
 from ehlpetsc.life.history import LifeFile, LifeHistory
 from ehlpetsc.life.jumps import Jumps
-from ehlpetsc.life.one_pass import Pass, run_pass
+from ehlpetsc.life.one_pass import Pass, damage_of_pass, run_pass
 from ehlpetsc.life.positions import Positions
 from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
-from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.output_guard import Lock
 from ehlpetsc.run.forecast import work_time
 from ehlpetsc.run.ranks import on_root
@@ -243,15 +242,8 @@ class _Life:
 def passes_to_failure(file: Path, settings: tuple[str, ...] = ()) -> tuple[float, float]:
     """Passes until D = 1 at the worst point of each surface, of the pass in a result file."""
     with Loads(file, settings) as loads:
-        job, prepared = (
-            Job(str(file), "", settings=settings, share=1.0),
-            prepare(loads, SIDES, lambda text: None),
-        )
-        worst = []
-        for side in SIDES:
-            values = solve(prepared, side, job)
-            damage = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
-            worst.append(float(np.nanmax(damage)))
+        prepared = prepare(loads, SIDES, lambda text: None)
+        worst = [float(np.nanmax(damage_of_pass(prepared, side, settings))) for side in SIDES]
     first, second = (1.0 / damage if damage > 0.0 else np.inf for damage in worst)
     return first, second
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
 from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import prepare
+from ehlpetsc.post.prepare import Prepared, prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.ranks import on_root
@@ -119,15 +119,23 @@ def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]
     Path(restart).unlink(missing_ok=True)
     with Loads(file) as loads:
         figures = means(loads) | {"p_max": float(loads.steps("p_max").max())}
-        job, prepared = Job(str(file), "", share=1.0), prepare(loads, SIDES, lambda text: None)
-        damages = []
+        prepared, damages = prepare(loads, SIDES, lambda text: None), []
         for side in SIDES:
             passed = prepared.motions[side].complete
             if np.count_nonzero(passed) < 2:
                 raise PostError(
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
-            values = solve(prepared, side, job)
-            criterion = values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
-            damages.append((prepared.s[passed], loads.a * prepared.depths, criterion[..., passed]))
+            damage = damage_of_pass(prepared, side)[..., passed]
+            damages.append((prepared.s[passed], loads.a * prepared.depths, damage))
     return damages, figures
+
+
+def damage_of_pass(prepared: Prepared, side: str, settings: tuple[str, ...] = ()) -> np.ndarray:
+    """Damage of a surface by the criterion of the case (depths, *rows, points); nan of incomplete points.
+
+    In double precision: a life sums it up, and its jumps and pits follow from it.
+    """
+    job = Job(str(prepared.loads.path), "", settings=settings, share=1.0, precision="float64")
+    values = solve(prepared, side, job)
+    return values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])

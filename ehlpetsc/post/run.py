@@ -22,13 +22,13 @@ from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared, prepare
-from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, histories, runs_of_points
+from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, histories, runs_of_points
 from ehlpetsc.results.post_result import SURFACES, PostResult
 
 if TYPE_CHECKING:
     from ehlpetsc.post.stresses.block_stress import BlockStress
 
-MAX_HISTORY_BYTES = 1e9  # of histories in memory; frames are read several times if they need more
+MAX_HISTORY_NUMBERS = 2.5e8  # of histories in memory; frames are read several times if they need more
 DEPTHS_AT_ONCE = 16  # with common reading and transforms of the loads
 
 
@@ -37,7 +37,7 @@ class Job(NamedTuple):
 
     `settings` ("table.key=value") override keys of the case, whose criterion is added to `criteria`.
     `share`: of the points of a plane, the worst ones, whose critical planes are sought (see
-    :func:`.criteria.critical_plane.count_on_planes`).
+    :func:`.criteria.critical_plane.count_on_planes`). `precision`: of stress histories.
     """
 
     path: str
@@ -47,6 +47,7 @@ class Job(NamedTuple):
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()
     share: float = 0.01
+    precision: str = "float32"
 
     def fingerprint(self) -> str:
         """Hash of the settings and of the version of the result file."""
@@ -147,10 +148,11 @@ def _solve_depths(
     out = {name: np.full(shape, np.nan) for name in names}
     lengths = motion.leave - motion.enter + 3
     stress = _stresses(loads, depths * loads.a / loads.dx, prepared.materials[surface].poisson_ratio)
-    for points in runs_of_points(motion, MAX_HISTORY_BYTES / job.jobs, stress.bytes_per_sample):
+    quantum = QUANTA[job.precision] * loads.p0
+    for points in runs_of_points(motion, MAX_HISTORY_NUMBERS / job.jobs, stress.numbers_per_sample):
         of_rows = np.repeat(lengths[points], math.prod(loads.rows))
         show = partial(_advance_by, advance, points.size * depths.size)
-        found = histories(*(loads, surface, motion, stress, points, QUANTUM * loads.p0), show=show)
+        found = histories(loads, surface, motion, stress, points, quantum, job.precision, show)
         for k, stresses in enumerate(found):
             residual = float(np.interp(depths[k], *np.transpose(table))) if table else 0.0
             for columns, count in counts:

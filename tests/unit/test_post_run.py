@@ -20,7 +20,7 @@ from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.statistics import log_life, weibull_fit
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.stresses.body_stress import QUANTUM
+from ehlpetsc.post.stresses.body_stress import QUANTA
 from ehlpetsc.results.post_result import PostResult
 
 sys.path.append(str(ROOT / "cases" / "paper"))
@@ -74,7 +74,7 @@ def arrays(path):
 def test_threads_and_memory_limit_do_not_change_results(result, tmp_path, monkeypatch):
     run(Job(str(result), str(tmp_path / "one.h5")))
     run(Job(str(result), str(tmp_path / "two.h5"), jobs=2))
-    monkeypatch.setattr(runner, "MAX_HISTORY_BYTES", 2e5)  # some tens of histories at a time
+    monkeypatch.setattr(runner, "MAX_HISTORY_NUMBERS", 5e4)  # some tens of histories at a time
     run(Job(str(result), str(tmp_path / "small.h5")))
     one = arrays(tmp_path / "one.h5")
     for other in ("two.h5", "small.h5"):
@@ -174,7 +174,7 @@ def test_criteria_are_stored_beside_the_default_damage(judged, scene, tmp_path):
         use = file["criteria/dang_van/2_utilisation"][1]
         point = np.flatnonzero(passed)[10]
         with Loads(str(plain)) as loads:
-            quantum = QUANTUM * loads.p0
+            quantum = QUANTA["float32"] * loads.p0
             _, history = history_at(loads, "2", file["damage/s"][point], 0.5 * loads.a, quantum)
         assert use[point] == pytest.approx(dang_van(*history, 0.3, residual_stress=-2e8), rel=1e-6)
         assert file.attrs["residual_stress"].tolist() == [[0.0, -4e8], [1.0, 0.0]]

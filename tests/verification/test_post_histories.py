@@ -9,7 +9,7 @@ from ehlpetsc.post import Material, damage, stress
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.body_points import passage
-from ehlpetsc.post.stresses.body_stress import QUANTUM, BodyStress, offset_weights
+from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, offset_weights
 from ehlpetsc.results.post_result import PostResult
 
 FINE = 16  # elements of the reference a node spacing
@@ -92,7 +92,7 @@ def test_sweep_gives_the_histories_of_single_points(scene, loads, tmp_path):
         points = np.flatnonzero(result.complete[surface])
         for j in points[[0, points.size // 3, -1]]:
             for k, z in enumerate(DEPTHS):
-                values = history_at(loads, surface, result.s[j], z * A, QUANTUM * P0)[1]
+                values = history_at(loads, surface, result.s[j], z * A, QUANTA["float32"] * P0)[1]
                 single = damage(*values, Material()).damage
                 differences.append(abs(result.damage[surface][k, j] / single - 1))
     assert np.median(differences) < 1e-6

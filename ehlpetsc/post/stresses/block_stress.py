@@ -13,7 +13,6 @@ from scipy import fft
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.body_stress import (
-    COMPONENT_BYTES,
     HATS_PER_ELEMENT,
     OFFSETS,
     hermite_kernels,
@@ -189,7 +188,7 @@ class BlockStress:
 
     def __init__(self, ny: int, nx: int, width: float, depths: np.ndarray, nu: float, periodic: bool) -> None:
         self.rows, self.nodes, self.shape = (ny,), nx, padded_shape(ny, nx, periodic)
-        self.bytes_per_sample = len(depths) * ny * COMPONENTS * COMPONENT_BYTES
+        self.numbers_per_sample = len(depths) * ny * COMPONENTS
         self.tables = [kernel_table(ny, nx, width, depth, nu, periodic) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:

@@ -112,11 +112,10 @@ def hermite_spectra(nx: int, z: float, offset: float) -> np.ndarray:
 
 
 FRAMES_PER_READ = 144
-COMPONENT_BYTES = 4  # single precision
 FREQUENCIES_PER_BLOCK = 32
-# of p0 (60 Pa at 1 GPa): single-precision histories are rounded to multiples, so that the noise of the
+# of p0 (60 Pa at 1 GPa in single precision): histories are rounded to multiples, so that the noise of the
 # transforms without load causes no cycles
-QUANTUM = 2.0**-24
+QUANTA = {"float32": 2.0**-24, "float64": 2.0**-40}
 MAX_KZ = 21.0  # wave number times depth; exp(-21) is 1e-9
 TAPER_WIDTH = 0.45  # 1/element: wave numbers beyond the cut-off over which the spectrum falls to zero
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
@@ -184,7 +183,7 @@ class BodyStress:
 
     def __init__(self, nx: int, depths: np.ndarray) -> None:
         self.n = padded_length(nx)
-        self.bytes_per_sample = len(depths) * self.components * COMPONENT_BYTES
+        self.numbers_per_sample = len(depths) * self.components
         self.tables = [kernel_table(nx, depth) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
@@ -227,11 +226,11 @@ def _collect(
                     history[frame - enter[j] + 1] = rounded
 
 
-def runs_of_points(motion: Passage, memory: float, bytes_per_sample: int) -> list[np.ndarray]:
-    """Split the complete points into ranges of consecutive points whose histories fit in `memory` bytes."""
+def runs_of_points(motion: Passage, numbers: float, numbers_per_sample: int) -> list[np.ndarray]:
+    """Split the complete points into ranges of consecutive points with at most so many `numbers` of histories."""
     points = np.flatnonzero(motion.complete)
     samples = (motion.leave - motion.enter + 3)[points].max(initial=1)
-    room = max(1, int(memory / (bytes_per_sample * samples)))
+    room = max(1, int(numbers / (numbers_per_sample * samples)))
     runs: list[np.ndarray] = []
     for stretch in np.split(points, np.flatnonzero(np.diff(points) > 1) + 1):
         runs += np.array_split(stretch, -(-stretch.size // room)) if stretch.size else []
@@ -245,7 +244,7 @@ def histories(
     stress: BodyStress | BlockStress,
     points: np.ndarray,
     quantum: float,
-    dtype: type = np.float32,
+    dtype: type | str = np.float32,
     show: Callable[[float], None] = lambda share: None,
 ) -> np.ndarray:
     """Stress histories of consecutive points, multiples of `quantum` [Pa].
