@@ -25,13 +25,12 @@ from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError, UsageError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.results.index import distinguishing_names, groups, in_order, open_all
-from ehlpetsc.results.means import filled_weights, mean, weighted_percentiles
+from ehlpetsc.results.means import bootstrap_bounds, filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.output_guard import atomic_write, check_derived
-from ehlpetsc.results.post_result import PostResult, damage_beside
+from ehlpetsc.results.post_result import DAMAGED, PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
-RESAMPLINGS, CONFIDENCE, RESAMPLING_SEED = 4000, 0.9, 1  # of the bootstrap
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
 ENSEMBLE_COLUMNS = ("ensemble", "scalar", "unit", "runs", "mean", "deviation", "min", "max", "low", "high")
 
@@ -63,6 +62,7 @@ def _damage(post: PostResult) -> dict[str, float]:
 
     Of a criterion that was computed too, the names begin with its name. A life is 1/D of the most damaged
     depth below a point [passes], of the worst point and of the points that 1 and 10 % of the surface exceed.
+    A share is that of the points with more damage than `DAMAGED` at some depth.
     """
     found: dict[str, float] = {}
     for surface in post.surfaces:
@@ -89,25 +89,12 @@ def _points(values: np.ndarray, z: np.ndarray, surface: str, criterion: str | No
     if quantity == "utilisation":
         return found
     worst = values.max(axis=0)
+    found[f"{prefix}share_{surface} D>{DAMAGED:g}"] = float((worst > DAMAGED).mean())
     name = f"{prefix}life_{surface}"
     with np.errstate(divide="ignore"):
         found[f"{name} worst"] = float(1.0 / worst.max())
         found |= {f"{name} q={1.0 - q:g}": float(1.0 / np.quantile(worst, q)) for q in QUANTILES[:0:-1]}
     return found
-
-
-def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
-    """Bounds of the mean of values (n,): between them lies a share `CONFIDENCE` of the means of n values
-    that are drawn from them with replacement; nan of fewer than two.
-
-    Efron, Annals of Statistics 7 (1979) 1: percentile method. Of few values it is too narrow: of ten by 15 %.
-    """
-    if values.size < 2:
-        return np.nan, np.nan
-    chosen = np.random.default_rng(RESAMPLING_SEED).integers(values.size, size=(RESAMPLINGS, values.size))
-    tails = (1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0
-    low, high = np.quantile(values[chosen].mean(axis=1), tails)
-    return float(low), float(high)
 
 
 def ensembles(results: list[Result]) -> dict[str, dict[str, np.ndarray]]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.life import laws
+from ehlpetsc.results.post_result import DAMAGED
 from ehlpetsc.surfaces.body_field import BodyField
 from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line, periodic_mean
 
@@ -88,6 +89,11 @@ class LifeBody(NamedTuple):
     def pitted_share(self) -> float:
         """Share of the columns that are pitted."""
         return float(self.is_pitted.mean())
+
+    @property
+    def damaged_share(self) -> float:
+        """Share of the columns with a cell of more damage than `DAMAGED`, gone or not."""
+        return float((self.damage.max(axis=0) > DAMAGED).mean())
 
     @property
     def pits(self) -> int:

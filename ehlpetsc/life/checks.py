@@ -23,7 +23,7 @@ def check_case(case: Case) -> None:
     if case.life is None:
         faults.append("no [life] table; allowed: a case with one")
     if case.series:
-        faults.append("[life] with a [series]: allowed: one of its members, --set KEY=VALUE")
+        faults.append("[life] with a [series] has a life for each member: allowed here: one of them")
     if case.time is None:
         faults.append("[life] needs [time]: passes of surfaces in motion")
     if not (case.surface.body_1 or case.surface.body_2):

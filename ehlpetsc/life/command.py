@@ -2,7 +2,8 @@
 
 Wear and fatigue damage of a solved pass are multiplied over the passes in which the surfaces hardly change,
 see the table [life] of the case; the next pass is solved with the changed surfaces. The same command
-continues a life. Under mpirun each rank solves a position of surface 2.
+continues a life. Under mpirun each rank solves a position of surface 2, or lives of a [series]: the command
+then prints means over seeds with their bounds (bootstrap, 90 %), also from ``OUT.life.series.json``.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from pathlib import Path
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.case.loading import load
+from ehlpetsc.life.ensemble import bands, lines_of_ensembles, read_lives, run_lives
 from ehlpetsc.life.history import read_life
 from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path, inputs_of
 
@@ -38,7 +40,9 @@ def main(words: list[str]) -> int:
 def _run(chosen: Namespace) -> None:
     """Run a life, where a case is given, and draw it on the first rank."""
     path = Path(chosen.case)
-    if path.suffix != ".h5":
+    if path.suffix == ".json":
+        _show_lives(path, not chosen.no_picture)
+    elif path.suffix != ".h5":
         _run_life(chosen)
     elif not chosen.no_picture:
         _draw(_picture(path, [path]), path)
@@ -58,6 +62,20 @@ def _draw(target: Path, path: Path) -> None:
     print(target)
 
 
+def _show_lives(path: Path, draws: bool) -> None:
+    """Print and draw the means of lives with their bounds."""
+    lives = read_lives(path)
+    print("\n".join(lines_of_ensembles(lives)))
+    if draws:
+        from ehlpetsc.pictures.lives import draw_ensembles
+
+        target = _picture(path, [path])
+        one = next(iter(lives.values()))
+        title = f"{one[0].title}: mean of {len(one)} lives, bounds of 90 %"
+        draw_ensembles(title, {others: bands(members) for others, members in lives.items()}, target)
+        print(target)
+
+
 def _run_life(chosen: Namespace) -> None:
     """Run a life and draw it."""
     from ehlpetsc.life import run_life
@@ -75,6 +93,13 @@ def _run_life(chosen: Namespace) -> None:
         announce_compilation(show)
     options = {"overwrite": chosen.overwrite, "unresolved": chosen.unresolved}
     options |= {"comm": comm, "show": show, "stop": StopRequest()}
+    if case.series:
+        options["show"] = partial(print, flush=True)  # of every rank
+        index = run_lives(case, output, **options)
+        if comm.rank == 0:
+            print(index)
+            _show_lives(index, not chosen.no_picture)
+        return
     draws = output.name and not chosen.no_picture
     target = on_root(comm, _picture, output, inputs_of(case)) if draws else None
     run_life(case, output, **options)

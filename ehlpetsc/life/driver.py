@@ -42,13 +42,13 @@ SIDES = ("1", "2")
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
 
 
-def line_of(history: LifeHistory, seconds: float) -> str:
+def line_of(history: LifeHistory, seconds: float = 0.0) -> str:
     """Line of the last row, whose round took a wall clock time: worn areas in m^2."""
     row = history.rows[-1]
     values = {"solved": history.solved, "passes": row["passes"]}
     for name, label in (("damage", "D"), ("pitted_share", "pitted"), ("wear_volume", "worn")):
         values |= {f"{label}{k}": f"{row[f'{name}_{k}']:.3g}" for k in (1, 2)}
-    values |= {"friction": f"{row['friction']:.4f}", "wall": duration(seconds)}
+    values |= {"friction": f"{row['friction']:.4f}"} | ({"wall": duration(seconds)} if seconds else {})
     return " ".join(f"{name}={value}" for name, value in values.items())
 
 

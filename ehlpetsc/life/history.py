@@ -161,7 +161,10 @@ class LifeHistory:
         return min(float(body.failed.min()) for body in self.bodies[-1])
 
     def __call__(self, name: str) -> np.ndarray:
-        """Values of a figure in all rows, shape (rows,)."""
+        """Values of a figure, or of "damaged_share_1" and "_2", in all rows, shape (rows,)."""
+        name, k = name.rsplit("_", 1) if name.startswith("damaged_share") else (name, "")
+        if k:
+            return np.array([body[int(k) - 1].damaged_share for body in self.bodies])
         return np.array([row[name] for row in self.rows])
 
     def add(self, row: dict, bodies: tuple[LifeBody, ...], plastic: dict[str, np.ndarray]) -> None:

@@ -12,12 +12,20 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure, FigureBase
 
 from ehlpetsc.pictures import style
+from ehlpetsc.results.post_result import DAMAGED
 
 if TYPE_CHECKING:
     from ehlpetsc.life.history import LifeBody, LifeHistory
 
+Bands = dict[str, tuple[np.ndarray, np.ndarray]]
 SHOWN_INSTANTS = 3  # instants of the life
 SHOWN_DAMAGE = 0.1  # of the maximum: cells with as much are within the picture
+PANELS = (  # over the passes: figure, label, factor
+    ("damaged_share", f"share of D > {DAMAGED:g}", 1.0),
+    ("pitted_share", "pitted share", 1.0),
+    ("wear_volume", "worn [µm²]", 1e12),
+    ("friction", "friction", 1.0),
+)
 MIN_LOG_DAMAGE = -3.0  # log10 of the damage at the lower end of the colours
 
 
@@ -32,13 +40,7 @@ def draw(life: LifeHistory, path: Path) -> None:
     draw_bodies = _maps if has_rows else _sections
     draw_bodies(top, life, chosen)
     passes = life("passes")
-    panels = (
-        ("pitted_share", "pitted share", 1.0),
-        ("wear_volume", "worn [µm²]", 1e12),
-        ("ra", "Ra [µm]", 1e6),
-        ("friction", "friction", 1.0),
-    )
-    for axes, (name, label, unit) in zip(bottom.subplots(1, len(panels)), panels, strict=True):
+    for axes, (name, label, unit) in zip(bottom.subplots(1, len(PANELS)), PANELS, strict=True):
         if name == "friction":
             axes.plot(passes - life("jump") + 1, life(name), ".-", color=style.SINGLE)
         else:
@@ -50,6 +52,30 @@ def draw(life: LifeHistory, path: Path) -> None:
     named = tomllib.loads(life.case)["contact"].get("material") or []
     steels = ", ".join(dict.fromkeys([named] if isinstance(named, str) else named))
     figure.suptitle(f"{life.title} ({steels})" if steels else life.title)
+    style.save(figure, path)
+
+
+def draw_ensembles(title: str, ensembles: dict[str, Bands], path: Path) -> None:
+    """Draw means over the lives of each ensemble and their bounds (90 %), over the passes.
+
+    `ensembles`: by name passes (n,) and mean and bounds (3, n) of each figure.
+    """
+    figure, panels = style.new_figure(1, len(PANELS), (11.0, 3.2))
+    colours = style.shades(len(ensembles))
+    for axes, (name, label, unit) in zip(panels, PANELS, strict=True):
+        for (others, bands), shade in zip(ensembles.items(), colours, strict=True):
+            sides = ("",) if name == "friction" else ("1", "2")
+            for side in sides:
+                passes, values = bands[f"{name}_{side}".rstrip("_")]
+                colour = shade if len(ensembles) > 1 else style.SURFACES.get(side, style.SINGLE)
+                label_of = ", ".join(filter(None, (others, f"surface {side}" if side else "")))
+                axes.plot(
+                    passes, unit * values[0], "--" if side == "1" else "-", color=colour, label=label_of
+                )
+                axes.fill_between(passes, *(unit * values[1:]), color=colour, alpha=0.2, lw=0.0)
+        axes.set(xlabel="passes", ylabel=label, xlim=(0.0, None))
+    panels[0].legend(fontsize="x-small")
+    style.set_title(figure, title)
     style.save(figure, path)
 
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.declarations import StepScalar
     from ehlpetsc.results.reader import Result
 
+RESAMPLINGS, CONFIDENCE, RESAMPLING_SEED = 4000, 0.9, 1  # of the bootstrap
 SERIES_REDUCTIONS = ("sum", "min", "max")  # reductions that are meaningful over several runs
 
 
@@ -76,6 +77,20 @@ def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: S
     order = np.argsort(values)
     reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
     return np.interp(percentiles, reached, values[order])
+
+
+def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
+    """Bounds of the mean of values (n,): between them lies a share `CONFIDENCE` of the means of n values
+    that are drawn from them with replacement; nan of fewer than two.
+
+    Efron, Annals of Statistics 7 (1979) 1: percentile method. Of few values it is too narrow: of ten by 15 %.
+    """
+    if values.size < 2:
+        return np.nan, np.nan
+    chosen = np.random.default_rng(RESAMPLING_SEED).integers(values.size, size=(RESAMPLINGS, values.size))
+    tails = (1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0
+    low, high = np.quantile(values[chosen].mean(axis=1), tails)
+    return float(low), float(high)
 
 
 def _filled_by(result: Result, side: str) -> float:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result
 
 SURFACES = ("2", "1")
+DAMAGED = 0.1  # damage from which a point counts as damaged
 CRITERIA = {  # name in files: quantity that compares points
     "fatemi_socie": "damage",
     "dang_van": "utilisation",

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from support.made_results import change_case, make_result, with_solids
 
-from ehlpetsc.analysis.summary import bootstrap_bounds, ensemble_table, ensembles, run_scalars
+from ehlpetsc.analysis.summary import ensemble_table, ensembles, run_scalars
 from ehlpetsc.analysis.summary import main as summary
-from ehlpetsc.results.means import both_fill
+from ehlpetsc.results.means import bootstrap_bounds, both_fill
 from ehlpetsc.results.reader import read_result
 
 GROUND = {"kind": "ground", "ra": 1e-7, "correlation": 1e-5}
@@ -88,6 +88,7 @@ def test_ensemble_has_damage_quantiles(tmp_path):
     assert [figures[f"damage_2 z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
         [0.5, 0.9, 0.99]
     )
+    assert figures["share_2 D>0.1"] == pytest.approx(90 / 101)
     assert figures["flash_temperature_2 largest"] == pytest.approx(120.0)
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
     rows = ensemble_table(opened([path]))
@@ -126,6 +127,7 @@ def test_ensemble_of_strips_has_lives_of_the_worst_points(tmp_path):
     assert found["damage_2 z/a=0.01 largest"] == pytest.approx(2e-4)
     assert found["life_2 worst"] == pytest.approx(5000.0)
     ranked = np.linspace(1e-6, 2e-4, 200)
+    assert found["share_2 D>0.1"] == 0.0 == found["fatemi-socie share_2 D>0.1"]
     for share in (0.01, 0.1):
         assert found[f"life_2 q={share:g}"] == pytest.approx(1.0 / np.quantile(ranked, 1.0 - share))
         key = f"fatemi-socie life_2 q={share:g}"

@@ -227,7 +227,7 @@ def _collect(
 
 
 def runs_of_points(motion: Passage, numbers: float, numbers_per_sample: int) -> list[np.ndarray]:
-    """Split the complete points into ranges of consecutive points with at most so many `numbers` of histories."""
+    """Split the complete points into ranges of consecutive ones with at most `numbers` in their histories."""
     points = np.flatnonzero(motion.complete)
     samples = (motion.leave - motion.enter + 3)[points].max(initial=1)
     room = max(1, int(numbers / (numbers_per_sample * samples)))
