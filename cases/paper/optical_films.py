@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.physics.film_formulas import hamrock_dowson_films
+from ehlpetsc.physics.geometry import hamrock_dowson_films
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style

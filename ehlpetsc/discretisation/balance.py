@@ -17,7 +17,7 @@ from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 
 class Load:

@@ -15,7 +15,7 @@ the unknowns of its window, see :mod:`.deflection`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,13 +25,12 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
-from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs, q_of, w_of
+from ehlpetsc.discretisation.unknowns import Share, Unknowns, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Case, Fluid
 
 
 @dataclass(frozen=True)
@@ -67,31 +66,6 @@ class Solution:
     residual: np.ndarray
     mass: np.ndarray | None
     inputs: StepInputs
-
-
-class Share(NamedTuple):
-    """Nodes of a rank.
-
-    `first`, `last`: nodes first .. last-1 of the mesh are its own.
-    `window`: nodes on which its rows depend. `owned`: its own nodes among them.
-    """
-
-    first: int
-    last: int
-    window: slice | np.ndarray
-    owned: slice
-
-    @property
-    def window_size(self) -> int:
-        """Number of nodes of the window."""
-        if isinstance(self.window, slice):
-            return self.window.stop - self.window.start
-        return len(self.window)
-
-    @property
-    def local(self) -> slice:
-        """Own nodes among those of the mesh."""
-        return slice(self.first, self.last)
 
 
 class EHLProblem:

@@ -40,14 +40,13 @@ from ehlpetsc.discretisation.finite_volumes import (
     reynolds_product,
 )
 from ehlpetsc.discretisation.step_inputs import StepInputs, inlet, shear_constants
-from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.discretisation.unknowns import Share, n_dofs
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.laws import density
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Fluid
-    from ehlpetsc.discretisation.ehl_problem import Share
+    from ehlpetsc.base.case import Fluid
     from ehlpetsc.discretisation.step_inputs import Oil
 
 AMBIENT = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure

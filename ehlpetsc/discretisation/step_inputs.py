@@ -20,7 +20,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import flow_table
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Fluid
 
 
 class Oil(Protocol):

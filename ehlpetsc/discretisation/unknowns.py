@@ -26,6 +26,31 @@ class Rows(NamedTuple):
     load: float
 
 
+class Share(NamedTuple):
+    """Nodes of a rank.
+
+    `first`, `last`: nodes first .. last-1 of the mesh are its own.
+    `window`: nodes on which its rows depend. `owned`: its own nodes among them.
+    """
+
+    first: int
+    last: int
+    window: slice | np.ndarray
+    owned: slice
+
+    @property
+    def window_size(self) -> int:
+        """Number of nodes of the window."""
+        if isinstance(self.window, slice):
+            return self.window.stop - self.window.start
+        return len(self.window)
+
+    @property
+    def local(self) -> slice:
+        """Own nodes among those of the mesh."""
+        return slice(self.first, self.last)
+
+
 def q_index(nodes: np.ndarray) -> np.ndarray:
     """Indices of q, or of the deflection rows."""
     return 2 * nodes

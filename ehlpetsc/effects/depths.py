@@ -14,7 +14,7 @@ from ehlpetsc.effects.effect import Effect
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
     from ehlpetsc.effects.effect import Scene, Step
     from ehlpetsc.surfaces.moving_surface import MovingSurface

@@ -17,7 +17,7 @@ import numpy as np
 from ehlpetsc.base.declarations import KeyTable
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
     from ehlpetsc.physics import Operation
     from ehlpetsc.physics.operation import Conditions

@@ -13,7 +13,7 @@ from ehlpetsc.gears.path import path_of_contact
 from ehlpetsc.physics.hertz import hertz_ellipse
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 POINTS_ACROSS = 32  # per half-width b of a long ellipse
 OF_PATHS = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,11 +13,51 @@ from ehlpetsc.surfaces.body_field import BodyField
 from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line, periodic_mean
 
 if TYPE_CHECKING:
-    from ehlpetsc.life.jumps import Rates
     from ehlpetsc.life.one_pass import OfBody
 
 
 NO_ROWS = np.zeros(0)
+MAX_EXTRAPOLATION = 2.0  # length of a jump over the previous one, up to which rates are extrapolated
+
+
+class Rates(NamedTuple):
+    """Wear, damage and worn volume of a pass at the start of a jump, and their changes per pass.
+
+    `wear`: in m, shape (n,). `damage`: shape (cells, n). `volume`: worn off [m^2]. `slopes`: changes of the
+    three per pass; by default none.
+    """
+
+    wear: np.ndarray
+    damage: np.ndarray
+    volume: float
+    slopes: tuple = (0.0, 0.0, 0.0)
+
+    def continued(self, before: tuple[np.ndarray, np.ndarray, float], passes: int) -> Rates:
+        """Rates with the slopes since a previous round.
+
+        No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes.
+
+        `before`: rates of that round. `passes`: since it.
+        """
+        slopes = []
+        new: Any
+        for new, old in zip((self.wear, self.damage, self.volume), before, strict=True):
+            bound = new / (MAX_EXTRAPOLATION * passes)
+            slopes.append(np.clip((new - old) / passes, -bound, bound))
+        return self._replace(slopes=tuple(slopes))
+
+    def after(self, passes: float) -> tuple:
+        """Wear [m], damage and worn volume [m^2] of a number of passes."""
+        rates: Any = zip((self.wear, self.damage, self.volume), self.slopes, strict=True)
+        return tuple(laws.sum_over(passes, rate, slope) for rate, slope in rates)
+
+    def passes_to_wear(self, depth: float | np.ndarray) -> np.ndarray:
+        """Passes after which a depth of wear is reached [m], shape (n,)."""
+        return laws.passes_to(depth, self.wear, self.slopes[0])
+
+    def passes_to_damage(self, damage: float | np.ndarray) -> np.ndarray:
+        """Passes after which an amount of damage is added, shape (cells, n)."""
+        return laws.passes_to(damage, self.damage, self.slopes[1])
 
 
 class LifeBody(NamedTuple):

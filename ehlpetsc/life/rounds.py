@@ -10,8 +10,7 @@ from mpi4py import MPI
 
 from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.effects.depths import PlasticRecord
-from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.jumps import Rates
+from ehlpetsc.life.body import LifeBody, Rates
 from ehlpetsc.life.one_pass import Pass
 from ehlpetsc.run.ranks import WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields

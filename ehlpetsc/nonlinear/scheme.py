@@ -14,7 +14,7 @@ from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
     from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
 
 

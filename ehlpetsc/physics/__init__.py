@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
     from ehlpetsc.physics.operation import ConstantOperation
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.physics.variable_operation import VariableOperation
@@ -20,7 +20,8 @@ def operation_of(case: Case, scales: Scales) -> Operation:
 
     table = case.conditions
     if table is None:
-        return ConstantOperation.of(case, scales)
+        travel = None if case.time is None else scales.duration * scales.u_max
+        return ConstantOperation(scales.conditions, travel)
     from ehlpetsc.physics.variable_operation import VariableOperation
 
     travel = case.time.travel * scales.a

@@ -63,7 +63,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Contact
+    from ehlpetsc.base.case import Contact
 
 EXPONENTIAL = 30.0  # separation over the decay length beyond which the law is an exponential in all digits
 MAX_RATIO = 1e10  # of prefactor to pressure up to which the law differs from it

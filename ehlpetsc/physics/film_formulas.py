@@ -1,8 +1,4 @@
-r"""Film thickness formulas of smooth line and point contacts.
-
-Dimensionless groups of a line contact: :math:`U=\eta_0u/(E'R)`, :math:`G=\alpha E'`, :math:`W=w'/(E'R)`,
-u the mean speed; Moes' :math:`M=W(2U)^{-1/2}`, :math:`L=G(2U)^{1/4}`, :math:`H=(h/R)(2U)^{-1/2}`.
-"""
+"""Films of smooth contacts by the fits of :mod:`.geometry`: as expected, on a mesh, with a short inlet."""
 
 from __future__ import annotations
 
@@ -11,77 +7,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.physics.geometry import rigid_factors
+
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Case, Fluid
     from ehlpetsc.physics.geometry import Geometry
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
 
 
-MIN_OVER_CENTRAL_FILM = 0.75  # of an incompressible oil
 MAX_FILM_ITERATIONS = 200
 FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half-widths in place of infinity in Grubin's integral; its points
-
-
-def moes_central_film(M: float, L: float) -> float:
-    r"""Central film H of a line contact by Moes' fit over all regimes (Moes 1992).
-
-    :math:`H=\left[(H_{RI}^{7/3}+H_{EI}^{7/3})^{3s/7}+(H_{RP}^{-7/2}+H_{EP}^{-7/2})^{-2s/7}\right]^{1/s}`,
-    :math:`s=\frac15(7+8e^{-2H_{EI}/H_{RI}})`, with the rigid/elastic, isoviscous/piezoviscous asymptotes
-    :math:`H_{RI}=3/M`, :math:`H_{EI}=2.621M^{-1/5}`, :math:`H_{RP}=1.287L^{2/3}`,
-    :math:`H_{EP}=1.311M^{-1/8}L^{3/4}`.
-    """
-    rigid, elastic = 3.0 / M, 2.621 * M**-0.2
-    rigid_piezo, elastic_piezo = 1.287 * L ** (2.0 / 3.0), 1.311 * M**-0.125 * L**0.75
-    s = (7.0 + 8.0 * np.exp(-2.0 * elastic / rigid)) / 5.0
-    isoviscous = (rigid ** (7.0 / 3.0) + elastic ** (7.0 / 3.0)) ** (3.0 * s / 7.0)
-    piezoviscous = (rigid_piezo**-3.5 + elastic_piezo**-3.5) ** (-2.0 * s / 7.0)
-    return (isoviscous + piezoviscous) ** (1.0 / s)
-
-
-def nijenbanning_central_film(M: float, L: float, ratio: float, rigid: float | None = None) -> float:
-    r"""Central film H of an elliptic contact by the fit over all regimes of Nijenbanning, Venner and Moes
-    (1994).
-
-    .. math:: H=\left\{\left[H_{RI}^{3/2}+(H_{EI}^{-4}+H_{00}^{-4})^{-3/8}\right]^{2s/3}+
-       (H_{RP}^{-8}+H_{EP}^{-8})^{-s/8}\right\}^{1/s},\qquad s=1.5\,(1+e^{-1.2H_{EI}/H_{EP}})
-
-    with :math:`\lambda=R_x/R_y`, :math:`H_{RI}=145(1+0.796\lambda^{14/15})^{-15/7}\lambda^{-1}M^{-2}`,
-    :math:`H_{EI}=3.18(1+0.006\ln\lambda+0.63\lambda^{4/7})^{-14/25}\lambda^{-1/15}M^{-2/15}`,
-    :math:`H_{RP}=1.29(1+0.691\lambda)^{-2/3}L^{2/3}`,
-    :math:`H_{EP}=1.48(1+0.006\ln\lambda+0.63\lambda^{4/7})^{-7/20}\lambda^{-1/24}M^{-1/12}L^{3/4}`,
-    :math:`H_{00}=1.8\lambda^{-1}`.
-
-    `ratio`: :math:`R_y/R_x`. `rigid`: another :math:`H_{RI}`.
-    """
-    lam = 1.0 / ratio
-    shape = 1.0 + 0.006 * math.log(lam) + 0.63 * lam ** (4.0 / 7.0)
-    rigid = rigid or 145.0 * (1.0 + 0.796 * lam ** (14.0 / 15.0)) ** (-15.0 / 7.0) / (lam * M**2)
-    elastic = 3.18 * shape ** (-14.0 / 25.0) * lam ** (-1.0 / 15.0) * M ** (-2.0 / 15.0)
-    rigid_piezo = 1.29 * (1.0 + 0.691 * lam) ** (-2.0 / 3.0) * L ** (2.0 / 3.0)
-    elastic_piezo = 1.48 * shape ** (-7.0 / 20.0) * lam ** (-1.0 / 24.0) * M ** (-1.0 / 12.0) * L**0.75
-    s = 1.5 * (1.0 + math.exp(-1.2 * elastic / elastic_piezo))
-    isoviscous = (rigid**1.5 + (elastic**-4 + (1.8 / lam) ** -4) ** -0.375) ** (2.0 * s / 3.0)
-    return (isoviscous + (rigid_piezo**-8 + elastic_piezo**-8) ** (-s / 8.0)) ** (1.0 / s)
-
-
-def brewe_rigid_film(M: float, ratio: float) -> float:
-    r"""Central film H of a rigid, isoviscous elliptic contact (Brewe, Hamrock and Taylor 1979).
-
-    .. math:: H=32\,\alpha\varphi^2\mathcal L^2/M^2,\qquad\varphi=\frac{1}{1+2/(3\alpha)},\qquad
-       \mathcal L=0.131\arctan(\alpha/2)+1.683,\qquad\alpha=R_y/R_x=\texttt{ratio}
-
-    of a computed load that exceeds that of half of Kapitza's pressure by :math:`2\mathcal L/\pi`. For a ball
-    :math:`H_{RI}` of Nijenbanning, Venner and Moes is 18 % higher.
-    """
-    side_leakage, load = _rigid_factors(ratio)
-    return 32.0 * ratio * (side_leakage * load / M) ** 2
-
-
-def _rigid_factors(ratio: float) -> tuple[float, float]:
-    r""":math:`\varphi` and :math:`\mathcal L` of :func:`brewe_rigid_film`."""
-    return 1.0 / (1.0 + 2.0 / (3.0 * ratio)), 0.131 * math.atan(0.5 * ratio) + 1.683
 
 
 def load_outside(scales: Scales, film: float, inlet: float, half_width: float) -> float:
@@ -90,7 +26,8 @@ def load_outside(scales: Scales, film: float, inlet: float, half_width: float) -
     .. math:: p=4\eta_0u\varphi\,\frac{2\mathcal L}{\pi}\,\frac{-x}{h^2},\qquad
        h=h_c+\frac{x^2}{2R_x}+\frac{y^2}{2R_y},\qquad x<0
 
-    of rigid bodies and ambient viscosity (Kapitza 1955), to the load of :func:`brewe_rigid_film`, integrated
+    of rigid bodies and ambient viscosity (Kapitza 1955), to the load of :func:`.geometry.brewe_rigid_film`,
+    integrated
     outside :math:`x>-` `inlet`, :math:`|y|<` `half_width`. It falls as slowly as 1 over the distance.
 
     Parameters
@@ -98,7 +35,7 @@ def load_outside(scales: Scales, film: float, inlet: float, half_width: float) -
     film, inlet, half_width
         Central film, distances of the first node and of the edges from the middle [m].
     """
-    side_leakage, load = _rigid_factors(scales.radius_ratio)
+    side_leakage, load = rigid_factors(scales.radius_ratio)
     across = 2.0 * scales.R * scales.radius_ratio
 
     def inside(gap: float) -> float:
@@ -129,20 +66,6 @@ def film_on_mesh(case: Case, scales: Scales, inlet: float, half_width: float) ->
         if before - lower < 1e-3 * lower:
             break
     return share, lower / film
-
-
-def hamrock_dowson_films(U: float, G: float, W: float, ratio: float) -> tuple[float, float]:
-    r"""Central and minimum film of an elliptic contact over :math:`R_x` (Hamrock and Dowson 1977).
-
-    :math:`H_c=2.69U^{0.67}G^{0.53}W^{-0.067}(1-0.61e^{-0.73k})`,
-    :math:`H_{min}=3.63U^{0.68}G^{0.49}W^{-0.073}(1-e^{-0.68k})`, :math:`k=1.03(R_y/R_x)^{0.64}`,
-    :math:`W=F/(E'R_x^2)`.
-
-    `ratio`: :math:`R_y/R_x`.
-    """
-    k = 1.03 * ratio**0.64
-    central = 2.69 * U**0.67 * G**0.53 * W**-0.067 * (1.0 - 0.61 * math.exp(-0.73 * k))
-    return central, 3.63 * U**0.68 * G**0.49 * W**-0.073 * (1.0 - math.exp(-0.68 * k))
 
 
 def smooth_films(scales: Scales, fluid: Fluid, conditions: Conditions) -> tuple[float, float]:
@@ -241,4 +164,6 @@ def expected_film(case: Case, scales: Scales) -> float:
     """Central film by Moes' fit in a^2/R, scale of the Reynolds rows and film of the initial guess."""
     if case.fluid is None:
         return 1.0
-    return max(scales.geometry.expected_film(scales), 1e-6)
+    two_u = 2.0 * scales.eta0 * abs(scales.u) / (scales.E * scales.R)
+    groups = scales.moes_m, scales.moes_l, scales.radius_ratio, two_u, scales.R / scales.a
+    return max(scales.geometry.expected_film(*groups), 1e-6)

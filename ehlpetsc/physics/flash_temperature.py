@@ -11,7 +11,7 @@ from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.traction import wall_shear
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Fluid
     from ehlpetsc.physics.scales import Scales
 
 

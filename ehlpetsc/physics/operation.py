@@ -8,12 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Self
-
-if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.physics.scales import Scales
-
+from typing import NamedTuple
 
 LEVEL_TOLERANCE = 1e-6  # of a time step: times nearer than this are equal
 
@@ -65,12 +60,6 @@ class ConstantOperation:
     conditions: Conditions
     travel: float | None = None
     varies = False
-
-    @classmethod
-    def of(cls, case: Case, scales: Scales) -> Self:
-        """Operation of a case with constant load, radius and speeds."""
-        travel = None if case.time is None else scales.duration * scales.u_max
-        return cls(Conditions(scales.load, scales.R, scales.u1, scales.u2), travel)
 
     def at(self, time: float) -> Conditions:
         """Conditions at a time [s]."""

@@ -16,7 +16,7 @@ from ehlpetsc.base.declarations import Key, Refused
 from ehlpetsc.physics.law import Derivatives, FluidValues, Law, n_constants, switched
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Fluid
 
 SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 NEWTON, EYRING, CARREAU = range(3)  # positions in `SHEAR_LAWS`

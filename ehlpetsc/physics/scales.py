@@ -14,7 +14,7 @@ from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.operation import Conditions
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 
 def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[float]) -> float:

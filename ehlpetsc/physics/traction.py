@@ -17,7 +17,7 @@ from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, flow_stress, st
 from ehlpetsc.physics.tabulated_flow import flow_table, stress_spread
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Fluid
 
 
 def shear_stresses(

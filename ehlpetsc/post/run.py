@@ -22,7 +22,8 @@ from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import Prepared, prepare
-from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, histories, runs_of_points
+from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress
+from ehlpetsc.post.stresses.histories import histories, runs_of_points
 from ehlpetsc.results.post_result import SURFACES, PostResult
 
 if TYPE_CHECKING:

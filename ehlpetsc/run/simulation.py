@@ -260,7 +260,7 @@ class Simulation:
                 state = self._started(watch)
             except NotConverged as error:
                 if isinstance(error.__cause__, NoSteadyStart):
-                    from ehlpetsc.run.checkpoint import cures
+                    from ehlpetsc.run.coarse_start import cures
 
                     advice = cures(self.case, self.scales, self.operation.at(0.0), self._film)
                     raise NotConverged(f"{error}{advice}") from error.__cause__
@@ -304,7 +304,7 @@ class Simulation:
 
     def _coarse_guess(self, watch: Watch) -> tuple[Unknowns, dict] | None:
         """Steady solution on a mesh with half as many nodes per half-width; None: there is none."""
-        from ehlpetsc.run.checkpoint import coarser, guess_of
+        from ehlpetsc.run.coarse_start import coarser, guess_of
 
         try:
             coarse = Simulation(coarser(self.case), self.comm, self._options)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
     from ehlpetsc.physics.scales import Scales
 
 RAMP_LENGTH = 0.1  # half-widths at the beginning of a profile over which its heights increase from zero

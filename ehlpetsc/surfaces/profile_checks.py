@@ -9,7 +9,7 @@ import numpy as np
 from ehlpetsc.surfaces.moving_surface import WAVE_NODES
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
     from ehlpetsc.surfaces.samples import Samples

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TypeVar
@@ -13,7 +12,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.outliers import groups, held, spikes, without_no_data
-from ehlpetsc.surfaces.text_files import UNITS, read_softgauge, text_columns, units_in
+from ehlpetsc.surfaces.text_files import UNITS, Layout, read_softgauge, text_columns, units_in
 from ehlpetsc.surfaces.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
@@ -23,33 +22,7 @@ MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
 MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
 
 
-@dataclass(frozen=True)
-class Layout:
-    """Layout of the file of a profile or map; missing entries are detected from the file.
-
-    `unit`, `x_unit`: units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
-    `spacing`, `spacing_across`: distance of the points [m] of files without x, of the columns and of the rows
-        of a matrix; the second by default as the first.
-    `columns`: columns of x and z, or of z alone, from 1.
-    `decimal`: "." or ",".
-    `header_lines`: lines before the numbers.
-    `fill_gaps`: widest gap of missing heights that is filled [m].
-    `bridge_spikes`: whether the spline bridges the spikes of optical instruments.
-    `mask`: file of a matrix, beside that of a map, which is not 0 where heights are missing.
-    """
-
-    unit: str | None = None
-    x_unit: str | None = None
-    spacing: float | None = None
-    spacing_across: float | None = None
-    columns: tuple | None = None
-    decimal: str | None = None
-    header_lines: int | None = None
-    fill_gaps: float | None = None
-    bridge_spikes: bool = False
-    mask: str | None = None
-
-
+DETECTED = Layout()
 KEYS = tuple(Layout.__dataclass_fields__)
 KEYS_OF_TEXT = KEYS[: KEYS.index("fill_gaps")]
 
@@ -65,7 +38,7 @@ def read_once(read: Callable[[Path, Layout], R]) -> Callable[..., R]:
         return read(path, layout)
 
     @functools.wraps(read)
-    def reading(path: str | PathLike, layout: Layout = Layout()) -> R:
+    def reading(path: str | PathLike, layout: Layout = DETECTED) -> R:
         path = Path(path)
         try:
             if not path.is_file():

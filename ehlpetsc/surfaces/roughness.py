@@ -20,8 +20,8 @@ from ehlpetsc.surfaces.moving_surface import (
 )
 
 if TYPE_CHECKING:
+    from ehlpetsc.base.case import Case
     from ehlpetsc.base.declarations import Values
-    from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.samples import Samples
     from ehlpetsc.surfaces.topography import Topography

@@ -15,6 +15,7 @@ import csv
 import io
 import re
 import unicodedata
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,33 @@ UNIT_IN_HEADER = re.compile(
     rf"[\[(/]\s*({'|'.join(map(re.escape, UNIT_OF_NAME))})\s*(?:[\])]|[\s;,|\"]|$)",
     re.MULTILINE | re.IGNORECASE,
 )
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Layout of the file of a profile or map; missing entries are detected from the file.
+
+    `unit`, `x_unit`: units of the heights and of x, keys of `UNITS`; default: m, x as the heights.
+    `spacing`, `spacing_across`: distance of the points [m] of files without x, of the columns and of the rows
+        of a matrix; the second by default as the first.
+    `columns`: columns of x and z, or of z alone, from 1.
+    `decimal`: "." or ",".
+    `header_lines`: lines before the numbers.
+    `fill_gaps`: widest gap of missing heights that is filled [m].
+    `bridge_spikes`: whether the spline bridges the spikes of optical instruments.
+    `mask`: file of a matrix, beside that of a map, which is not 0 where heights are missing.
+    """
+
+    unit: str | None = None
+    x_unit: str | None = None
+    spacing: float | None = None
+    spacing_across: float | None = None
+    columns: tuple | None = None
+    decimal: str | None = None
+    header_lines: int | None = None
+    fill_gaps: float | None = None
+    bridge_spikes: bool = False
+    mask: str | None = None
 
 
 def text_columns(

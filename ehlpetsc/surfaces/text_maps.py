@@ -7,15 +7,12 @@ them they must agree.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.text_files import NUMBER, UNIT_OF_NAME, UNITS, units_in
-
-if TYPE_CHECKING:
-    from ehlpetsc.surfaces.profile_files import Layout
+from ehlpetsc.surfaces.text_files import NUMBER, UNIT_OF_NAME, UNITS, Layout, units_in
 
 MIN_POINTS = 4  # along either side
 MIN_MATRIX_COLUMNS = 8  # of heights alike, where no spacing is stated

@@ -14,7 +14,7 @@ from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import flat
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run import checkpoint
+from ehlpetsc.run import checkpoint, coarse_start
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
@@ -118,5 +118,5 @@ def test_cure_of_a_layer_far_softer_than_the_hertz_pressure():
     for stiffness, is_soft in (("5e-4", True), ("0.03", False)):
         scene = Scene(*layer[:2], layer[2] + stiffness)
         conditions = operation_of(scene.case, scene.scales).at(0.0)
-        advice = checkpoint.cures(scene.case, scene.scales, conditions, 0.1)
+        advice = coarse_start.cures(scene.case, scene.scales, conditions, 0.1)
         assert ("contact.asperity_stiffness above 0.0005" in advice) == is_soft

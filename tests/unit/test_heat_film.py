@@ -9,9 +9,9 @@ from support.film_stress import film_stress
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
-from ehlpetsc.discretisation.ehl_problem import Share
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
+from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.effects.heat.film import FilmHeat
 from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
 from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law

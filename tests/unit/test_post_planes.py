@@ -16,7 +16,8 @@ from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.prepare import prepare
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.block_stress import ORDER, BlockStress
-from ehlpetsc.post.stresses.body_stress import histories, offset_weights
+from ehlpetsc.post.stresses.body_stress import offset_weights
+from ehlpetsc.post.stresses.histories import histories
 from ehlpetsc.results.post_result import PostResult
 
 NU = 0.3

@@ -11,10 +11,10 @@ petsc4py.init([])
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
-from ehlpetsc.discretisation.ehl_problem import Share
 from ehlpetsc.discretisation.finite_volumes import flux_through
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
+from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import reynolds_columns
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales

@@ -11,7 +11,7 @@ from support.exact_solutions import hertz_gap
 from support.published_values import Film
 
 from ehlpetsc.case import loading as case
-from ehlpetsc.physics import film_formulas
+from ehlpetsc.physics import film_formulas, geometry
 from ehlpetsc.physics.geometry import line_groups
 from ehlpetsc.physics.hertz import hertz_line, hertz_pressure
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
@@ -117,10 +117,10 @@ def test_hertz_gap_at_the_inlet():
 
 def test_moes_fit_approximates_films_and_its_asymptotes():
     for point in published_values.MOES_POINTS:
-        assert film_formulas.moes_central_film(point.M, point.L) == pytest.approx(point.h_central, rel=0.04)
-    assert film_formulas.moes_central_film(1e-4, 1e-6) == pytest.approx(3e4, rel=0.01)
+        assert geometry.moes_central_film(point.M, point.L) == pytest.approx(point.h_central, rel=0.04)
+    assert geometry.moes_central_film(1e-4, 1e-6) == pytest.approx(3e4, rel=0.01)
     elastic = 1.311 * 1e5**-0.125 * 30**0.75
-    assert film_formulas.moes_central_film(1e5, 30.0) == pytest.approx(elastic, rel=0.1)
+    assert geometry.moes_central_film(1e5, 30.0) == pytest.approx(elastic, rel=0.1)
 
 
 def test_expected_films_within_four_percent():
@@ -134,8 +134,8 @@ def test_expected_films_within_four_percent():
         assert central * 1e6 == pytest.approx(film.h_central, rel=0.025)
         assert minimum * 1e6 == pytest.approx(film.h_min, rel=0.04)
     for point in published_values.MOES_POINTS:
-        film = film_formulas.moes_central_film(point.M, point.L)
-        assert film_formulas.MIN_OVER_CENTRAL_FILM * film == pytest.approx(point.h_min, rel=0.04)
+        film = geometry.moes_central_film(point.M, point.L)
+        assert geometry.MIN_OVER_CENTRAL_FILM * film == pytest.approx(point.h_min, rel=0.04)
 
 
 def test_smooth_films_are_below_the_moes_fit_by_less_than_a_quarter():
@@ -143,4 +143,4 @@ def test_smooth_films_are_below_the_moes_fit_by_less_than_a_quarter():
     for film in published_values.SMOOTH_FILMS:
         m, length = line_groups(film.viscosity, film.speed, 11.1e-9, LOAD, R, E)
         scale = R * np.sqrt(2 * film.viscosity * film.speed / (E * R)) * 1e6
-        assert 0.75 < film.h_central / (film_formulas.moes_central_film(m, length) * scale) < 1.0
+        assert 0.75 < film.h_central / (geometry.moes_central_film(m, length) * scale) < 1.0

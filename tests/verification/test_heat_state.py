@@ -11,9 +11,9 @@ from support import CASES
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation import finite_volumes as volumes
 from ehlpetsc.discretisation.contact import face_gap
-from ehlpetsc.discretisation.ehl_problem import Share
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import IsothermalOil
+from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.effects.heat.step import HeatStep, Temperatures
 from ehlpetsc.effects.heat.transport import Film
 from ehlpetsc.physics.laws import viscosity

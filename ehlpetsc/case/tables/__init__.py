@@ -10,17 +10,16 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 from ehlpetsc.base import quantities
-from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.base.case import Case
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required
 from ehlpetsc.base.errors import CaseError, UsageError
-from ehlpetsc.base.toml_file import is_plain, toml_text
+from ehlpetsc.base.toml_file import is_plain
 from ehlpetsc.case.tables.contact import CONTACT, FLUID
 from ehlpetsc.case.tables.motion import GEARS, MESH, MOTION, OPERATION, TIME
 from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
-from ehlpetsc.case.tables.surface import SURFACE, with_digests
+from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.law import Law
@@ -28,52 +27,6 @@ from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, SHEAR_LAWS
 
 CONDITIONS = (CONTACT, FLUID, MOTION, MESH, SURFACE, TIME, OPERATION, GEARS)
 TABLES = (*CONDITIONS, *(effect.table for effect in EFFECTS if effect.table), OUTPUT, POST, LIFE, SERIES)
-
-
-class Case(Values):
-    """Case by tables, `case.fluid.viscosity`; a missing table is None.
-
-    `contact` and `motion` of variable conditions contain the reference state of the scales.
-    """
-
-    @property
-    def text(self) -> str:
-        """TOML text with the overrides, which in the same folder defines the same case.
-
-        Maps given as heights are named by a digest.
-        """
-        if self._text is None:  # generated when it is needed: members of a long series
-            self.__dict__["_text"] = toml_text(with_digests(self._tables))
-        return self._text
-
-    @property
-    def default_friction(self) -> float | None:
-        """Coefficient of friction of sliding solids by default; None: given, or nothing slides."""
-        given = "boundary_friction" in self._tables["contact"]
-        slides = self.motion is not None and (self.conditions is not None or self.motion.slide_roll_ratio)
-        return self.contact.boundary_friction if slides and not given else None
-
-    @property
-    def path(self) -> Path:
-        """Path of the case file, in whose folder profile files are."""
-        return self._path
-
-    @property
-    def digests(self) -> dict[str, str]:
-        """Digests of the surface files as read, see `ehlpetsc.case.tables.surface`; {} of a stored case."""
-        return vars(self).get("_digests", {})
-
-    @property
-    def kind(self) -> str:
-        """Kind of contact, a key of `physics.geometry.GEOMETRIES`."""
-        if self.contact.radius_across is not None:
-            return "point"
-        return "line" if self.mesh.width is None else "strip"
-
-    @property
-    def conditions(self) -> Any:
-        """Load, radius and speeds over time (`physics.variable_operation`); None: constant."""
-        return self._conditions
 
 
 def _petsc_options(case: Case) -> dict[str, dict[str, str]]:

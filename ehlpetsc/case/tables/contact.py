@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ehlpetsc.base.declarations import Key, KeyTable, Required, Values
+from ehlpetsc.base.case import Contact, Fluid
+from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.materials import GRADES, STEELS
 from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, TABLES, completed
 from ehlpetsc.physics.oils import OILS
@@ -16,24 +17,6 @@ LAYER_NODES = 8  # longest wave of a layer whose surfaces have no short_cutoff, 
 MIXED = 'contact.model = "mixed"'
 CONDITIONS = ("[gears]", "[operation]")
 LAYER = "contact.asperity_height"
-
-
-class Contact(Values):
-    """`[contact]`: solids and load."""
-
-    @property
-    def has_contact_pressure(self) -> bool:
-        """Whether the pressure of the solids is separate from that of the oil."""
-        return self.model == "mixed"
-
-    @property
-    def law(self) -> str:
-        """Contact law: "direct", "mixed" (rigid below the boundary film) or "compliant"."""
-        return self.model if self.asperity_height is None else "compliant"
-
-
-class Fluid(Values):
-    """`[fluid]`: the oil."""
 
 
 def _complete(contact: Contact) -> dict[str, Any]:

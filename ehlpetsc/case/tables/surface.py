@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from array import array
-from hashlib import file_digest, sha256
+from hashlib import file_digest
 from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
@@ -11,13 +10,12 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.surfaces.digests import changed_files
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
-DIGEST_LENGTH = 16  # characters
 
 
 def _kinds(*kinds: str, text: str, keys: dict[str, Key]) -> dict[str, KeyTable]:
@@ -145,18 +143,6 @@ PROFILE = KeyTable(
     KEYS,
     complete=_check_source,
 )
-
-
-def with_digests(tables: dict[str, Any]) -> dict[str, Any]:
-    """Tables of a case with heights of maps, which may be long, replaced by a file named by their digest."""
-    surfaces = dict(tables.get("surface", {}))
-    for side, table in surfaces.items():
-        if isinstance(table, dict) and isinstance(table.get("z"), list) and isinstance(table["z"][0], list):
-            numbers = [array("d", row) for row in (*table["z"], table.get("x", []), table.get("y", []))]
-            digest = sha256(b"".join(row.tobytes() for row in numbers)).hexdigest()[:DIGEST_LENGTH]
-            kept = {key: value for key, value in table.items() if key not in ("x", "y", "z")}
-            surfaces[side] = {"file": f"heights_{digest}.npy"} | kept
-    return tables | {"surface": surfaces} if surfaces else tables
 
 
 def file_digests(case: Case) -> dict[str, str]:

@@ -9,8 +9,7 @@ from ehlpetsc.discretisation.contact.node_state import FaceGap
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.case.tables.contact import Contact
+    from ehlpetsc.base.case import Case, Contact
 
 
 def film_scale_of(case: Case, scales: Scales, expected_film: float) -> float:

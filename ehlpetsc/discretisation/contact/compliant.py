@@ -38,7 +38,7 @@ from ehlpetsc.physics.asperities import (
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Contact
+    from ehlpetsc.base.case import Contact
 
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes

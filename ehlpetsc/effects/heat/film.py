@@ -41,7 +41,7 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables.contact import Fluid
+    from ehlpetsc.base.case import Fluid
 
 TINY = 1e-6  # y whose sinh(y)/y is 1
 

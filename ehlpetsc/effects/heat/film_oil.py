@@ -18,8 +18,8 @@ from ehlpetsc.physics.laws import (
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
 
 if TYPE_CHECKING:
+    from ehlpetsc.base.case import Fluid
     from ehlpetsc.base.declarations import Values
-    from ehlpetsc.case.tables.contact import Fluid
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 MIN_SLOPE = 1e-12  # 1/K

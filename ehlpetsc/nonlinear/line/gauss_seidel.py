@@ -45,7 +45,7 @@ from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 
 # half-widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B

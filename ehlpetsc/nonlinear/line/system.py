@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share, problem_of
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
 from ehlpetsc.discretisation.line.deflection import Deflection
+from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.preconditioner import Factors, FarFieldBand
 from ehlpetsc.nonlinear.ranks import LineExchange, first_nodes
@@ -16,7 +17,7 @@ from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 
 def line_problem(

@@ -8,9 +8,9 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, Share
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.plane.deflection import PressureSums
-from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs
+from ehlpetsc.discretisation.unknowns import Share, Unknowns, n_dofs
 
 MIN_ROWS = 4  # of a rank
 

@@ -22,7 +22,7 @@ from ehlpetsc.nonlinear.two_fields import FILM_AFTER_RELEASE, ZERO_TOLERANCE, Tw
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
+    from ehlpetsc.base.case import Case
 
 STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities half as many iterations again
 OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more

@@ -1,0 +1,89 @@
+"""Checked values of a case file, as all parts of the program read them; the keys are in `case.tables`."""
+
+from __future__ import annotations
+
+from array import array
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from ehlpetsc.base.declarations import Values
+from ehlpetsc.base.toml_file import toml_text
+
+DIGEST_LENGTH = 16  # characters
+
+
+class Contact(Values):
+    """`[contact]`: solids and load."""
+
+    @property
+    def has_contact_pressure(self) -> bool:
+        """Whether the pressure of the solids is separate from that of the oil."""
+        return self.model == "mixed"
+
+    @property
+    def law(self) -> str:
+        """Contact law: "direct", "mixed" (rigid below the boundary film) or "compliant"."""
+        return self.model if self.asperity_height is None else "compliant"
+
+
+class Fluid(Values):
+    """`[fluid]`: the oil."""
+
+
+class Case(Values):
+    """Case by tables, `case.fluid.viscosity`; a missing table is None.
+
+    `contact` and `motion` of variable conditions contain the reference state of the scales.
+    """
+
+    @property
+    def text(self) -> str:
+        """TOML text with the overrides, which in the same folder defines the same case.
+
+        Maps given as heights are named by a digest.
+        """
+        if self._text is None:  # generated when it is needed: members of a long series
+            self.__dict__["_text"] = toml_text(with_digests(self._tables))
+        return self._text
+
+    @property
+    def default_friction(self) -> float | None:
+        """Coefficient of friction of sliding solids by default; None: given, or nothing slides."""
+        given = "boundary_friction" in self._tables["contact"]
+        slides = self.motion is not None and (self.conditions is not None or self.motion.slide_roll_ratio)
+        return self.contact.boundary_friction if slides and not given else None
+
+    @property
+    def path(self) -> Path:
+        """Path of the case file, in whose folder profile files are."""
+        return self._path
+
+    @property
+    def digests(self) -> dict[str, str]:
+        """Digests of the surface files as read, see `ehlpetsc.case.tables.surface`; {} of a stored case."""
+        return vars(self).get("_digests", {})
+
+    @property
+    def kind(self) -> str:
+        """Kind of contact, a key of `physics.geometry.GEOMETRIES`."""
+        if self.contact.radius_across is not None:
+            return "point"
+        return "line" if self.mesh.width is None else "strip"
+
+    @property
+    def conditions(self) -> Any:
+        """Load, radius and speeds over time (`physics.variable_operation`); None: constant."""
+        return self._conditions
+
+
+def with_digests(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables of a case with heights of maps, which may be long, replaced by a file named by their digest."""
+    surfaces = dict(tables.get("surface", {}))
+    for side, table in surfaces.items():
+        if isinstance(table, dict) and isinstance(table.get("z"), list) and isinstance(table["z"][0], list):
+            numbers = [array("d", row) for row in (*table["z"], table.get("x", []), table.get("y", []))]
+            digest = sha256(b"".join(row.tobytes() for row in numbers)).hexdigest()[:DIGEST_LENGTH]
+            kept = {key: value for key, value in table.items() if key not in ("x", "y", "z")}
+            surfaces[side] = {"file": f"heights_{digest}.npy"} | kept
+    return tables | {"surface": surfaces} if surfaces else tables
