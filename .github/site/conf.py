@@ -12,6 +12,7 @@ from ehlpetsc.base.environment import missing
 FRONT = "README"
 SECTIONS = {
     "User guide": (
+        "cases/two_minutes",
         "cases/README",
         "cases/surfaces",
         "cases/contact",
