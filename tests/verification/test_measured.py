@@ -1,6 +1,7 @@
 """Friction of discs and gears, and films, beside measurements, as cases/measured.md publishes them."""
 
 import sys
+import tomllib
 
 import numpy as np
 import pytest
@@ -13,9 +14,12 @@ from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult
 
 sys.path.append(str(CASES / "paper"))
+import bearing_torque
 import cmod
 import dimple
 import discs
+import fit_oil
+import measured_data
 import optical_films
 
 PUBLISHED = (  # computed on a/60
@@ -70,6 +74,39 @@ def test_discs_are_near_their_measured_friction(values, far):
     assert (error <= 0.08).sum() >= 15
     assert np.argwhere(error > 0.15).tolist() == [*far, FIRST_OF_PAO]
     assert np.abs(computed - measured).max() < discs.BAND
+
+
+@pytest.mark.parametrize("file", sorted(measured_data.FOLDER.iterdir()), ids=lambda file: file.stem)
+def test_measured_values_have_source_error_and_conditions(file):
+    data = measured_data.read(file.name)
+    assert set(data.notes) == {"source", "figure", "reading error", "conditions"}
+    assert len({len(column) for column in data.columns.values()}) == 1
+
+
+def test_oil_fitted_to_computed_traction(monkeypatch):
+    """Constants 10 to 20 % off the first guess come back within 1 %, of nine points without heat."""
+    monkeypatch.setattr(fit_oil, "POINTS", 12)
+    rows = {
+        "entrainment_speed": np.repeat([0.5, 2.0, 8.0], 3),
+        "slide_roll_ratio": np.tile([0.002, 0.02, 0.2], 3),
+        "friction": np.zeros(9),
+    }
+    case = tomllib.loads(fit_oil.CASE.read_text())
+    del case["heat"], case["series"]
+    case["fluid"]["temperature"] = 333.15
+    made = fit_oil.Fit(case, rows, 0.005, None)
+    constants = made.first * [1.2, 1.15, 0.9]
+    rows["friction"] = made.friction(constants)
+    found = fit_oil.Fit(case, rows, 0.005, None)
+    found.fit()
+    np.testing.assert_allclose(found.values, constants, rtol=0.01)
+    assert (found.errors < 0.01 * constants).all()
+
+
+@pytest.mark.parametrize("rotation, published", [(400.0, 0.435), (2200.0, 1.495)])
+def test_torque_of_a_bearing(rotation, published):
+    """Both raceways at 55 degrees C beside an independent computation, within 5 %."""
+    assert bearing_torque.torque(rotation, 55.0) == pytest.approx(published, rel=0.05)
 
 
 @pytest.mark.parametrize("number", [3, 4])

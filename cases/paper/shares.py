@@ -1,0 +1,111 @@
+"""Share of the load on the solids over Lambda: line, strip and layer beside published laws.
+
+``ehlpetsc python cases/paper/shares.py [--compute] [-o PICTURE]`` prints the shares of `data/shares.csv`
+beside those of `LAWS` and draws them. ``--compute`` first computes that file again by ``anisotropy.py film``,
+in ten minutes of processor time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from collections.abc import Callable
+from typing import NamedTuple
+
+import anisotropy
+import measured_data
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.special import erf
+
+from ehlpetsc.pictures import style
+
+FILE = measured_data.FOLDER / "shares.csv"
+SPEEDS = (15.0, 3.3, 0.6, 0.15, 0.03)  # m/s
+
+
+class Computed(NamedTuple):
+    """Lay and nodes per half-width of :mod:`anisotropy`, symbol of the picture."""
+
+    lay: float
+    points: int
+    symbol: str
+
+
+MODELS = {"line": Computed(0.01, 128, "s"), "strip": Computed(1.0, 64, "o"), "layer": Computed(0.0, 64, "^")}
+
+
+def exponential(b: float, c: float) -> Callable[[np.ndarray], np.ndarray]:
+    r""":math:`\exp(-B\Lambda^C)`."""
+    return lambda ratio: np.exp(-b * ratio**c)
+
+
+LAWS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "Clarke: 1 - erf": lambda ratio: 1.0 - erf(ratio),
+    "Zhou, Hoeprich, 0.10 µm": exponential(2.1, 0.85),
+    "Zhou, Hoeprich, 0.16 µm": exponential(2.32, 0.97),
+    "Zhou, Hoeprich, 0.24 µm": exponential(1.90, 0.99),
+    "Aihara": exponential(1.8, 1.2),
+}
+"""Clarke's is a fit to electric resistances of discs, Zhou and Hoeprich's to three surfaces of given rms
+height, Aihara's follows Patir and Cheng. Each author has his own Lambda."""
+
+
+def compute() -> None:
+    """Write `FILE` anew."""
+    lines = FILE.read_text(encoding="utf-8").splitlines()
+    notes = [line for line in lines if line.startswith("#")]
+    with FILE.open("w", encoding="utf-8", newline="") as file:
+        file.write("\n".join(notes) + "\n")
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["model", "speed", "lambda_ratio", "friction", "share"])
+        for model, of in MODELS.items():
+            chosen = anisotropy.arguments().parse_args(["film", "--width", "0.5", "--points", str(of.points)])
+            for speed in SPEEDS:
+                found = anisotropy.lubricated(chosen, of.lay, speed)
+                values = f"{found.lambda_ratio:.2f}", f"{found.friction:.4f}", f"{found.share:.4f}"
+                rows.writerow([model, f"{speed:g}", *values])
+
+
+def draw(data: measured_data.Measured) -> Figure:
+    """Share over Lambda, points of the models and lines of the laws."""
+    figure, panel = style.new_figure(1, 1, (6.4, 4.4))
+    dense = np.geomspace(0.02, 3.0, 100)
+    for (name, law), colour in zip(LAWS.items(), style.shades(len(LAWS)), strict=True):
+        panel.plot(dense, law(dense), color=colour, lw=1.2, label=name)
+    for model, of in MODELS.items():
+        rows = data.where(model=model)
+        label = f"computed: {model}"
+        panel.plot(
+            rows["lambda_ratio"], rows["share"], of.symbol + "--", color=style.DARK, lw=0.6, label=label
+        )
+    panel.set(xscale="log", xlabel="Lambda", ylabel="share of load on the solids", ylim=(0.0, 1.05))
+    panel.xaxis.set_major_formatter("{x:g}")
+    panel.grid(lw=0.3)
+    panel.legend(**style.SMALL)
+    style.set_title(figure, "Load on the solids: one spectrum and oil (points), published laws (lines)")
+    return figure
+
+
+def main(words: list[str] | None = None) -> None:
+    """Print the table and write the picture."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--compute", action="store_true", help="compute the shares again")
+    parser.add_argument("-o", "--output", default="shares.png", help="picture [shares.png]")
+    chosen = parser.parse_args(words)
+    if chosen.compute:
+        compute()
+    data = measured_data.read(FILE)
+    print("Lambda: " + ", ".join([*MODELS, *LAWS]))
+    for ratio in dict.fromkeys(data.columns["lambda_ratio"]):
+        computed = [data.where(model=model, lambda_ratio=ratio)["share"][0] for model in MODELS]
+        laws = [float(law(ratio)) for law in LAWS.values()]
+        print(f"{ratio:g}: " + ", ".join(f"{share:.3f}" for share in (*computed, *laws)))
+    style.save(draw(data), chosen.output)
+    print(chosen.output)
+
+
+if __name__ == "__main__":
+    main()
