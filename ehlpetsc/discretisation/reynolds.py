@@ -160,17 +160,19 @@ class Reynolds(NoOil):
         s, leaks = self.scales, self.gap.leaks or inputs.leaks
         return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), self.gap.layer, leaks
 
-    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
-        """See :class:`NoOil`."""
-        history, table = inputs.history, inputs.flow_table
-        at, law = self.properties(q, h, inputs.oil), self.face_law(inputs, self.dx)
-        residual, derivatives = np.zeros(self.size), np.zeros((self.size, self.width))
+    def storage(self, inputs: StepInputs) -> tuple:
+        """Storage of the local nodes for :func:`.finite_volumes.balance`."""
+        history, local = inputs.history, self.local
         if history is None:
             nothing = np.zeros(self.size)
-            storage = nothing, nothing, 0.0, 0.0
-        else:
-            local, rate = self.local, self.cell / history.dt
-            storage = history.m[local], history.extrapolated[local], history.k, rate
+            return nothing, nothing, 0.0, 0.0
+        return history.m[local], history.extrapolated[local], history.k, self.cell / history.dt
+
+    def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
+        """See :class:`NoOil`."""
+        table, storage = inputs.flow_table, self.storage(inputs)
+        at, law = self.properties(q, h, inputs.oil), self.face_law(inputs, self.dx)
+        residual, derivatives = np.zeros(self.size), np.zeros((self.size, self.width))
         balance(at, self.layout, law, table, storage, self.dy, (residual, derivatives))
         if self.has_sides is not None:
             law, rows = self.face_law(inputs, self.dy), (residual, derivatives)

@@ -57,10 +57,10 @@ def tables(kind, contact):
     [  # of all steps
         ("line", "rigid", 87, 169, 0),
         ("line", "layer", 120, 286, 0),
-        ("strip", "rigid", 166, 792, 63),
-        ("strip", "layer", 197, 1311, 73),
-        ("point", "rigid", 197, 892, 96),
-        ("point", "layer", 222, 1439, 107),
+        ("strip", "rigid", 147, 1010, 39),
+        ("strip", "layer", 161, 1342, 26),
+        ("point", "rigid", 183, 868, 87),
+        ("point", "layer", 207, 1351, 104),
     ],
 )
 def test_cost(kind, contact, newton, iterations, builds):

@@ -17,6 +17,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
+from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle
 from ehlpetsc.nonlinear.plane.screened_poisson import fill
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
@@ -167,3 +168,34 @@ def test_blocks_filled_in_place_are_those_of_the_matrix(name, block):
 @pytest.mark.parametrize(("nodes", "functions"), [(65, 22), (129, 22), (257, 33), (513, 47)])
 def test_coarse_space_grows_as_the_root_of_the_nodes(nodes, functions):
     assert CoarseSpace(np.zeros((2, nodes)), False).counts[1] == functions
+
+
+@pytest.mark.parametrize("name", ("layer", "strip", "starved"))
+def test_balance_of_single_cells_is_that_of_the_mesh(name):
+    system, state, inputs = scene(name)
+    problem, reynolds = system.problem, system.problem.reynolds
+    window = problem.share.window
+    q, film = state.q[window], problem.model.state(state.q, state.w).film[window]
+    residual, derivatives = reynolds.evaluate(q, film, inputs)
+    nodes = np.flatnonzero(np.arange(problem.n) % reynolds.n_x)[::-3].copy()
+    rows, by = HeldFilms(reynolds, inputs, q, film).balance(nodes)
+    scale = reynolds.film_scale
+    np.testing.assert_allclose(rows / scale, residual[nodes], rtol=1e-11, atol=1e-11 * abs(residual).max())
+    expected = derivatives[nodes, ::2]
+    np.testing.assert_allclose(by[expected != 0.0] / scale, expected[expected != 0.0], rtol=1e-10)
+
+
+def test_settled_pressures_balance_thin_oil():
+    """Films of a state with a few pressures gone wrong: they are found again."""
+    system, state, inputs = scene("rolling")
+    reynolds, rng = system.problem.reynolds, np.random.default_rng(7)
+    inlet = np.arange(system.n) % reynolds.n_x < 8
+    q, film = (
+        np.where(inlet, 0.01 + 0.02 * rng.random(system.n), state.q),
+        system.model.state(*state[:2]).film,
+    )
+    wrong = np.flatnonzero(inlet & (np.arange(system.n) % reynolds.n_x > 2))[5::40]
+    cells = HeldFilms(reynolds, inputs, q, film)
+    before = abs(cells.balance(wrong)[0]).max()
+    settle(cells, q, wrong)
+    assert abs(HeldFilms(reynolds, inputs, q, film).balance(wrong)[0]).max() < 1e-3 * before

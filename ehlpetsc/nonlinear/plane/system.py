@@ -11,13 +11,16 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.contact import film_scale_of
+from ehlpetsc.discretisation.contact.node_state import full_of_oil
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
 from ehlpetsc.discretisation.plane.deflection import Deflection
+from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.unknowns import pairs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
+from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, HeldFilms, settle
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination
-from ehlpetsc.nonlinear.ranks import global_max
+from ehlpetsc.nonlinear.ranks import all_ranks, global_max
 from ehlpetsc.nonlinear.two_fields import FILM_AFTER_RELEASE, ZERO_TOLERANCE, TwoFields
 from ehlpetsc.physics.scales import Scales
 
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
 
 STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities half as many iterations again
+MANY_CHANGED = 0.1  # of the nodes: too many to settle their pressures after an iteration
 OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more
 
 
@@ -66,6 +70,8 @@ class PlaneMatrices:
 class PlaneFields(TwoFields):
     """System of a contact in the plane."""
 
+    exchange: PlaneExchange
+
     def limit_step(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """As of :class:`TwoFields`; of elastic solids by the pressures to which the limited entries lead.
 
@@ -85,10 +91,31 @@ class PlaneFields(TwoFields):
         if self.inputs.history is None and self.problem.fluid is not None:
             excess = max(excess, np.abs(of_oil).max() / STEP_LIMIT)
         excess = global_max(self.ranks, excess)
+        given = pairs(y.array, self.local)
         if excess > 1.0:
             y.scale(1.0 / excess)
-        step = pairs(y.array, self.local)
-        self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
+            self.contact.clip_step(now, given, FILM_AFTER_RELEASE * self.problem.film_scale)
+        else:
+            given[:] = step
+        reynolds, is_steady = self.problem.reynolds, self.inputs.history is None
+        if isinstance(reynolds, Reynolds) and not is_steady and self.model.lower_bound is None:
+            self._settle(reynolds, now, given)
+
+    def _settle(self, reynolds: Reynolds, now: np.ndarray, step: np.ndarray) -> None:
+        """Change a step so that thin oil and the edges of cavities are where its films have them."""
+        new, before = now - step, now[:, 0]
+        is_changed = (np.abs(step[:, 0]) > MOVED) & (new[:, 0] < HIGHEST)
+        changed = np.flatnonzero(is_changed | (full_of_oil(new[:, 0]) != full_of_oil(before)))
+        if len(changed) > MANY_CHANGED * self.local:  # far from a solution
+            changed = changed[:0]
+        if all_ranks(self.ranks, not len(changed)):
+            return
+        q, w = np.ascontiguousarray(self.exchange.window(new).T)
+        if len(changed):
+            settled = q[self.problem.owned].copy()
+            cells = HeldFilms(reynolds, self.inputs, q, self.contact.state(q, w).film)
+            settle(cells, settled, changed)
+            step[:, 0] = before - settled
 
 
 def return_freed_memory() -> None:

@@ -1,0 +1,169 @@
+r"""Pressures settled with the films held, after a Newton step: edges of cavities, thin oil.
+
+Newton's method moves an edge that advances into a cavity by a node an iteration, and each node that changes
+its kind needs another sparse matrix; where the film is set, viscosity that is exponential in a pressure takes
+it further iterations. Both are a matter of the cells nearby, whose films hardly depend on these pressures:
+the balance of the cells around nodes that have changed, in which only their own q move, is a sparse system
+of some hundred unknowns. A few Newton steps of it leave the next one of the whole system little to do
+(nonlinear elimination). Where the oil is stiff, its pressure follows from the film, and nothing is settled.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import MatrixRankWarning, spsolve
+
+from ehlpetsc.base.compiled import compiled, unsigned
+from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, limit_cavitation
+from ehlpetsc.discretisation.finite_volumes import M_Q, ONE, M, flux_through, positive_extrapolation
+from ehlpetsc.discretisation.plane.cross_flow import flux_across
+from ehlpetsc.discretisation.reynolds import Reynolds
+from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, neighbour
+from ehlpetsc.physics.rheology import FlowLaw
+
+HIGHEST = 0.1  # p0: pressures above it follow from the film; settled ones to .15 cost half an iteration more
+MOVED = 0.02  # p0: change of a pressure to be settled; .01 brings an iteration more than none
+GROWTH = 2  # nodes around a changed one whose q move
+STEPS = 3  # of the local system
+LARGEST = 0.3  # p0: change of a pressure in one of them
+SETTLED = 1e-3  # p0: change of all pressures that ends them
+FREE, HELD = -1, -2  # places of nodes that are not in the local system
+
+
+class HeldFilms:
+    """Balance of single cells of the local nodes, whose films do not change.
+
+    `q`, `film`: of the window.
+    """
+
+    def __init__(self, reynolds: Reynolds, inputs: StepInputs, q: np.ndarray, film: np.ndarray):
+        self.reynolds, self.inputs, self.oil = reynolds, inputs, inputs.oil.begin()
+        self.at, self.storage = reynolds.properties(q, film, self.oil), reynolds.storage(inputs)
+        self.laws = reynolds.face_law(inputs, reynolds.dx), reynolds.face_law(inputs, reynolds.dy)
+        self.film, self.of_mesh = film[reynolds.owned], np.arange(reynolds.local.start, reynolds.local.stop)
+
+    def balance(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Residual of some cells, none at the inlet, and derivatives by q of their stencils, (nodes, 6)."""
+        r, of_flow = self.reynolds, (tuple(self.inputs.flow), self.inputs.flow_table)
+        rows = np.empty(len(nodes)), np.empty((len(nodes), STENCIL))
+        balance_at(self.at, nodes, r.n_x, self.laws, *of_flow, self.storage, (r.dy, r.dx), rows)
+        return rows
+
+    def update(self, nodes: np.ndarray, q: np.ndarray) -> None:
+        """Set q of some nodes."""
+        n_x, values = self.reynolds.n_x, np.empty((len(self.at), len(nodes)))
+        self.oil.fill(q, self.film[nodes], self.of_mesh[nodes], values)
+        self.at[:, (nodes // n_x + 1) * (n_x + 1) + nodes % n_x] = values
+
+
+def settle(cells: HeldFilms, q: np.ndarray, changed: np.ndarray) -> None:
+    """Change q of the local nodes, in place, around some of them that have changed."""
+    (n_y, n_x), place = cells.reynolds.shape, np.full(len(q), FREE, dtype=np.int32)
+    place[q > HIGHEST] = HELD
+    nodes = around(changed, GROWTH, n_y, n_x, place)
+    for _ in range(STEPS if len(nodes) else 0):
+        rows, by = cells.balance(nodes)
+        system = local_system(nodes, by, (n_x, len(q), False), place)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", MatrixRankWarning)
+            change = spsolve(csr_matrix(system, (len(nodes),) * 2).tocsc(), rows)
+        if not np.isfinite(change).all():
+            return
+        flipped = moved(q, nodes, change)
+        if not len(flipped) and np.abs(change).max() < SETTLED:
+            return
+        cells.update(nodes, q[nodes])
+        place[nodes] = FREE
+        near = around(flipped, 1, n_y, n_x, place)
+        place[near] = FREE
+        nodes = around(np.concatenate([nodes, near]), 0, n_y, n_x, place)
+
+
+@compiled
+def around(nodes: np.ndarray, reach: int, n_y: int, n_x: int, place: np.ndarray) -> np.ndarray:
+    """Free nodes up to some distance, none of the inlet; `place` becomes their index among them."""
+    count = 0
+    found = np.empty(len(nodes) * (2 * reach * (reach + 1) + 1), dtype=np.int64)
+    for node in nodes:
+        y, x = node // n_x, node % n_x
+        for j in range(max(y - reach, 0), min(y + reach, n_y - 1) + 1):
+            left = reach - abs(j - y)
+            for i in range(max(x - left, 1), min(x + left, n_x - 1) + 1):
+                if place[j * n_x + i] == FREE:
+                    place[j * n_x + i] = count
+                    found[count] = j * n_x + i
+                    count += 1
+    return found[:count].copy()
+
+
+@compiled
+def balance_at(
+    at: np.ndarray,
+    nodes: np.ndarray,
+    n_x: int,
+    laws: tuple,
+    flow: tuple,
+    table: np.ndarray,
+    storage: tuple,
+    weights: tuple,
+    rows: tuple,
+) -> None:
+    """Mass balance of some local nodes, none at the inlet, as :class:`.reynolds.Reynolds` sums it up.
+
+    `laws`, `weights`: of the fluxes along x and across; `flow`: shear law.
+    `rows`: filled in: residual, shape (nodes,); derivatives by q of the `STENCIL` alone, (nodes, 6).
+    """
+    (along, across), (m_old, extrapolated, k, rate), law = laws, storage, FlowLaw(*flow)
+    (weight_x, weight_y), (residual, derivatives), stride = weights, rows, unsigned(n_x + 1)
+    for j in range(len(nodes)):
+        node, by = unsigned(nodes[j]), derivatives[j]
+        i = node % unsigned(n_x)
+        here = (node // unsigned(n_x) + ONE) * stride + i
+        behind = here - ONE - ONE if i > ONE else here - ONE
+        inflow = flux_through(at, behind, here - ONE, here, table, along)
+        outflow = flux_through(at, here - ONE, here, here + ONE, table, along)
+        below = flux_across(at, here - stride, here, table, across, law)
+        above = flux_across(at, here, here + stride, table, across, law)
+        stored, by_m, _ = positive_extrapolation(at[M, here], m_old[node], k)
+        residual[j] = weight_x * (outflow[0] - inflow[0]) + (stored - extrapolated[node]) * rate
+        residual[j] += weight_y * (above[0] - below[0])
+        by[0], by[1] = -weight_x * inflow[1], weight_x * (outflow[1] - inflow[3])
+        by[2] = weight_x * (outflow[3] - inflow[5]) + by_m * at[M_Q, here] * rate
+        by[2] += weight_y * (above[1] - below[3])
+        by[3], by[4], by[5] = weight_x * outflow[5], -weight_y * below[1], weight_y * above[3]
+
+
+@compiled
+def local_system(
+    nodes: np.ndarray, by: np.ndarray, mesh: tuple, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Entries, columns and pointers of the rows of the local system; `mesh` as of :func:`.neighbour`."""
+    count, most = 0, STENCIL * len(nodes)
+    entries, columns = np.empty(most), np.empty(most, dtype=np.int32)
+    pointers = np.zeros(len(nodes) + 1, dtype=np.int32)
+    for row in range(len(nodes)):
+        for k in range(STENCIL):
+            near = neighbour(nodes[row], k, mesh)
+            if near >= 0 and place[near] >= 0:
+                entries[count], columns[count] = by[row, k], place[near]
+                count += 1
+        pointers[row + 1] = count
+    return entries[:count], columns[:count], pointers
+
+
+@compiled
+def moved(q: np.ndarray, nodes: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Subtract changes, limited, from q in place; return the nodes that change between void and oil."""
+    flipped, count = np.empty(len(nodes), dtype=np.int64), 0
+    for k in range(len(nodes)):
+        before = q[nodes[k]]
+        new = before - limit_cavitation(before, min(max(change[k], -LARGEST), LARGEST))
+        q[nodes[k]] = new
+        if (new > -AMBIENT_TOLERANCE) != (before > -AMBIENT_TOLERANCE):
+            flipped[count] = nodes[k]
+            count += 1
+    return flipped[:count].copy()
