@@ -12,17 +12,13 @@ PAGE = """# Every key of a case file
 `ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys asperity_height` one
 key; `ehlpetsc template roller`, `gears`, `point` and `strip` print a case to begin with. Numbers are in SI
 units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys, values
-out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2.
+out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2. Defaults are bold; a key without one may
+be left out unless it is required.
 
-| symbol | meaning | symbol | meaning |
-|---|---|---|---|
-| $a$, $p_0$ | half-width and maximum pressure by Hertz | $u_1$, $u_2$ | speeds of surfaces 1 and 2 |
-| $E'$ | reduced modulus | $u_{\\max}$ | maximum of both |
-| $h$ | film thickness | $X$, $z$ | abscissa and height of a profile |
-| $p$, $p_c$ | pressure; pressure of the solids | $q$ | shear stress on a surface |
-| $\\theta$ | void fraction | $N$ | cycles to failure |
-| $\\eta$, $\\rho$ | viscosity, density | $\\Delta\\varepsilon$, $\\Delta\\sigma$ | strain and stress ranges |
-| $\\eta_0$, $\\rho_0$ | at ambient pressure | $D$ | damage |
+Symbols: $a$, $p_0$ half-width and maximum pressure by Hertz; $E'$ reduced modulus; $h$ film thickness; $p$, $p_c$ pressure, and that of
+the solids; $\\theta$ void fraction; $\\eta$, $\\rho$ viscosity and density, $\\eta_0$, $\\rho_0$ at ambient pressure; $u_1$, $u_2$
+speeds of the surfaces, $u_{\\max}$ their maximum; $X$, $z$ abscissa and height of a profile; $q$ shear stress on a surface; $N$ cycles to failure;
+$\\Delta\\varepsilon$, $\\Delta\\sigma$ strain and stress ranges; $D$ damage.
 """
 
 BRACKET = r"\(((?:[^()]|\([^()]*\))*)\)"  # with at most one more inside
@@ -58,10 +54,10 @@ def page():
         also = " and `[surface.2]`" if place == "surface.1" else ""
         texts.append(f"\n## {heading}{also}\n\n")
         texts.append(f"{table.text[:1].upper()}{table.text[1:]}.\n\n" if place else "")
-        texts.append("| key | meaning | value | default |\n|---|---|---|---|\n")
+        texts.append("| key | meaning | value |\n|---|---|---|\n")
         for name, key in own_keys(table).items():
-            cells = [_typeset(key.text), *(_escaped(cell) for cell in (_short(value_of(key)), _default(key)))]
-            texts.append(f"| `{name}` | {' | '.join(cells)} |\n")
+            value = "; ".join(filter(None, (_escaped(_short(value_of(key))), _default(key))))
+            texts.append(f"| `{name}` | {_typeset(key.text)} | {value} |\n")
         equations = {name: key.equation for name, key in own_keys(table).items() if key.equation}
         texts += ["\n"] * bool(equations)
         texts += [f"- `{name}`: {_typeset(equation)}.\n" for name, equation in equations.items()]
@@ -77,8 +73,9 @@ def _short(value):
 
 
 def _default(key):
-    """Default of a key, "all" for a list of everything allowed."""
-    return "all" if key.default and key.default == list(key.choices or ()) else default_of(key)
+    """Default of a key in bold, "all" for a list of everything allowed; "required", or "" without one."""
+    default = "all" if key.default and key.default == list(key.choices or ()) else _escaped(default_of(key))
+    return f"**{default}**" if default and not key.required else default
 
 
 def _typeset(text):
