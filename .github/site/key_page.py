@@ -9,15 +9,16 @@ from ehlpetsc.case.keys import default_of, own_keys, tables, value_of
 
 PAGE = """# Every key of a case file
 
-`ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys asperity_height` one
-key; `ehlpetsc template roller`, `gears`, `point` and `strip` print a case to begin with. Numbers are in SI
-units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys, values
-out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2. Defaults are bold; a key without one may
-be left out unless it is required.
+`ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys asperity_height`
+one key; `ehlpetsc template roller`, `gears`, `point` and `strip` print a case to begin with. Numbers are in
+SI units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys,
+values out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2. Defaults are bold; a
+key without one may be left out unless it is required.
 
-Symbols: $a$, $p_0$ half-width and maximum pressure by Hertz; $E'$ reduced modulus; $h$ film thickness; $p$, $p_c$ pressure, and that of
-the solids; $\\theta$ void fraction; $\\eta$, $\\rho$ viscosity and density, $\\eta_0$, $\\rho_0$ at ambient pressure; $u_1$, $u_2$
-speeds of the surfaces, $u_{\\max}$ their maximum; $X$, $z$ abscissa and height of a profile; $q$ shear stress on a surface; $N$ cycles to failure;
+Symbols: $a$, $p_0$ half-width and maximum pressure by Hertz; $E'$ reduced modulus; $h$ film thickness; $p$,
+$p_c$ pressure, and that of the solids; $\\theta$ void fraction; $\\eta$, $\\rho$ viscosity and density,
+$\\eta_0$, $\\rho_0$ at ambient pressure; $u_1$, $u_2$ speeds of the surfaces, $u_{\\max}$ their maximum;
+$X$, $z$ abscissa and height of a profile; $q$ shear stress on a surface; $N$ cycles to failure;
 $\\Delta\\varepsilon$, $\\Delta\\sigma$ strain and stress ranges; $D$ damage.
 """
 
