@@ -32,8 +32,9 @@ ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
-MAX_STEEL = 800.0, "hardened steel softens"  # K: temperature above which
-MAX_OIL = 700.0, "oils crack"  # K
+# temperatures [K] above which: round numbers without a source, as a flash of microseconds does less than a furnace
+MAX_STEEL = 800.0, "hardened steel softens"
+MAX_OIL = 700.0, "oils crack"
 MIN_SHARE_OF_SOLIDS = 0.01  # of the load: with more their coefficient of friction matters
 FLATTENED = 0.01  # film over the rms height of the layer: below it the mesh does not resolve the film
 MAX_DECADES = 300  # log10 of the maximum viscosity that is printed with digits

@@ -99,6 +99,7 @@ class State:
 
 
 MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth solution may be in contact too
+SMALL_PRESSURE = 0.01  # of the smooth solution: less oil pressure does not rise with it from node to node
 LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that counts as much as one step of age
 
 
@@ -159,7 +160,10 @@ def predict(
     h0 = np.maximum(model.state(q0, baseline.w).film, MIN_FILM_DIVISOR * problem.film_scale)
     q = q0 + advected(rows(level.q - q0), distance).ravel()
     # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
-    smallest = np.minimum(*neighbours(rows(level.q), distance)).ravel()
+    pair = neighbours(rows(level.q), distance)
+    smallest, largest = np.minimum(*pair).ravel(), np.maximum(*pair).ravel()
+    # no oil pressure in the guess where there was next to none: through an open gap it would drive a flood
+    q = np.where(largest < SMALL_PRESSURE * q0, np.minimum(q, np.maximum(largest, PRESSURE_AFTER_REFILL)), q)
     in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the baseline
     full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, smallest), in_cavity)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))

@@ -64,6 +64,18 @@ def test_cavity_is_not_advected_into_oil():
     assert (q[x > 0.6] < 0.0).all() and q.min() >= -1.0
 
 
+def test_valley_without_pressure_does_not_get_that_of_the_smooth_film():
+    """At the edge of the contact, where the smooth pressure rises from node to node."""
+    problem = problem_of("mixed")
+    smooth, _ = smooth_and_rough(problem)
+    smooth = smooth._replace(q=np.where(problem.x > -1.0, 0.06, 0.0))
+    valley = np.abs(problem.x + 1.0) < 0.2
+    level = smooth._replace(travelled=1e-6, q=np.where(valley, 1e-6, smooth.q))
+    q, _ = predict(problem, smooth, [level], [1.0])
+    assert np.abs(q[np.abs(problem.x + 1.0) < 0.15]).max() <= 1e-6
+    assert q[problem.x > 0.0] == pytest.approx(0.06)
+
+
 def test_prediction_uses_the_level_nearest_to_whole_nodes():
     problem = problem_of()
     smooth, _ = smooth_and_rough(problem)

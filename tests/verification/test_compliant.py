@@ -138,6 +138,19 @@ def test_steady_contacts_converge_with_the_default_stiffness(speed):
     assert state.load_error < 1e-10 and state.mass_error < 1e-6 and state.h_min > 0.0
 
 
+def test_a_layer_flattened_to_nothing_costs_no_halved_steps():
+    """10 nm under a measured profile at 1 mm/s, flattened to .1 nm: rigid contact is its limit."""
+    rough = {
+        f"surface.{body}.{key}": x for body in (1, 2) for key, x in (("short_cutoff", 25e-6), ("scale", 2.0))
+    }
+    scene = {"contact.model": "mixed", "contact.asperity_height": 10e-9, "motion.entrainment_speed": 1e-3}
+    mesh = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 100}
+    time = {"time.travel": 0.8, "time.courant": 0.5}
+    found = run(None, given=load(CASES / "table1_rough.toml", rough | scene | mesh | time))
+    assert found["retries"].sum() == 0 and found["newton"][1:].mean() < 7.5
+    assert found["contact_share"].max() > 0.2 and found["mass_error"].max() < 1e-6
+
+
 def test_a_thin_layer_tends_to_rigid_contact():
     """A layer of vanishing height carries at a film of zero, rigid contact at 0.1 nm; slow, smooth."""
     given = SMOOTH | {"motion.entrainment_speed": 1e-3}

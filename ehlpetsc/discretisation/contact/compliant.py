@@ -144,7 +144,7 @@ def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float,
     for i in range(len(now)):
         q, w, new_q = now[i, 0], now[i, 1], now[i, 0] - step[i, 0]
         solids, slope = asperity_pressure(max(w, smallest), *law)
-        rise = 0.0 if w < smallest else -slope * step[i, 1]
+        rise = 0.0 if w < smallest else max(-slope * step[i, 1], -solids)
         total = min(max(q, 0.0) + solids, limit)
         new_total = min(max(new_q, 0.0) + solids + rise, limit)
         change = abs(new_total - total)
