@@ -32,7 +32,7 @@ ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
-# temperatures [K] above which: round numbers without a source, as a flash of microseconds does less than a furnace
+# temperatures [K] above which: round numbers without a source; a flash does less than a furnace
 MAX_STEEL = 800.0, "hardened steel softens"
 MAX_OIL = 700.0, "oils crack"
 MIN_SHARE_OF_SOLIDS = 0.01  # of the load: with more their coefficient of friction matters
