@@ -4,13 +4,95 @@ from __future__ import annotations
 
 from array import array
 from hashlib import sha256
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.toml_file import toml_text
 
 DIGEST_LENGTH = 16  # characters
+
+
+class Kind(NamedTuple):
+    """Quantities and parts in which the kinds of contact differ.
+
+    `is_whole`: whether integrals are of the whole contact; of lines and strips they are per metre of width.
+    `radii`: after a unit that another kind does not have.
+    `is_areal`: whether surfaces are maps; of a line they are profiles.
+
+    Parts, ``module:name``, each loaded where it is used, so that a kind loads no module of another one:
+    `geometry`: a :class:`ehlpetsc.physics.geometry.Geometry`.
+    `surface`: rough surface of a case, its scales, the table of the surface and its passage.
+    `system`: system of equations, see :func:`ehlpetsc.nonlinear.scheme.solver_of`.
+    `linear_solver`: options of PETSc's linear solver, from those of the user.
+    `faults`: of keys that the kind does not have, see :func:`ehlpetsc.case.kinds.faults_of_kind`.
+    `work_time`: see :func:`ehlpetsc.run.forecast.work_time`.
+    `words`: of the summary, :class:`ehlpetsc.run.explain.Words`.
+    `picture`: of the surfaces of a case, see :func:`ehlpetsc.pictures.profiles.draw_case`.
+    `sweeps`: solver by the paper's sweeps; "": none.
+    """
+
+    is_whole: bool
+    radii: str
+    is_areal: bool
+    geometry: str
+    surface: str
+    system: str
+    linear_solver: str
+    faults: str
+    work_time: str
+    words: str
+    picture: str
+    sweeps: str = ""
+
+    @property
+    def mean_height(self) -> str:
+        """Name of the mean deviation of the heights of a surface."""
+        return "Sa" if self.is_areal else "Ra"
+
+    def part(self, name: str) -> Any:
+        """Load a part."""
+        module, _, attribute = getattr(self, name).partition(":")
+        return getattr(import_module(f"ehlpetsc.{module}"), attribute)
+
+
+KINDS = {
+    "line": Kind(
+        is_whole=False,
+        radii=" in a line contact or a strip, of one radius",
+        is_areal=False,
+        geometry="physics.geometry:LINE",
+        surface="surfaces.roughness:moving_profile",
+        system="nonlinear.line.system:line_system",
+        linear_solver="nonlinear.options:line_solver",
+        faults="case.kinds:line_faults",
+        work_time="run.forecast:line_time",
+        words="run.explain:LINE",
+        picture="pictures.profiles:draw_profiles",
+        sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
+    )
+}
+KINDS["strip"] = KINDS["line"]._replace(
+    is_areal=True,
+    geometry="physics.geometry:STRIP",
+    surface="surfaces.roughness:moving_map",
+    system="nonlinear.plane.system:plane_system",
+    linear_solver="nonlinear.options:plane_solver",
+    faults="case.kinds:plane_faults",
+    work_time="run.forecast:plane_time",
+    words="run.explain:STRIP",
+    picture="pictures.profiles:draw_areas",
+    sweeps="",
+)
+KINDS["point"] = KINDS["strip"]._replace(
+    is_whole=True,
+    radii=" in a point contact, of two radii",
+    geometry="physics.geometry:POINT",
+    faults="case.kinds:point_faults",
+    words="run.explain:POINT",
+)
+"""Kinds of contact by name, :attr:`Case.kind`."""
 
 
 class Contact(Values):
@@ -66,7 +148,7 @@ class Case(Values):
 
     @property
     def kind(self) -> str:
-        """Kind of contact, a key of `physics.geometry.GEOMETRIES`."""
+        """Kind of contact, a key of `KINDS`."""
         if self.contact.radius_across is not None:
             return "point"
         return "line" if self.mesh.width is None else "strip"
@@ -87,3 +169,8 @@ def with_digests(tables: dict[str, Any]) -> dict[str, Any]:
             kept = {key: value for key, value in table.items() if key not in ("x", "y", "z")}
             surfaces[side] = {"file": f"heights_{digest}.npy"} | kept
     return tables | {"surface": surfaces} if surfaces else tables
+
+
+def changed_files(before: dict[str, str], now: dict[str, str]) -> str:
+    """Keys of the files whose digests differ, joined by "and"; "": none. Files in one alone do not count."""
+    return " and ".join(key for key in now if before.get(key, now[key]) != now[key])

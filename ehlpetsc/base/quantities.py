@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Column, Field, StepScalar, Values
 
 MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
@@ -33,10 +34,10 @@ SCENES: dict[str, Callable[[Any], bool]] = {
     "mixed": lambda case: case.contact.has_contact_pressure,
     "compliant": lambda case: case.contact.asperity_height is not None,
     "variable": lambda case: case.conditions is not None,
-    "mixed row": lambda case: SCENES["mixed"](case) and case.kind != "point",
-    "mixed point": lambda case: SCENES["mixed"](case) and case.kind == "point",
-    "compliant row": lambda case: SCENES["compliant"](case) and case.kind != "point",
-    "compliant point": lambda case: SCENES["compliant"](case) and case.kind == "point",
+    "mixed row": lambda case: SCENES["mixed"](case) and not KINDS[case.kind].is_whole,
+    "mixed point": lambda case: SCENES["mixed"](case) and KINDS[case.kind].is_whole,
+    "compliant row": lambda case: SCENES["compliant"](case) and not KINDS[case.kind].is_whole,
+    "compliant point": lambda case: SCENES["compliant"](case) and KINDS[case.kind].is_whole,
 }
 """Whether a case has what a quantity needs; rows: lines and strips, of which integrals are per width."""
 
@@ -258,13 +259,11 @@ def of_every_case(table: Mapping[str, Field]) -> list[str]:
     return [name for name, field in table.items() if not field.only]
 
 
-MEAN_HEIGHT = {"line": "Ra", "strip": "Sa", "point": "Sa"}
-"""Name of the mean deviation of the heights of a surface by the kind of contact."""
-
-
 def unit_in(quantity: Field, contact: str = "line") -> str:
-    """Unit of a quantity of a "line", "strip" or "point" contact: only of the last one that of the whole."""
-    return PER_METRE[quantity.units] if quantity.integrated and contact != "point" else quantity.units
+    """Unit of a quantity of a kind of contact: of the whole one or per metre of its width."""
+    return (
+        PER_METRE[quantity.units] if quantity.integrated and not KINDS[contact].is_whole else quantity.units
+    )
 
 
 def dims_in(quantity: Field, axes: Sequence[str] = ("x",)) -> tuple[str, ...]:

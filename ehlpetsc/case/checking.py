@@ -7,19 +7,25 @@ from collections.abc import Collection, Iterator, Set
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, converted
-from ehlpetsc.case.messages import allowed, celsius, show, similar, unknown
 from ehlpetsc.case.tables import CASE, key_of
-from ehlpetsc.case.values import NotAllowed, is_allowed, is_word, value_of
+from ehlpetsc.case.values import (
+    NotAllowed,
+    allowed,
+    celsius,
+    is_allowed,
+    is_word,
+    show,
+    similar,
+    unknown,
+    value_of,
+)
 
 NUMBERS_ONLY = {"half-widths", "boundary films"}  # units that are no units of measurement
-KINDS = (
-    " in a line contact or a strip, of one radius",
-    " in a point contact, of two radii",
-)  # after the allowed unit of a key
 
 
 class Fault(NamedTuple):
@@ -47,7 +53,7 @@ def in_si(data: Tables) -> list[Fault]:
                 holder[name] = converted(holder[name], in_contact(key, data).unit, key.is_difference)
             except UnitFault as fault:
                 is_other = key.point_unit and str(fault).endswith(f"one of {in_contact(key, data).unit}")
-                why = KINDS[is_point(data)] if is_other else ""
+                why = KINDS["point" if is_point(data) else "line"].radii if is_other else ""
                 faults.append(Fault(place, f"{place} = {fault}{why}"))
     return faults
 

@@ -18,11 +18,10 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
 from ehlpetsc.case.checking import check, in_contact, is_point
-from ehlpetsc.case.messages import shortened
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
-from ehlpetsc.case.values import is_number
-from ehlpetsc.physics.geometry import GEOMETRIES
+from ehlpetsc.case.values import is_number, shortened
+from ehlpetsc.physics.geometry import LINE, POINT
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
@@ -204,7 +203,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         return tables
     contact, motion, time = (tables.get(name, {}) for name in ("contact", "motion", "time"))
     load, radius, u, xi = table.reference()
-    kind = "point" if is_point(tables) else "line"
+    geometry = POINT if is_point(tables) else LINE
     radii, ratio = _radii(contact.get("radius"), radius)
     contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
@@ -217,7 +216,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         elastic = [contact.get(key) for key in ("youngs_modulus", "poisson_ratio")]
         if None not in elastic:
             modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
-            half_width = GEOMETRIES[kind].half_width(load, radius, modulus, ratio)
+            half_width = geometry.half_width(load, radius, modulus, ratio)
             time["travel"] = float(table.swept_length() / half_width)
     return tables | {"contact": contact, "motion": motion, "time": time}
 

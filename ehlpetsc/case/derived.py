@@ -263,7 +263,7 @@ def _film_friction(case: Values, path: ContactPath) -> np.ndarray:
     from ehlpetsc.gears.path import hertz
     from ehlpetsc.physics.film_formulas import contact_films
     from ehlpetsc.physics.flash_temperature import expected_friction
-    from ehlpetsc.physics.geometry import GEOMETRIES
+    from ehlpetsc.physics.geometry import LINE
     from ehlpetsc.physics.operation import Conditions
 
     modulus, found = modulus_of(case), np.zeros(len(path.rho))
@@ -271,7 +271,7 @@ def _film_friction(case: Values, path: ContactPath) -> np.ndarray:
     half_widths = hertz(path, modulus)[0]
     for k, conditions in enumerate(map(Conditions._make, columns)):
         if conditions.load > 0.0:
-            film, _ = contact_films(GEOMETRIES["line"], modulus, math.inf, case.fluid, conditions)
+            film, _ = contact_films(LINE, modulus, math.inf, case.fluid, conditions)
             found[k] = expected_friction(
                 case.fluid, conditions.load, half_widths[k], conditions.sliding, film
             )

@@ -9,8 +9,8 @@ from pathlib import Path
 from ehlpetsc.base.command_line import CommandParser, exit_status, put
 from ehlpetsc.base.declarations import Key, KeyTable, plain
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.case.messages import nearest, value_text
 from ehlpetsc.case.tables import CASE
+from ehlpetsc.case.values import nearest, value_text
 
 EXAMPLES = ("roller", "gears", "point", "strip")  # files beside this one
 

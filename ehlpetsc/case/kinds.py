@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.case.checking import Fault, is_point
-from ehlpetsc.case.messages import show
 from ehlpetsc.case.tables.surface import areal_keys
-from ehlpetsc.physics.geometry import GEOMETRIES
+from ehlpetsc.case.values import show
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
-LINE = "line"  # the kind of contact whose surfaces are profiles
 OF_GEARS = {"contact": ("load", "radius"), "motion": ("entrainment_speed", "slide_roll_ratio")}
 MAX_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 
@@ -64,10 +62,11 @@ def approach_faults(data: Tables) -> list[Fault]:
 
 def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
     """Faults of keys that a line contact, or a plane, does not have; `surfaces` by side."""
-    return FAULTS[case.kind](case, data, surfaces)
+    return KINDS[case.kind].part("faults")(case, data, surfaces)
 
 
-def _line_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+def line_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+    """Faults of keys of planes."""
     reason = "of maps, and a line contact has profiles; leave it out"
     keys = [f"surface.{side}.{key}" for side, spec in surfaces.items() if spec for key in areal_keys(spec)]
     faults = [Fault("", f"{key}: {reason}") for key in keys]
@@ -75,7 +74,8 @@ def _line_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -
     return faults + [Fault("output.xdmf", file)] * case.output.xdmf
 
 
-def _plane_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+def plane_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+    """Faults of keys of line contacts, and of too many nodes."""
     faults = []
     if "near_field" in data["mesh"]:
         text = (
@@ -85,21 +85,15 @@ def _plane_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) 
     return faults + _size_faults(case)
 
 
-def _point_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+def point_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
+    """Faults of keys of line contacts and strips."""
     life = Fault("life", "[life]: of line contacts and strips, not of a point; leave it out")
-    return [life] * bool(case.life) + _plane_faults(case, data, surfaces)
-
-
-FAULTS: dict[str, Callable[[Case, Tables, dict[str, Values | None]], list[Fault]]] = {
-    LINE: _line_faults,
-    "strip": _plane_faults,
-    "point": _point_faults,
-}
+    return [life] * bool(case.life) + plane_faults(case, data, surfaces)
 
 
 def _size_faults(case: Case) -> list[Fault]:
     """Fault of a plane with too many nodes."""
-    geometry, contact = GEOMETRIES[case.kind], case.contact
+    geometry, contact = KINDS[case.kind].part("geometry"), case.contact
     dry = geometry.dry(contact, reduced_modulus(contact.youngs_modulus, contact.poisson_ratio))
     rows = geometry.rows(case.mesh, dry)
     if rows * case.mesh.nodes <= MAX_NODES:

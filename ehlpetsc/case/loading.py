@@ -10,6 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import Tables, parse_toml, plain, read_text
@@ -23,11 +24,10 @@ from ehlpetsc.case.derived import (
     with_derived,
     with_layer_stiffness,
 )
-from ehlpetsc.case.kinds import LINE, approach_faults, faults_of_kind, given_by_gears
-from ehlpetsc.case.messages import shortened, show
+from ehlpetsc.case.kinds import approach_faults, faults_of_kind, given_by_gears
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES, file_digests
-from ehlpetsc.case.values import is_number
+from ehlpetsc.case.values import is_number, shortened, show
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
@@ -252,7 +252,7 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
             _check_surface(folder, spec, whole)
         except ProfileError as error:
             key = "z" if "z" in tables[side] else "file"
-            of_map = whole and whole.kind != LINE  # of several keys
+            of_map = whole and KINDS[whole.kind].is_areal  # of several keys
             given = "" if of_map else f".{key} = {show(tables[side][key])}"
             faults.append(Fault("", f"surface.{side}{given}: {error}"))
     return case, faults + of_kind
@@ -260,7 +260,7 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
 
 def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:
     """Raise `ProfileError` for a surface that cannot be used in a case; None: in any kind of contact."""
-    if case is not None and case.kind != LINE:
+    if case is not None and KINDS[case.kind].is_areal:
         from ehlpetsc.surfaces.areal_samples import areal_samples
 
         grid = Scales.of(case).grid

@@ -6,12 +6,12 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.case.tables import Case
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.results.output_guard import check_derived, check_output_path, inputs_of
-from ehlpetsc.surfaces.digests import changed_files
 
 ENDS = ("passes", "max_solved")  # keys of [life] that may change between calls
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")

@@ -8,6 +8,7 @@ from typing import Any
 
 from petsc4py import PETSc
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import UsageError
 
 DEFAULTS = {
@@ -87,7 +88,7 @@ class RunOptions:
         kind: str = "line",
     ) -> None:
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
-        self._linear_solver = LINEAR_SOLVERS[kind]
+        self._linear_solver = KINDS[kind].part("linear_solver")
         self._of_case, self._of_call, self._depth = dict(of_case or {}), dict(given or {}), 0
         self._entered: list = []
         self._saved: dict = {}
@@ -178,7 +179,7 @@ class RunOptions:
             table.hasName(name)  # marks it as read, for -options_left
 
 
-def _line_solver(wanted: dict) -> dict:
+def line_solver(wanted: dict) -> dict:
     """Options with those of KSP and PC: this program's types unless the options of the user exclude them."""
     if any(wanted.get(name, value) != value for name, value in PRECONDITIONER.items()):
         return PETSC_FACTORISATION | wanted
@@ -187,16 +188,13 @@ def _line_solver(wanted: dict) -> dict:
     return PRECONDITIONER | KRYLOV | wanted
 
 
-def _plane_solver(wanted: dict) -> dict:
-    """As :func:`_line_solver`, in the plane: options of preconditioners are those of the pressures."""
+def plane_solver(wanted: dict) -> dict:
+    """As :func:`line_solver`, in the plane: options of preconditioners are those of the pressures."""
     inner = {name: value for name, value in wanted.items() if name.startswith(OF_PRECONDITIONERS)}
     if any(name.startswith("sub_") for name in inner):  # on one rank else of no effect
         inner = {"pc_type": "asm"} | inner
     inner = {INNER_PREFIX + name: value for name, value in (INNER | inner).items()}
     return PLANE | inner | wanted | {name: PLANE[name] for name in ("pc_type", "pc_python_type")}
-
-
-LINEAR_SOLVERS = {"line": _line_solver, "strip": _plane_solver, "point": _plane_solver}
 
 
 def unused() -> list[str]:

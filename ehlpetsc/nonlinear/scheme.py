@@ -2,42 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from petsc4py import PETSc
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
-from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
 
-
-def _line() -> Callable[..., TwoFields]:
-    from ehlpetsc.nonlinear.line.system import line_system
-
-    return line_system
-
-
-def _plane() -> Callable[..., TwoFields]:
-    from ehlpetsc.nonlinear.plane.system import plane_system
-
-    return plane_system
-
-
-def _line_sweeps() -> type[GaussSeidelSolver]:
-    from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
-
-    return GaussSeidelSolver
-
-
-SYSTEMS = {"line": _line, "strip": _plane, "point": _plane}  # a kind loads no module of another one
-SWEEPS = {"line": _line_sweeps}
 ALLOWED = ("newton", "sweep")
 
 
@@ -54,13 +33,13 @@ def solver_of(
 
     `film_scale`: expected film in a^2/R.
     """
-    name = options.value("ehl_scheme")
+    name, kind = options.value("ehl_scheme"), KINDS[case.kind]
     check_scheme(name)
     if name != "sweep":
         bounded = options.value("snes_type", "vinewtonrsls") == "vinewtonrsls"
         tolerance = options.real("snes_vi_zero_tolerance", ZERO_TOLERANCE) if bounded else 0.0
-        return NewtonSolver(SYSTEMS[case.kind]()(case, scales, film_scale, comm, tolerance), options)
-    if case.kind not in SWEEPS:
+        return NewtonSolver(kind.part("system")(case, scales, film_scale, comm, tolerance), options)
+    if not kind.sweeps:
         raise UsageError(
             f"-ehl_scheme sweep: the paper's sweeps solve line contacts, not a {case.kind}; leave it out"
         )
@@ -68,4 +47,4 @@ def solver_of(
         raise UsageError("-ehl_scheme sweep: a dry contact has no Reynolds equation to pair; leave it out")
     if case.contact.has_contact_pressure:
         raise UsageError("-ehl_scheme sweep: the paper's sweeps solve direct contact only; leave it out")
-    return SWEEPS[case.kind]()(case, scales, film_scale, options.real("snes_atol"))
+    return kind.part("sweeps")(case, scales, film_scale, options.real("snes_atol"))

@@ -258,11 +258,6 @@ def point_film(M: float, L: float, ratio: float, two_u: float, slope: float) -> 
     return nijenbanning_central_film(M, L, ratio) * math.sqrt(two_u) * slope**2
 
 
-GEOMETRIES = {
-    "line": Geometry(line, line_half_width, one_row, line_grid, line_groups, line_films, line_film),
-    "strip": Geometry(line, line_half_width, strip_rows, strip_grid, line_groups, line_films, line_film),
-    "point": Geometry(
-        ellipse, point_half_width, point_rows, point_grid, point_groups, point_films, point_film
-    ),
-}
-"""Kinds of contact by name, :attr:`ehlpetsc.case.tables.Case.kind`."""
+LINE = Geometry(line, line_half_width, one_row, line_grid, line_groups, line_films, line_film)
+STRIP = LINE._replace(rows=strip_rows, grid=strip_grid)
+POINT = Geometry(ellipse, point_half_width, point_rows, point_grid, point_groups, point_films, point_film)

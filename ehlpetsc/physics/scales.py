@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
-from ehlpetsc.physics.geometry import GEOMETRIES, Geometry
+from ehlpetsc.base.case import KINDS
+from ehlpetsc.physics.geometry import Geometry
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.operation import Conditions
 
@@ -122,7 +123,7 @@ class Scales:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""
         contact, mesh = case.contact, case.mesh
         modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
-        geometry = GEOMETRIES[case.kind]
+        geometry = KINDS[case.kind].part("geometry")
         dry = geometry.dry(contact, modulus)
         a, b, p0 = dry
         u, xi = (case.motion.entrainment_speed, case.motion.slide_roll_ratio) if case.motion else (0.0, 0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.base.quantities import MEAN_HEIGHT
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
@@ -30,8 +30,7 @@ CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
 LENGTH, AREA, VOLUME = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
-# of contact and of its depths by kind of contact
-MEASURES = {"line": (LENGTH, AREA), "strip": (LENGTH, AREA), "point": (AREA, VOLUME)}
+MEASURES = (LENGTH, AREA), (AREA, VOLUME)  # of contact and of its depths, per width and of the whole contact
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 
@@ -43,7 +42,7 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     sides = [side for side in ("1", "2") if rough and rough.side(side)]
     if not sides:
         raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    figure = DRAWN[case.kind]({side: rough.side(side) for side in sides}, case, scales)
+    figure = KINDS[case.kind].part("picture")({side: rough.side(side) for side in sides}, case, scales)
     texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
     if case.conditions is not None:
         texts.append("of the widest contact; conditions over time")
@@ -53,7 +52,8 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     return figure
 
 
-def _draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> Figure:
+def draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> Figure:
+    """Profiles of a line contact, one above the other."""
     size = (CASE_SIZE[0], CASE_SIZE[1] * len(surfaces) + 0.5)
     figure, axes = style.new_figure(len(surfaces), 1, size, squeeze=False)
     for panel, (side, profile) in zip(axes[:, 0], surfaces.items(), strict=True):
@@ -62,14 +62,12 @@ def _draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> 
     return figure
 
 
-def _draw_maps(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
+def draw_areas(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
+    """Maps of a strip or a point contact."""
     from ehlpetsc.pictures.areal_surface import draw_maps
 
     parts = [passing(surface, case, scales) for surface in surfaces.values()]
     return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)
-
-
-DRAWN: dict[str, Callable[..., Figure]] = {"line": _draw_profiles, "strip": _draw_maps, "point": _draw_maps}
 
 
 def passing(profile: RoughSurface, case: Case, scales: Scales) -> tuple[float, float]:
@@ -159,7 +157,8 @@ def draw_pressure(axes: Axes, results: list[Result]) -> None:
 
 def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the area or volume set plastically by the end of each pass, and Ra or Sa of both surfaces."""
-    (factor, word, unit), name = MEASURES[result.case.kind][1], MEAN_HEIGHT[result.case.kind]
+    kind = KINDS[result.case.kind]
+    (factor, word, unit), name = MEASURES[kind.is_whole][1], kind.mean_height
     values = factor * np.array([row["set_volume"] for row in rows])
     axes.plot(*_over_passes(axes, values), ".-", color=LAST, label=f"plastic {word}")
     axes.set(ylabel=f"plastic {word} of both surfaces [{unit}]", ylim=(0.0, 1.1 * values.max() or 1.0))
@@ -175,8 +174,9 @@ def draw_plastic_deformation(axes: Axes, rows: list[dict], result: Result) -> No
 
 def draw_contact(axes: Axes, rows: list[dict], result: Result) -> None:
     """Draw the means of the load fraction of the solids and of the contact length or area."""
-    factor, word, unit = MEASURES[result.case.kind][0]
-    names = "contact_share", "contact_area" if result.case.kind == "point" else "contact_length"
+    is_whole = KINDS[result.case.kind].is_whole
+    factor, word, unit = MEASURES[is_whole][0]
+    names = "contact_share", "contact_area" if is_whole else "contact_length"
     share, length = (np.array([row.get(name) for row in rows], float) for name in names)
     axes.plot(*_over_passes(axes, share), ".-", color=LAST)
     axes.set_ylabel("share of the load on solids", color=LAST)

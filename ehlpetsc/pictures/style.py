@@ -14,8 +14,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.physics.geometry import GEOMETRIES, Dry
+from ehlpetsc.physics.geometry import Dry
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.output_guard import replacing
@@ -181,7 +182,7 @@ def _whole_hertz_at(result: Result, frame: int) -> Dry:
     load, radius = _at(result, "load_given", frame), _at(result, "radius", frame)
     across = contact.radius_across and radius * contact.radius_across / contact.radius
     given = Values({"load": load, "radius": radius, "radius_across": across})
-    return GEOMETRIES[result.case.kind].dry(given, modulus)
+    return KINDS[result.case.kind].part("geometry").dry(given, modulus)
 
 
 def _at(result: Result, name: str, frame: int) -> float:

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
+from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 from ehlpetsc.results.output_guard import atomic_write, check_derived, file_path
-from ehlpetsc.surfaces.digests import changed_files
-from ehlpetsc.surfaces.exports import WRITERS, GridField
 
 if TYPE_CHECKING:
     from xarray import Dataset, Variable
@@ -235,6 +234,8 @@ class Result:
         `frame`: index; negative ones count from the end.
         """
         target = file_path(path)
+        from ehlpetsc.surfaces.exports import WRITERS, GridField
+
         check_derived(target, [self.path], tuple(WRITERS), "export")
         if name in ("surface/1", "surface/2"):
             x, values, unit = self[f"{name}/s"][:], self[f"{name}/z"][:], "m"

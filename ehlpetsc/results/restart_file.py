@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
+from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.toml_file import plain
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
-from ehlpetsc.surfaces.digests import changed_files
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case

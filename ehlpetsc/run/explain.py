@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import CommandParser, ProgressLine, duration, exit_status, put
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.combinations import combinations, keys_of
@@ -88,13 +89,11 @@ def _across(edge: float, unit: str) -> str:
 
 
 PER_LENGTH = 1e-3, "kN/m"
-KINDS = {
-    "line": Words(_dry_line, "Moes", PER_LENGTH, lambda s: "", [RIDGES]),
-    "strip": Words(_dry_strip, "Moes", PER_LENGTH, lambda s: _across(0.5 * s.grid.breadth, "a"), []),
-    "point": Words(
-        _dry_point, POINT_FORMULAS, (1.0, "N"), lambda s: _across(s.grid.axes[0][-1] * s.a / s.b, "b"), []
-    ),
-}
+LINE = Words(_dry_line, "Moes", PER_LENGTH, lambda s: "", [RIDGES])
+STRIP = Words(_dry_strip, "Moes", PER_LENGTH, lambda s: _across(0.5 * s.grid.breadth, "a"), [])
+POINT = Words(
+    _dry_point, POINT_FORMULAS, (1.0, "N"), lambda s: _across(s.grid.axes[0][-1] * s.a / s.b, "b"), []
+)
 
 
 def main(words: list[str]) -> int:
@@ -138,7 +137,7 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
-        KINDS[case.kind].lay * bool(rough),
+        KINDS[case.kind].part("words").lay * bool(rough),
         _size(case, scales, rough),
         _resolution(case, scales),
         [f"Warning: {line}" for line in warnings(case, scales, rough)],
@@ -173,7 +172,7 @@ def _dry(case: Case, s: Scales) -> list[str]:
     approach, load = case.contact.approach, f"load {s.load:g} {load_unit(case)}"
     if approach is not None:
         load = f"approach {1e6 * approach:g} um, dry {load}"
-    return KINDS[case.kind].dry(s, f"{load}, reduced modulus {s.E / 1e9:.4f} GPa")
+    return KINDS[case.kind].part("words").dry(s, f"{load}, reduced modulus {s.E / 1e9:.4f} GPa")
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:
@@ -200,7 +199,7 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
-    formulas = KINDS[case.kind].film_formulas
+    formulas = KINDS[case.kind].part("words").film_formulas
     oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
         *oil,
@@ -254,7 +253,7 @@ def _variable(case: Case, s: Scales) -> list[str]:
 
     repeats = f", {table.repeat} times" if table.repeat > 1 else ""
     moved = 1e3 * s.a * case.time.travel
-    factor, unit = KINDS[case.kind].load
+    factor, unit = KINDS[case.kind].part("words").load
     return [
         f"Conditions of a {origin}{repeats}: load {range_of(factor * table.load, unit)}, "
         f"radius {range_of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
@@ -271,7 +270,7 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     nodes, spacing = (
         " x ".join(f(v) for v in vs[::-1]) for f, vs in ((str, s.grid.shape), (_um, s.grid.spacings))
     )
-    extent = f"from {s.x[0]:g} to {s.x[-1]:g} a{KINDS[case.kind].across(s)}"
+    extent = f"from {s.x[0]:g} to {s.x[-1]:g} a{KINDS[case.kind].part('words').across(s)}"
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
         *wave_lines(case, s),

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ehlpetsc import __version__
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.physics import film_formulas
@@ -43,30 +43,23 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps [s]."""
-    return WORK_TIMES[case.kind](case, s, rough)
+    return KINDS[case.kind].part("work_time")(case, s, rough)
 
 
-def _line_time(case: Case, s: Scales, rough: Roughness | None) -> float:
+def line_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps of a line contact [s]."""
     solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
     each = ITERATION_SECONDS + NODE_SECONDS * s.grid.n
     return passes * (iterations(case, s, rough) + solves) * each
 
 
-def _plane_time(case: Case, s: Scales, rough: Roughness | None) -> float:
+def plane_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps of a plane [s]."""
     fraction = _rough_fraction(case, s, rough)
     each = (1.0 - fraction) * SMOOTH_SECONDS
     each += fraction * (MIXED_SECONDS if _is_mixed(case, s, rough) else FILM_SECONDS)
     count = (steps(s) * case.time.passes if case.time else 0) + PLANE_START
     return count * (STEP_SECONDS + each * (s.grid.n / PLANE_NODES) ** GROWTH)
-
-
-WORK_TIMES: dict[str, Callable[[Case, Scales, Roughness | None], float]] = {
-    "line": _line_time,
-    "strip": _plane_time,
-    "point": _plane_time,
-}
 
 
 def memory(s: Scales, rough: Roughness | None) -> float:

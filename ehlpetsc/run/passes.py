@@ -9,8 +9,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.base.quantities import MEAN_HEIGHT, STEP_SCALARS, unit_in
+from ehlpetsc.base.quantities import STEP_SCALARS, unit_in
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.results.restart_file import is_restart_of
@@ -94,7 +95,7 @@ class Passes:
         row["added"] = row.get("set_volume", 0.0) - before
         self.index.rows.append(row)
         self.index.write()
-        self._print(line(row, unit, MEAN_HEIGHT[self.case.kind]))
+        self._print(line(row, unit, KINDS[self.case.kind].mean_height))
 
     def _print_end(self) -> None:
         rows, shift = self.index.rows, self.case.time.pass_shift

@@ -16,9 +16,10 @@ import petsc4py
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
 from ehlpetsc.base.errors import ExitStatus, OutputError, OutputLost
-from ehlpetsc.base.quantities import FIELDS, MEAN_HEIGHT, STEP_SCALARS, of_case
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
@@ -296,7 +297,7 @@ def stored_surfaces(simulation: Simulation) -> dict[str, StoredSurface]:
             ends = scales.x[[0, -1]] * scales.a
             s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.dx)
             smooth = np.zeros((*scales.grid.shape[:-1], len(s)))
-            letter = MEAN_HEIGHT[simulation.case.kind][0].lower()
+            letter = KINDS[simulation.case.kind].mean_height[0].lower()
             flat = dict.fromkeys((f"{letter}a", f"{letter}q", f"{letter}sk"), 0.0)
             surfaces[side] = StoredSurface(s, smooth, speed, flat, depths)
     return surfaces

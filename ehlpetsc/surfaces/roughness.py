@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import (
     WAVE_NODES,
@@ -182,7 +183,7 @@ class Roughness:
         sides, speeds = [], directed_speeds(case, scales)
         for k, spec in enumerate(specs):
             given = passage(case, scales, speeds[k], k, positions)
-            sides.append(spec and SURFACES[case.kind](case, scales, spec, given))
+            sides.append(spec and KINDS[case.kind].part("surface")(case, scales, spec, given))
         return cls(*sides)
 
     def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
@@ -208,22 +209,16 @@ class Roughness:
         return float(np.linalg.norm([surface.rq for surface in self.sides.values()]))
 
 
-def _profile(case: Case, scales: Scales, spec: Values, given: Passage) -> Profile:
+def moving_profile(case: Case, scales: Scales, spec: Values, given: Passage) -> Profile:
+    """Profile of a line contact."""
     from ehlpetsc.surfaces.samples import samples
 
     return Profile(samples(case.path.parent, spec), given)
 
 
-def _map(case: Case, scales: Scales, spec: Values, given: Passage) -> MovingTopography:
+def moving_map(case: Case, scales: Scales, spec: Values, given: Passage) -> MovingTopography:
+    """Areal surface of a strip or a point contact."""
     from ehlpetsc.surfaces.areal_samples import areal_samples
 
     y, dy, is_strip = scales.a * scales.grid.axes[0], scales.grid.spacings[0], scales.grid.periodic
     return MovingTopography(areal_samples(case.path.parent, spec, dy * len(y), is_strip), given, y, dy)
-
-
-SURFACES: dict[str, Callable[[Case, Scales, Values, Passage], RoughSurface]] = {
-    "line": _profile,
-    "strip": _map,
-    "point": _map,
-}
-"""Rough surface by the kind of contact."""

@@ -8,7 +8,6 @@ import ehlpetsc
 from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.film_formulas import (
-    brewe_rigid_film,
     expected_film,
     film_left_by_inlet,
     film_on_mesh,
@@ -18,6 +17,7 @@ from ehlpetsc.physics.film_formulas import (
     rolling_left_by_inlet,
     smooth_films,
 )
+from ehlpetsc.physics.geometry import brewe_rigid_film
 from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.domain import domain_faults, domain_warnings, strip_warnings

@@ -22,7 +22,7 @@ from ehlpetsc.gears.load_sharing import corner_gap, edge_contact, pair_loads, sh
 from ehlpetsc.gears.path import describe, gear_loss_factor, hertz, loss, mean_friction
 from ehlpetsc.gears.standards import bulk_temperatures, loss_factor, values_of
 from ehlpetsc.physics.film_formulas import contact_films
-from ehlpetsc.physics.geometry import GEOMETRIES
+from ehlpetsc.physics.geometry import LINE
 from ehlpetsc.physics.hertz import hertz_line
 from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.operation import Conditions
@@ -406,7 +406,7 @@ def test_bulk_temperature_of_smooth_flanks_takes_the_losses_of_the_oil_film():
     assert rating.roughness == 0.0 and 370.0 < rating.bulk  # of Ra 0.25 um
     at, fluid, modulus = len(path.rho) // 4, case.fluid, rating.modulus
     conditions = Conditions(path.load[at], path.radius[at], path.speed_1[at], path.speed_2[at])
-    film = contact_films(GEOMETRIES["line"], modulus, math.inf, fluid, conditions)[0]
+    film = contact_films(LINE, modulus, math.inf, fluid, conditions)[0]
     p = path.load[at] / (2.0 * hertz(path, modulus)[0][at])
     eta = fluid.viscosity * np.exp(viscosity(np.array([p]), fluid)[0][0])
     rate = abs(path.speed_1[at] - path.speed_2[at]) / film

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from ehlpetsc.base.case import KINDS
+
 PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {"base"}  # every room may import it; it imports no room
 MAY_IMPORT = {
@@ -162,6 +164,14 @@ def test_reading_packages_reach_neither_solver_nor_petsc_nor_mpi(name):
 def test_heat_is_an_effect_that_the_solver_does_not_know(name):
     texts = [FILES[module].read_text(encoding="utf-8") for module in FILES if room(module) == name]
     assert re.findall(r"\w*(?:heat|temperature)\w*", "".join(texts).lower()) == []
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_parts_of_a_kind_of_contact_exist(kind):
+    parts = [value for value in KINDS[kind] if isinstance(value, str) and ":" in value]
+    assert len(parts) == 8 + (kind == "line")
+    for module, name in (part.split(":") for part in parts):
+        assert defines(FILES[f"ehlpetsc.{module}"].read_text(encoding="utf-8"), name), f"{module}:{name}"
 
 
 def test_imported_names_exist():

@@ -5,9 +5,9 @@ from __future__ import annotations
 from hashlib import file_digest
 from typing import TYPE_CHECKING, Any
 
+from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.surfaces.digests import changed_files
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
