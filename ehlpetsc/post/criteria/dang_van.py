@@ -175,8 +175,12 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 @compiled(error_model="python", nogil=True)
-def _greatest_shear(points: np.ndarray, centre: np.ndarray, k: int) -> float:
-    """Half the difference of the largest and smallest principal values of the deviator from the centre."""
+def _greatest_shear(points: np.ndarray, centre: np.ndarray, k: int, least: float) -> float:
+    """Half the difference of the largest and smallest principal values of the deviator from the centre.
+
+    0 where it does not exceed `least` for certain, as it is between 0.87 and 1 times the root of the second
+    invariant.
+    """
     root = sqrt(3.0)
     if points.shape[0] == 3:
         u = abs(points[0, k] - centre[0])
@@ -188,7 +192,7 @@ def _greatest_shear(points: np.ndarray, centre: np.ndarray, k: int) -> float:
     x, y, z = u / 3 + d, -2 * u / 3, u / 3 - d
     second = (x * x + y * y + z * z) / 2 + txz * txz + txy * txy + tyz * tyz
     third = x * (y * z - tyz * tyz) - txy * (txy * z - tyz * txz) + txz * (txy * tyz - y * txz)
-    if second <= 0:
+    if second <= max(least, 0.0) ** 2:
         return 0.0
     lode = asin(min(max(-1.5 * root * third / second**1.5, -1.0), 1.0)) / 3
     return sqrt(second) * cos(lode)
@@ -215,7 +219,8 @@ def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, o
         largest = 0.0
         for k in range(stress.shape[1]):
             hydrostatic = _hydrostatic(stress, k, nu, residual)
-            largest = max(largest, _greatest_shear(points, centre, k) + slope * max(hydrostatic, 0.0))
+            tension = slope * max(hydrostatic, 0.0)
+            largest = max(largest, _greatest_shear(points, centre, k, largest - tension) + tension)
         out[p, 0] = largest / limit
 
 

@@ -20,10 +20,11 @@ limited to a cycle that ends at zero stress.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import exp, log, sqrt
 
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import PostError
-from ehlpetsc.post.fatigue.strain_life import Material
+from ehlpetsc.post.fatigue.strain_life import Material, interpolate
 
 PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 
@@ -58,3 +59,18 @@ class Criteria:
         """k/sigma_y of Fatemi and Socie, 1/Pa."""
         cyclic = material.hardening_coefficient * PLASTIC_STRAIN**material.cyclic_hardening
         return self.normal_sensitivity / (self.yield_strength or cyclic)
+
+
+@compiled(error_model="python", nogil=True)
+def cycle_damage(width: float, normal: float, law: tuple) -> float:
+    """1/N of a cycle of sqrt(3) times the shear stress, of a range and a maximum normal stress [Pa].
+
+    `law`: of :func:`.critical_plane.plane_law`.
+    """
+    _, _, sensitivity, curve, lives, _ = law
+    if width <= 0:
+        return 0.0
+    parameter = interpolate(2 * log(width), curve)
+    if normal > 0:
+        parameter += log(1 + sensitivity * normal)
+    return exp(min(interpolate(parameter, lives), 700.0))

@@ -1,0 +1,129 @@
+r"""Planes in three dimensions: stresses on them, planes of maximum shear.
+
+The normal of a plane has the angle :math:`\theta` from x towards z in the section
+and the tilt :math:`\varphi` out of it; a direction in the plane the angle :math:`\psi` from the section's:
+
+.. math::
+    n = (\cos\varphi\cos\theta,\ \sin\varphi,\ \cos\varphi\sin\theta), \quad
+    t = \cos\psi\,(-\sin\theta,\ 0,\ \cos\theta)
+        + \sin\psi\,(-\sin\varphi\cos\theta,\ \cos\varphi,\ -\sin\varphi\sin\theta)
+
+With :math:`\sigma_y=\nu(\sigma_x+\sigma_z)` and no shear out of the section, shear stress
+:math:`t\cdot\sigma n` and normal stress :math:`n\cdot\sigma n` are sums of the three in-plane stresses.
+Planes tilted by opposite angles are equivalent, so that tilts from 0 to 90 degrees suffice.
+"""
+
+from __future__ import annotations
+
+from math import asin, atan2, cos, pi, sin, sqrt
+
+import numpy as np
+
+from ehlpetsc.base.compiled import compiled
+
+JACOBI_SWEEPS = 4
+GRID_STEP = pi / 12  # between the planes and directions of the coarse grid
+
+
+@compiled(error_model="python", nogil=True)
+def plane_weights(theta: float, phi: float, psi: float, nu: float) -> tuple[tuple, tuple, float]:
+    """Weights (3,) of sx, sz, txz in shear and normal stress on a plane, of residual stress in the latter."""
+    x, y, z = cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
+    c, s = cos(psi), sin(psi)
+    tx = -c * sin(theta) - s * sin(phi) * cos(theta)
+    ty = s * cos(phi)
+    tz = c * cos(theta) - s * sin(phi) * sin(theta)
+    shear = x * tx + nu * y * ty, z * tz + nu * y * ty, x * tz + z * tx
+    return shear, (x * x + nu * y * y, z * z + nu * y * y, 2 * x * z), x * x + y * y
+
+
+@compiled(error_model="python", nogil=True)
+def tensor_weights(theta: float, phi: float, psi: float) -> tuple[tuple, tuple, float]:
+    """Weights (6,) of sx, sz, txz, sy, txy, tyz as those of :func:`plane_weights`."""
+    x, y, z = cos(phi) * cos(theta), sin(phi), cos(phi) * sin(theta)
+    c, s = cos(psi), sin(psi)
+    tx = -c * sin(theta) - s * sin(phi) * cos(theta)
+    ty = s * cos(phi)
+    tz = c * cos(theta) - s * sin(phi) * sin(theta)
+    shear = x * tx, z * tz, x * tz + z * tx, y * ty, x * ty + y * tx, y * tz + z * ty
+    return shear, (x * x, z * z, 2 * x * z, y * y, 2 * x * y, 2 * y * z), x * x + y * y
+
+
+def planes_and_directions(step: float = GRID_STEP, components: int = 3) -> np.ndarray:
+    """Angles (count, 3) in radians of planes and directions in them, both about `step` apart.
+
+    Of three components, planes without tilt have shear only in the direction of the section, the plane of the
+    section has none, and tilts both ways are equivalent.
+    """
+    degrees, rows = np.degrees(step), []
+    in_section = components == 3
+    for tilt in np.arange(0.0 if in_section else degrees - 90.0, 90.0, degrees):
+        count = max(1, round(180 / degrees * np.cos(np.radians(tilt))))
+        directions = np.arange(0.0, 180.0, degrees) if tilt or not in_section else (0.0,)
+        rows += [(theta, tilt, psi) for theta in 180 / count * np.arange(count) for psi in directions]
+    return np.radians(rows)
+
+
+@compiled(error_model="python", nogil=True)
+def on_plane(angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> None:
+    """Fill in the shear stress, as an equivalent stress, and the normal stress."""
+    size = stress.shape[1]
+    if stress.shape[0] == 3:
+        shear, normal, share = plane_weights(angles[0], angles[1], angles[2], law[0])
+        a, b, c = shear
+        work[2][:size] = 3**0.5 * (a * stress[0] + b * stress[1] + c * stress[2])
+        a, b, c = normal
+        work[3][:size] = law[1] * share + (a * stress[0] + b * stress[1] + c * stress[2])
+        return
+    in_shear, across, share = tensor_weights(angles[0], angles[1], angles[2])
+    root, residual = 3**0.5, law[1] * share
+    for i in range(size):
+        along, normal = 0.0, residual
+        for k in range(6):
+            along += root * in_shear[k] * stress[k, i]
+            normal += across[k] * stress[k, i]
+        work[2][i], work[3][i] = along, normal
+
+
+@compiled(error_model="python", nogil=True)
+def _principal_axes(tensor: np.ndarray, axes: np.ndarray) -> None:
+    """Set the columns of axes (3, 3) to principal directions by Jacobi's rotations; tensor gets diagonal."""
+    axes[:] = 0.0
+    for k in range(3):
+        axes[k, k] = 1.0
+    for _ in range(JACOBI_SWEEPS):
+        for i in range(2):
+            for j in range(i + 1, 3):
+                if tensor[i, j] == 0.0:
+                    continue
+                angle = 0.5 * atan2(2 * tensor[i, j], tensor[j, j] - tensor[i, i])
+                c, s = cos(angle), sin(angle)
+                for k in range(3):
+                    a, b = tensor[k, i], tensor[k, j]
+                    tensor[k, i], tensor[k, j] = c * a - s * b, s * a + c * b
+                    a, b = axes[k, i], axes[k, j]
+                    axes[k, i], axes[k, j] = c * a - s * b, s * a + c * b
+                for k in range(3):
+                    a, b = tensor[i, k], tensor[j, k]
+                    tensor[i, k], tensor[j, k] = c * a - s * b, s * a + c * b
+
+
+@compiled(error_model="python", nogil=True)
+def shear_planes(stress: np.ndarray, begin: int, end: int, angles: np.ndarray) -> None:
+    """Angles (2, 3) of both planes of maximum shear between two samples."""
+    tensor, axes = np.empty((3, 3)), np.empty((3, 3))
+    for row, column, part in ((0, 0, 0), (2, 2, 1), (0, 2, 2), (1, 1, 3), (0, 1, 4), (1, 2, 5)):
+        tensor[row, column] = tensor[column, row] = stress[part, end] - stress[part, begin]
+    _principal_axes(tensor, axes)
+    low, high = 0, 0
+    for k in range(3):
+        low = k if tensor[k, k] < tensor[low, low] else low
+        high = k if tensor[k, k] > tensor[high, high] else high
+    for turn in range(2):
+        sign = 1.0 - 2.0 * turn
+        x, y, z = (axes[:, high] + sign * axes[:, low]) / sqrt(2.0)
+        tx, ty, tz = (axes[:, high] - sign * axes[:, low]) / sqrt(2.0)
+        theta, phi = atan2(z, x), asin(min(max(y, -1.0), 1.0))
+        along = cos(theta) * tz - sin(theta) * tx
+        across = cos(phi) * ty - sin(phi) * (cos(theta) * tx + sin(theta) * tz)
+        angles[turn] = theta, phi, atan2(across, along)
