@@ -25,10 +25,12 @@ class Load:
 
     `unknowns`: of the whole contact; as many equations.
     `equation`: name of the equation in messages.
+    `by_h00`, `by_load`: derivatives of the row by h00 and by the integral of the pressure.
     """
 
     unknowns = 1
     equation = "load"
+    by_h00, by_load = 0.0, 1.0
 
     def __init__(self, scales: Scales):
         self.scales = scales
@@ -43,7 +45,7 @@ class Load:
 
     def product(self, h00: float, load: float) -> float:
         """Derivative of the row times changes of h00 and of the integral of the pressure."""
-        return load
+        return self.by_h00 * h00 + self.by_load * load
 
     def gap(self, nodes: int) -> np.ndarray:
         """Gap that a unit of h00 adds at each of some nodes."""
@@ -61,7 +63,7 @@ class Load:
         by_unit
             Change of that integral by a unit of h00.
         """
-        return (row - load) / by_unit
+        return (row - self.by_load * load) / (self.by_h00 + self.by_load * by_unit)
 
     def error(self, h00: float, load: float, conditions: Conditions) -> float:
         """Relative error of the equation; load in N or N/m."""
@@ -75,6 +77,7 @@ class Approach(Load):
     """
 
     equation = "approach"
+    by_h00, by_load = 1.0, 0.0
 
     def __init__(self, scales: Scales, approach: float):
         super().__init__(scales)
@@ -83,14 +86,6 @@ class Approach(Load):
     def residual(self, h00: float, load: float, inputs: StepInputs) -> float:
         """Row of the equation: a fraction of the load is that of a smaller approach."""
         return h00 + self.approach * self.share(inputs) ** self.scales.grid.growth
-
-    def product(self, h00: float, load: float) -> float:
-        """See :class:`Load`."""
-        return h00
-
-    def change(self, row: float, load: float, by_unit: float) -> float:
-        """See :class:`Load`."""
-        return row
 
     def error(self, h00: float, load: float, conditions: Conditions) -> float:
         """See :class:`Load`."""

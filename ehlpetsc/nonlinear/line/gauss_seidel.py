@@ -99,7 +99,7 @@ class GaussSeidelSolver:
             if watch:
                 watch()
             p = np.maximum(q, 0.0)
-            h00, gap_is_open = self._correct(p, h, h00, inputs.phi)
+            h00, gap_is_open = self._correct(p, h, h00, inputs)
             norm = self._evaluate(q, h, h00, inputs)
             if norm < self.tolerance:
                 return Unknowns(q, h, h00), iteration
@@ -108,12 +108,15 @@ class GaussSeidelSolver:
             self._sweep(q, h, p, gap_is_open, inputs)
         raise SolveFailed("sweeps", "MAX_IT", max_sweeps)
 
-    def _correct(self, p: np.ndarray, h: np.ndarray, h00: float, phi: np.ndarray) -> tuple[float, np.ndarray]:
+    def _correct(
+        self, p: np.ndarray, h: np.ndarray, h00: float, inputs: StepInputs
+    ) -> tuple[float, np.ndarray]:
         """Balance the load by h00; set h of the open gap and of the ends to the integral of p, in place."""
-        h00 += APPROACH_RELAXATION / HERTZ_STIFFNESS * (self.problem.dx * p.sum() - 0.5 * np.pi)
+        error = self.problem.balance.residual(h00, self.problem.dx * p.sum(), inputs)
+        h00 += APPROACH_RELAXATION / HERTZ_STIFFNESS * error
         gap_is_open = (h > OPEN_GAP_FILM_RATIO * self.problem.film_scale) & (p < OPEN_GAP_PRESSURE)
         gap_is_open[[0, -1]] = True
-        h[gap_is_open] = np.maximum(self.problem.film(p, h00, phi)[gap_is_open], self.bound)
+        h[gap_is_open] = np.maximum(self.problem.film(p, h00, inputs.phi)[gap_is_open], self.bound)
         return h00, gap_is_open
 
     def _evaluate(self, q: np.ndarray, h: np.ndarray, h00: float, inputs: StepInputs) -> float:

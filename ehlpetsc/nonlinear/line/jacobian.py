@@ -110,9 +110,10 @@ class NearFieldMatrix:
         columns = reynolds_columns(p.first, p.last, p.n)
         set_rows(self.matrix, w_index(nodes), columns, self._by_unknowns(state, derivatives))
         if p.border:
-            load = np.zeros(n_dofs(p.n) + 1)  # with the zero on the diagonal, which LU needs
-            q_of(load, p.n)[:], w_of(load, p.n)[:] = p.dx * state.p_q, p.dx * state.p_w
-            self.matrix.setValues([n_dofs(p.n)], np.arange(len(load), dtype=np.int32), load)
+            row, weight = np.zeros(n_dofs(p.n) + 1), p.dx * p.balance.by_load
+            q_of(row, p.n)[:], w_of(row, p.n)[:] = weight * state.p_q, weight * state.p_w
+            row[-1] = p.balance.by_h00  # stored also where it is zero, as LU needs it
+            self.matrix.setValues([n_dofs(p.n)], np.arange(len(row), dtype=np.int32), row)
         self.matrix.assemble()
 
     def _by_unknowns(self, state: NodeState, derivatives: np.ndarray) -> np.ndarray:
@@ -163,6 +164,6 @@ def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out:
     deflection_rows(change[2], h00, curvature, load, form, out[0:local:2])
     reynolds_product(derivatives, change[0], change[1], 0, form[0], out[1:local:2])
     if len(out) > local:
-        out[local] = load[2]
+        out[local] = load[2]  # the border of a line is the balance of the load
     for i in inactive_nodes:
         out[2 * i + 1] = 0.0
