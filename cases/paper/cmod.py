@@ -47,11 +47,12 @@ def strip(border: float, sq: float, layer: float, width: float, seeds: tuple[int
 
 
 class Model(NamedTuple):
-    """Model of the flanks' roughness: description, nodes per half-width on two meshes, keys of the case."""
+    """Model of the flanks' roughness: nodes per half-width on its meshes, keys, speeds [m/s] (None: all)."""
 
     description: str
-    meshes: tuple[int, int]
+    meshes: tuple[int, ...]
     keys: dict[str, Any]
+    speeds: tuple[float, ...] | None = None
 
 
 LONG = 79e-6, 0.168e-6, 0.262e-6, 1.0  # border, Sq of a flank and rms of the layer [m], width
@@ -67,7 +68,7 @@ MODELS = {
             "contact.asperity_stiffness": 0.0278,
         },
     ),
-    "strip": Model("strip of isotropic roughness", (20, 40), strip(*LONG, (2, 3))),
+    "strip": Model("strip of isotropic roughness", (20,), strip(*LONG, (2, 3)), (8.3, 20.0)),
 }
 COLOURS = {"smooth": style.DARK, "layer": style.SINGLE, "strip": style.SECOND}
 CHANGES: dict[str, dict[str, Any]] = {
@@ -78,6 +79,7 @@ CHANGES: dict[str, dict[str, Any]] = {
 CHANGES_OF_STRIPS = {
     "seeds 4, 5": strip(*LONG, (4, 5)),
     "seeds 6, 7": strip(*LONG, (6, 7)),
+    "border 40 um, a/16": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 16},
     "border 40 um, a/32": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 32},
 }
 """What moves friction, with the changed keys, on the coarser mesh."""
@@ -125,11 +127,17 @@ def found(
     return Found(mean_friction(run.path, run.friction_on_path()), solids, run.mean("contact_share"))
 
 
+def points_of(model: str) -> list[Point]:
+    """Measured points at the speeds of a model."""
+    speeds = MODELS[model].speeds
+    return [point for point in MEASURED if speeds is None or point.speed in speeds]
+
+
 def draw(computed: dict[str, list[Found]]) -> Figure:
     """Friction with its parts, and the share of the solids, over the speed."""
     figure, panels = style.new_figure(1, 2, (9.0, 4.2))
-    speeds = [point.speed for point in MEASURED]
     for model, values in computed.items():
+        speeds = [point.speed for point in points_of(model)]
         colour, parts = COLOURS[model], ("of the solids", "of the oil") if model == "layer" else ("", "")
         friction, solids, share = np.array(values).T
         panels[0].plot(speeds, friction, color=colour, label=model)
@@ -137,6 +145,7 @@ def draw(computed: dict[str, list[Found]]) -> Figure:
             panels[0].plot(speeds, solids, "--", color=colour, lw=1.0, label=parts[0])
             panels[0].plot(speeds, friction - solids, ":", color=colour, lw=1.0, label=parts[1])
             panels[1].plot(speeds, share, color=colour, label=model)
+    speeds = [point.speed for point in MEASURED]
     panels[0].plot(speeds, [point.friction for point in MEASURED], "ko", label="measured")
     panels[1].plot(
         speeds, [point.share for point in MEASURED], "ko", label="1 - erf(lambda), fitted to discs"
@@ -171,12 +180,12 @@ def main(words: list[str] | None = None) -> None:
     chosen = parser.parse_args(words)
     computed: dict[str, list[Found]] = {}
     for model in chosen.models or MODELS:
-        description, points, _ = MODELS[model]
+        description, points, *_ = MODELS[model]
         print(
             f"{description}\nspeed [m/s]: measured, share; computed on " + ", ".join(f"a/{n}" for n in points)
         )
         computed[model] = []
-        for point in MEASURED:
+        for point in points_of(model):
             both = [found(model, point.rotation, number) for number in points]
             ratio = both[-1].friction / point.friction
             text = "; ".join(map(str, both))
