@@ -555,7 +555,7 @@ def test_runs_until_bulk_temperatures_are_those_of_the_losses(tmp_path, monkeypa
     """And pictures of one run, of two side by side, of stages, each with figures of the standards."""
     monkeypatch.chdir(tmp_path)
     keys = ["heat.bulk_temperature=losses", "heat.reference_temperature=363", "surface={}", "time.courant=8"]
-    words = [word for key in (*keys, "mesh.points_per_half_width=20") for word in ("--set", key)]
+    words = [word for key in (*keys, "mesh.points_per_half_width=12") for word in ("--set", key)]
     assert main([str(CASES / "fzg.toml"), *words, "--run", "gear.h5"]) == 0
     *_, last, file = capsys.readouterr().out.splitlines()
     used, found = ([float(word) for word in re.findall(r"\d+\.\d", part)] for part in last.split(";"))
