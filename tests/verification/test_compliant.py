@@ -64,7 +64,7 @@ def test_steady_contacts_converge_at_every_speed(speed):
 @pytest.mark.parametrize("speed", [5.0, 0.2, 1e-3])
 def test_rough_contacts_converge_at_every_speed(speed):
     """Until both surfaces have filled the contact."""
-    scene = RESOLVED | {"mesh.points_per_half_width": 50, "time.travel": 3.6}
+    scene = RESOLVED | {"mesh.points_per_half_width": 32, "time.travel": 3.6}
     found = run(scene | {"motion.entrainment_speed": speed})
     assert found["filled"].any()
     assert found["retries"].sum() <= 0.01 * len(found["time"])
