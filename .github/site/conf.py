@@ -20,6 +20,7 @@ SECTIONS = {
         "cases/measured",
         "cases/gears",
         "cases/life",
+        "cases/micropitting",
         "ehlpetsc/run/README",
         "cases/own_laws",
         "ehlpetsc/results/README",
