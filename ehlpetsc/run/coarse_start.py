@@ -17,12 +17,17 @@ RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
 SOFT_LAYER = 0.1  # beta E* over p0: a node of a softer layer has no asperity pressure or all of it
 
 
-def coarser(case: Case) -> Case:
-    """Steady case with half as many nodes per half-width, likewise across; smooth if its steady start is."""
+def coarser(case: Case, ramp: str | None = None) -> Case:
+    """Steady case with half as many nodes per half-width, likewise across; smooth if its steady start is.
+
+    `ramp`: `time.ramp` of a case that is neither steady nor smooth.
+    """
     along, across = case.mesh.points_per_half_width, case.mesh.points_across
     change = {"points_per_half_width": along // 2, "points_across": across and max(across // 2, 1)}
     tables = {"mesh": case.mesh.copy(change)}
-    if case.time is not None and case.time.start == "rough":
+    if ramp is not None:
+        tables["time"] = case.time.copy({"ramp": ramp})
+    elif case.time is not None and case.time.start == "rough":
         tables |= {"time": None, "surface": case.surface.copy({"body_1": None, "body_2": None})}
     return case.copy(tables)
 

@@ -47,6 +47,11 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
 
 def domain_faults(case: Case, scales: Scales) -> list[str]:
     """Faults of the domain that make the result meaningless, one message each; checked before a run."""
+    if case.time is not None and case.time.ramp == "coarse" and not ramps_coarsely(case):
+        allowed = (
+            'of a point contact or a strip with time.start = "rough", without heat, wear and yield_pressure'
+        )
+        return [f'{case.path}: time.ramp = "coarse": allowed: in steps {allowed}']
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
     film, points = _smallest_expected_film(case, scales), case.mesh.points_per_half_width
@@ -63,6 +68,12 @@ def refusals(case: Case, scales: Scales) -> list[str]:
         allowed = "one of them at a time; a member: --set KEY=VALUE -o NAME.h5"
         return [f"{case.path}: [series] and time.passes: {allowed}"] * has_passes(case)
     return domain_faults(case, scales)
+
+
+def ramps_coarsely(case: Case) -> bool:
+    """Whether roughness, ramped up in the plane, is all that a state on a coarser mesh has to hand on."""
+    only_rough = case.heat is None and case.wear is None and case.contact.yield_pressure is None
+    return case.kind != "line" and case.time.start == "rough" and case.fluid is not None and only_rough
 
 
 def has_passes(case: Case) -> bool:

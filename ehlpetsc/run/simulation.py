@@ -32,12 +32,13 @@ from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
-from ehlpetsc.stepping.time_stepping import TimeStepping
+from ehlpetsc.stepping.time_stepping import LAST_OF_RAMP, TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
 NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
 MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one that fails without
 MIN_HEATED_POINTS = 8  # on the half-width of the start: coarsest mesh of one with heat
+FINEST_NODES = 60_000  # of a mesh whose rough start takes one coarser mesh alone
 MANY_NODES = 20_000  # from here on a start on a coarser mesh costs less than it saves
 MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
@@ -276,7 +277,7 @@ class Simulation:
         for guess, records in self._guesses(watch):
             self._print_heading(f"steady start on {self.scales.grid.n} nodes")
             try:
-                return self.stepper.start(self._records | records, watch, guess)
+                return self.stepper.start(self._records | records, watch, guess, self._ramped(watch))
             except NotConverged as error:
                 if not isinstance(error.__cause__, NoSteadyStart):
                     raise
@@ -316,6 +317,21 @@ class Simulation:
         found = {name: effects[name].interpolated(r, coarse.scales) for name, r in state.records.items()}
         records = {name: record for name, record in found.items() if record is not None}
         return guess_of(state, coarse.stepper.problem, self.stepper.problem), records
+
+    def _ramped(self, watch: Watch) -> State | None:
+        """State during a rough start on a coarser mesh, interpolated; None: the case has no such ramp."""
+        if self.case.time is None or self.case.time.ramp == "fine":
+            return None
+        from ehlpetsc.run.coarse_start import coarser, guess_of
+
+        nested = "coarse" if self.scales.grid.n > FINEST_NODES else "fine"
+        coarse = Simulation(coarser(self.case, nested), self.comm, self._options)
+        with coarse.options:
+            guesses = coarse._guesses(watch)
+            guess, records = next(guesses)
+            begun = coarse._records | records, watch, guess, coarse._ramped(watch)
+            state = coarse.stepper.ramped(*begun, LAST_OF_RAMP)
+        return replace(state, unknowns=guess_of(state, coarse.stepper.problem, self.stepper.problem))
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.dimensionless.step + 1} from {1e6 * self.dimensionless.time:.4f} us")

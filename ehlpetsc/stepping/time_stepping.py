@@ -24,6 +24,7 @@ from ehlpetsc.stepping.steady_start import steady
 
 SPEED_ROUNDING = 1e-9  # of the scales' speed: a slower film is at rest
 RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
+LAST_OF_RAMP = 0.15  # of it: what a mesh does itself that takes its state from a coarser one
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
 MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
 MAX_STEP_RATIO = 2.0  # of successive steps; BDF2 is stable up to 2.4
@@ -76,13 +77,17 @@ class TimeStepping:
         # the baseline is the steady solution of the start, which holds for constant conditions only
         self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
 
-    def start(self, records: dict, watch: Watch = None, guess: Unknowns | None = None) -> State:
+    def start(
+        self, records: dict, watch: Watch = None, guess: Unknowns | None = None, begun: State | None = None
+    ) -> State:
         """Steady state at time 0 from the records of the effects, or a guess from a coarser mesh.
 
         By time steps if roughness at rest prevents convergence, or if the case starts rough.
+
+        `begun`: state during these steps, with which they begin.
         """
         if self._starts_rough:  # its baseline for the predictor is the smooth state before the ramp
-            return self._start_by_time_stepping(records, watch, guess)
+            return self._start_by_time_stepping(records, watch, guess, begun)
         inputs = self._with_effects(self._inputs_of(self._step_end()), records, self._step_end())
         try:
             state = self._steady(inputs, records, watch, guess)
@@ -150,13 +155,23 @@ class TimeStepping:
             unknowns, residual = mirrored(unknowns), mirrored(self.solver.residual().reynolds)
         return self.problem.solution(unknowns, residual, inputs), iterations
 
-    def _start_by_time_stepping(self, records: dict, watch: Watch, guess: Unknowns | None = None) -> State:
+    def _start_by_time_stepping(
+        self, records: dict, watch: Watch, guess: Unknowns | None = None, begun: State | None = None
+    ) -> State:
         """State at time 0 after time steps during which roughness at rest is ramped up.
 
         Roughness at rest is under the film from the start, where Newton's method may not converge; the
         roughness of a moving body enters through the inlet. The ramp ends after an entrained distance of
         `RAMP_LENGTH`.
         """
+        state = self.ramped(records, watch, guess, begun)
+        at_zero: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0}
+        return replace(state, **at_zero, retries=0, dt=None, m_older=None, earlier=())
+
+    def ramped(
+        self, records: dict, watch: Watch, guess: Unknowns | None, begun: State | None, left: float = 0.0
+    ) -> State:
+        """State of the ramp of which at least a share is left; other arguments as of :meth:`start`."""
         try:
             end = self._step_end()
             inputs = self._with_effects(self._inputs_of(end), records, end)
@@ -169,12 +184,16 @@ class TimeStepping:
         frozen = {e.name: records[e.name] for e in self.effects if e.frozen_before_start}
         state = replace(state, time=-self.ramp_time, travelled=moved, records=state.records | frozen)
         self.baseline = (state.q, state.w)
-        while state.time < -LEVEL_TOLERANCE * dt:
+        if begun is not None:
+            m = self.problem.mass_per_area(begun.q, begun.w)
+            state = replace(state, unknowns=begun.unknowns, m=m, m_older=None)
+            state = replace(state, time=begun.time, travelled=begun.travelled)
+        before = left * self.ramp_time + (dt if left else LEVEL_TOLERANCE * dt)  # steps may be coarse
+        while state.time < -before:
             state = self.advance(state, watch=watch)
             state, newton = replace(state, records=state.records | frozen), newton + state.newton
             self._show_ramp(1.0 + state.time / self.ramp_time)
-        begun: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0, "newton": newton}
-        return replace(state, **begun, retries=0, dt=None, m_older=None, earlier=())
+        return replace(state, newton=newton)
 
     def show_ramp(self, show: Callable[[float], object]) -> None:
         """Have a function called with the share of the ramp that each of its steps has reached."""

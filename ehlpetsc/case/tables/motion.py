@@ -199,6 +199,12 @@ TIME_KEYS = {
         choices=("smooth", "rough"),
         default="smooth",
     ),
+    "ramp": Key(
+        "mesh of the ramp of a rough start in the plane; coarse: half the nodes along and across until its "
+        "last part, with roughness as the only effect",
+        choices=("fine", "coarse"),
+        default="fine",
+    ),
     "courant": Key(
         "mesh spacings that the film moves in a step; less where surfaces pass it faster, "
         "`dt = courant dx/max(|u|, |u1 - u2|/2)`",

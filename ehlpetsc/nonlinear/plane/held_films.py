@@ -141,7 +141,10 @@ def balance_at(
 def local_system(
     nodes: np.ndarray, by: np.ndarray, mesh: tuple, place: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Entries, columns and pointers of the rows of the local system; `mesh` as of :func:`.neighbour`."""
+    """Entries, columns and pointers of the rows of the local system.
+
+    `mesh`: as of :func:`.screened_poisson.neighbour`.
+    """
     count, most = 0, STENCIL * len(nodes)
     entries, columns = np.empty(most), np.empty(most, dtype=np.int32)
     pointers = np.zeros(len(nodes) + 1, dtype=np.int32)
