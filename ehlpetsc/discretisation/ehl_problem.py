@@ -50,7 +50,7 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Solution:
-    """An accepted solution on the whole mesh, dimensionless; arrays of shape (nx,).
+    """An accepted solution on the whole mesh, dimensionless; arrays of shape (nodes,).
 
     `unknowns`: as solved, with the plastic deformation of the step.
     `nodes`: pressure, film and plastic deformation of the step.

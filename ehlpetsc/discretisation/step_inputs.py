@@ -121,13 +121,13 @@ class FilmHistory:
     r"""Masses per area of the film at the previous time levels, carried to the new one, for BDF2.
 
     `m`, `m_older`: :math:`\rho h(1-\theta)` one and two steps ago where the film that is now at each node
-        was then, see :mod:`.transport`, shape (nx,).
+        was then, see :mod:`.transport`, shape (nodes,).
     `dt`, `dt_older`: current and previous time step, in units of a/u; `dt_older` None starts with backward
         Euler.
     `moved`: distance of the film in the step, in nodes. `before`: mass one step ago at the nodes themselves.
 
     `k`: factor of the extrapolation from the two levels of the current step.
-    `extrapolated`: extrapolation from the two older levels, shape (nx,).
+    `extrapolated`: extrapolation from the two older levels, shape (nodes,).
     """
 
     def __init__(
@@ -149,7 +149,7 @@ class FilmHistory:
 class StepInputs:
     """Data of a solve, without its initial guess.
 
-    `phi`: contribution of the roughness to the gap, in a^2/R, shape (nx,).
+    `phi`: contribution of the roughness to the gap, in a^2/R, shape (nodes,).
     `history`: previous time levels; None: steady.
     `oil`: None: dry.
     `inlet_film`: oil film at the inlet in a^2/R; None: flooded.

@@ -11,7 +11,7 @@ import numpy as np
 
 
 class Unknowns(NamedTuple):
-    """Both unknowns of the nodes, shape (nx,), see :mod:`.contact`, and the approach h00 in a^2/R."""
+    """Both unknowns of the nodes, shape (nodes,), see :mod:`.contact`, and the approach h00 in a^2/R."""
 
     q: np.ndarray
     w: np.ndarray
@@ -19,7 +19,7 @@ class Unknowns(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Residual: deflection and Reynolds rows, shape (nx,), and the load row."""
+    """Residual: deflection and Reynolds rows, shape (nodes,), and the load row."""
 
     deflection: np.ndarray
     reynolds: np.ndarray

@@ -24,7 +24,7 @@ class TimeLevel(NamedTuple):
 
 @dataclass(frozen=True)
 class State:
-    """One time level with the history needed by the next step; arrays of shape (nx,), dimensionless.
+    """One time level with the history needed by the next step; arrays of shape (nodes,), dimensionless.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ class ContactModel:
     # --- unknowns -----------------------------------------------------------------------------------------
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        """:class:`.node_state.NodeState` at the unknowns q, w, shape (nx,)."""
+        """:class:`.node_state.NodeState` at the unknowns q, w, shape (nodes,)."""
         raise NotImplementedError
 
     def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
@@ -78,8 +78,8 @@ class ContactModel:
     def advected(self, interpolated: np.ndarray, shifted: np.ndarray) -> np.ndarray:
         """Second unknown of a new time level.
 
-        `interpolated`: of the film of the last level, moved along by interpolation, shape (nx,).
-        `shifted`: w of the last level, moved by the nearest whole number of nodes, shape (nx,).
+        `interpolated`: of the film of the last level, moved along by interpolation, shape (nodes,).
+        `shifted`: w of the last level, moved by the nearest whole number of nodes, shape (nodes,).
         """
         raise NotImplementedError
 

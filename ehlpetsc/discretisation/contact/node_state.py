@@ -31,7 +31,7 @@ OPEN_GAP = FaceGap()
 
 
 class PlasticState(NamedTuple):
-    """Plastic deformation of yielding nodes; arrays of shape (nx,).
+    """Plastic deformation of yielding nodes; arrays of shape (nodes,).
 
     `depth`: delta, by which both surfaces together yield in the step, in a^2/R.
     `yielding`: mask of the nodes that yield.
@@ -50,7 +50,7 @@ class PlasticState(NamedTuple):
 
 
 class NodeState(NamedTuple):
-    """State of the nodes at given unknowns; arrays of shape (nx,).
+    """State of the nodes at given unknowns; arrays of shape (nodes,).
 
     `reynolds_unknown`: unknown of the Reynolds equation: oil pressure where positive, minus the void fraction
         where negative.
@@ -127,7 +127,7 @@ def limit_cavitation(q: float, dq: float) -> float:
 
 
 class SurfaceLoads(NamedTuple):
-    """Surface loads of an accepted solution; arrays of shape (nx,), pressures in p0, film in a^2/R.
+    """Surface loads of an accepted solution; arrays of shape (nodes,), pressures in p0, film in a^2/R.
 
     `contact_mask`: nodes in contact.
     `pressure`, `contact_pressure`: total pressure, and the part of it that the solids carry (0 where the
