@@ -13,6 +13,7 @@ heated by shear (:func:`film_stress`), between walls heated as half-spaces that 
 Jaeger 1959), each by half of the heat.
 """
 
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,9 @@ from support import CASES
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics import laws
 from ehlpetsc.run.simulation import Simulation
+
+sys.path.append(str(CASES / "paper"))
+import thermal_films
 
 BULK, BETA, OIL, EFFUSIVITY = 363.0, 0.04, 0.14, np.sqrt(46.0 * 7850.0 * 470.0)
 EYRING, MODULUS, RADIUS = 10e6, 207e9 / (1.0 - 0.3**2), 0.0191  # Pa, Pa, m
@@ -141,6 +145,12 @@ def test_film_in_pure_rolling(point):
     load, found = thermal_load(*point[:2]), warm.film / cold.film
     assert found == pytest.approx(wilson_sheu(load, 0.0), rel=0.015)
     assert found == pytest.approx(murch_wilson(load), rel=0.02)
+
+
+@pytest.mark.parametrize("kind, points, published", [("line", 50, 0.916), ("ball", 12, 0.954)])
+def test_a_ball_loses_half_of_what_a_line_loses(kind, points, published):
+    """First pair of thermal_films.py: film with heat over the isothermal one."""
+    assert thermal_films.reduction(kind, thermal_films.PAIRS[0], points) == pytest.approx(published, abs=1e-3)
 
 
 @pytest.mark.slow
