@@ -72,6 +72,17 @@ def test_overlaps_are_clipped_to_contact():
     assert (now - step)[:, 0] == pytest.approx([0.0, PRESSURE_AFTER_REFILL])
 
 
+def test_rounding_at_the_yield_pressure_decides_nothing():
+    """A node that has yielded begins the next step at the yield pressure, give or take the last digit."""
+    model, found = YieldingContact(0.01, 10.0, 1.5), []
+    for q in (np.nextafter(1.5, 0.0), 1.5, np.nextafter(1.5, 2.0)):
+        now, step = pairs((q, 0.1)), pairs((-0.2, 0.01))
+        assert model.state(*now.T).plastic.yielding.all()
+        model.clip_step(now, step, 1e-3)
+        found.append((now - step).ravel())
+    np.testing.assert_allclose(found, [[1.7, 0.09]] * 3, rtol=1e-12)
+
+
 def test_contact_precedes_yielding_in_a_step():
     """A step to both at once stops where solids begin to carry, at the yield pressure."""
     stiffness, limit = 10.0, 1.0

@@ -20,6 +20,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
 from ehlpetsc.discretisation.contact.node_state import (
+    AMBIENT_TOLERANCE,
     NodeState,
     SurfaceLoads,
     full_of_oil,
@@ -148,7 +149,7 @@ def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float,
         total = min(max(q, 0.0) + solids, limit)
         new_total = min(max(new_q, 0.0) + solids + rise, limit)
         change = abs(new_total - total)
-        if total == limit and new_total == limit:
+        if min(total, new_total) > limit - AMBIENT_TOLERANCE:
             change = abs(min(solids + rise, limit) - solids)
         largest = max(largest, change)
     return largest

@@ -16,6 +16,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import (
+    AMBIENT_TOLERANCE,
     PRESSURE_AFTER_REFILL,
     NodeState,
     SurfaceLoads,
@@ -95,7 +96,7 @@ def pressure_change(now: np.ndarray, step: np.ndarray, stiffness: float, limit: 
         total = min(max(now[i, 0], 0.0) + solids, limit)
         new_total = min(max(new_q, 0.0) + new_solids, limit)
         change = abs(new_total - total)
-        if total == limit and new_total == limit:
+        if min(total, new_total) > limit - AMBIENT_TOLERANCE:
             change = abs(new_solids - solids)
         largest = max(largest, change)
     return largest

@@ -11,7 +11,8 @@ that elastic solids would have, :math:`s=\max(q,0)+P` that of both. Of the nodes
 * those without oil, or under a void, have :math:`P>p_y`, that is :math:`w<w_y` with :math:`P(w_y)=p_y`;
   :math:`\delta=w_y-w`, and q keeps its meaning.
 
-So the signs of :math:`s-p_y` and q carry the conditions, and all of them hold exactly at any q and w. Rigid
+So the signs of :math:`s-p_y` and q carry the conditions, and all of them hold exactly at any q and w; a node
+at :math:`p_y` but for rounding, as those that have yielded begin the next step, counts as yielding. Rigid
 solids, :math:`P=K\max(-w,0)`, are :class:`.mixed.MixedContact`; those of a layer, :math:`P=p_c(w)`,
 :class:`.compliant.CompliantContact`.
 """
@@ -122,7 +123,8 @@ class YieldingContact(Yielding, MixedContact):
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         elastic = super().state(q, w)
         excess = elastic.pressure - self.yield_pressure
-        by_oil, closed = (excess > 0.0) & (q > 0.0), (excess > 0.0) & ~(q > 0.0)
+        yielding = excess > -AMBIENT_TOLERANCE
+        by_oil, closed = yielding & (q > 0.0), yielding & ~(q > 0.0)
         depth, depth_w = self.compliance * excess, self.compliance * elastic.p_w
         return self.yielded(elastic, self.contact_pressure(w), by_oil, closed, depth, depth_w)
 
@@ -149,7 +151,8 @@ class CompliantYieldingContact(Yielding, CompliantContact):
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         elastic, closed = super().state(q, np.maximum(w, self.smallest)), w < self.smallest
-        by_oil = (elastic.pressure > self.yield_pressure) & (q > AMBIENT_TOLERANCE) & ~closed
+        yielding = elastic.pressure > self.yield_pressure - AMBIENT_TOLERANCE
+        by_oil = yielding & (q > AMBIENT_TOLERANCE) & ~closed
         solids = elastic.pressure - np.maximum(q, 0.0)
         return self.yielded(elastic, solids, by_oil, closed, self.smallest - w, -1.0)
 
@@ -174,7 +177,7 @@ def limit_yield_switch(now: np.ndarray, step: np.ndarray, stiffness: float, limi
     for i in range(len(now)):
         q, new_q = now[i, 0], now[i, 0] - step[i, 0]
         solids, new_solids = stiffness * max(-now[i, 1], 0.0), stiffness * max(-now[i, 1] + step[i, 1], 0.0)
-        yields = max(q, 0.0) + solids > limit
+        yields = max(q, 0.0) + solids > limit - AMBIENT_TOLERANCE
         by_oil = yields and q > 0.0
         excess = (new_q if by_oil else max(new_q, 0.0)) + new_solids - limit
         if not yields and excess <= 0.0:
@@ -211,7 +214,7 @@ def limit_steps(
         q, w = now[i, 0], now[i, 1]
         closed = w < smallest
         solids, slope = asperity_pressure(max(w, smallest), *law)
-        by_oil = not closed and q > AMBIENT_TOLERANCE and q + solids > limit
+        by_oil = not closed and q > AMBIENT_TOLERANCE and q + solids > limit - AMBIENT_TOLERANCE
         new_q, new_w = q - limit_cavitation(q, step[i, 0]), w - step[i, 1]
         if not closed:
             new_w = max(new_w, asperity_separation(max(2.0 * solids, FREE_RISE), *law))
