@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
-    "(mesh.width), touch on 0.7 of the dry area and carry more of the load in mixed lubrication"
+    "(mesh.width), carry more of the load in mixed lubrication"
 )
 NODES_OF_FILM, NODES_OF_FRICTION, NODES_OF_SHARE = (
     8,
