@@ -352,8 +352,8 @@ def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
     monkeypatch.setattr(lives.style, "save", lambda figure, path: drawn.append(figure))
     lives.draw(made_life(), tmp_path / "a.png")
     assert drawn[0]._suptitle.get_text() == "title (100Cr6, 16MnCr5)"
-    ra = next(axes for axes in drawn[0].axes if axes.get_ylabel() == "Ra [µm]")
-    assert [line.get_linestyle() for line in ra.lines] == ["-", "--"], "surface 1 shows through"
+    worn = next(axes for axes in drawn[0].axes if axes.get_ylabel() == "worn [µm²]")
+    assert [line.get_linestyle() for line in worn.lines] == ["-", "--"], "surface 1 shows through"
 
 
 def test_stored_life_is_not_drawn_where_no_picture_is_wanted(tmp_path):
