@@ -68,7 +68,7 @@ MODELS = {
             "contact.asperity_stiffness": 0.0278,
         },
     ),
-    "strip": Model("strip of isotropic roughness", (20,), strip(*LONG, (2, 3)), (8.3, 20.0)),
+    "strip": Model("strip of isotropic roughness", (20,), strip(*LONG, (2, 3)), (2.0, 8.3, 20.0)),
 }
 COLOURS = {"smooth": style.DARK, "layer": style.SINGLE, "strip": style.SECOND}
 CHANGES: dict[str, dict[str, Any]] = {
