@@ -100,7 +100,7 @@ def test_meshes_agree_on_collisions(tmp_path):
 
     With as light a contact as this the finer mesh has fewer, as Holmes et al. say of lighter interaction.
     """
-    index = series(tmp_path, "fig6", None, 1.3, [60, 120])
+    index = series(tmp_path, "fig6", None, 1.3, [100, 200])
     with ExitStack() as stack:
         coarse, fine = in_order(open_all([index], stack))
         assert np.isin(coarse.time.round(12), fine.time.round(12)).mean() > 0.9  # stored frames coincide

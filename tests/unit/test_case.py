@@ -56,6 +56,7 @@ def test_every_case_loads_and_has_a_description(path):
         "fzg",
         "mixed",
         "life",
+        "micropitting",
         "traction",
         "cmod",
         "discs",

@@ -38,7 +38,7 @@ def test_cases_have_no_domain_warning():
     for path in CASES.glob("*.toml"):
         case = load(path)
         found = domain_warnings(case, Scales.of(case)) + domain_faults(case, Scales.of(case))
-        assert not found, path
+        assert len(found) == (path.stem == "micropitting"), path  # coarse for the inlet: its page says so
 
 
 STRIP = {

@@ -85,7 +85,7 @@ FILMS = [  # M, L, central and minimum film, pressure in the middle, h00: limits
 
 def smooth(M, L, points, changes=None):
     """Steady state of a smooth contact, its film by Moes and its pressure over p0, shape (ny, nx)."""
-    simulation = Simulation(load(point(M, L, points, changes)))
+    simulation = Simulation(load(point(M, L, points, changes)), options={"snes_atol": 1e-8})
     state, shape = simulation.advance(), simulation.scales.grid.shape
     film = moes_film(simulation.scales, state.film_thickness)
     return simulation, state, film, state.dimensionless.p.reshape(shape)
