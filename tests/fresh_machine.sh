@@ -88,7 +88,7 @@ figures=$(sed -nE 's/^ehlpetsc: done (.* newton=..)[0-9]* (.* p_max=[0-9])\.(...
 [ -n "$figures" ] || fail "README.md shows no figures of the first run"
 if [ $# != 0 ]; then
     first+=' --set time.travel=0.5'
-    figures='steps=100 newton=[0-9]+ h_min=2\.43[0-9]*e-07 p_max=1\.018[0-9]*e\+09 contacts=0'
+    figures='steps=42 newton=[0-9]+ h_min=2\.43[0-9]*e-07 p_max=1\.018[0-9]*e\+09 contacts=0'
 fi
 finished="^ehlpetsc: done $figures .*load_error=[0-9.]+e-1[0-9] "
 install='^sudo apt-get update && sudo apt-get install -y .*python3-petsc4py-real'
