@@ -10,7 +10,6 @@ rollers, microslip, rings hotter than the supply.
 
 from __future__ import annotations
 
-import argparse
 from typing import Any, NamedTuple
 
 import measured_data
@@ -133,10 +132,7 @@ def draw(data: measured_data.Measured, computed: dict[float, np.ndarray]) -> Fig
 
 def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("-o", "--output", default="bearing_torque.png", help="picture [bearing_torque.png]")
+    parser = measured_data.parser(__doc__, "bearing_torque.png")
     chosen = parser.parse_args(words)
     data, computed = measured_data.read("bearing_32008.csv"), {}
     print("supply [degrees C], speed [1/min]: torque [N m] measured; computed; ratio")

@@ -7,7 +7,6 @@ along the direction of motion when the dimple is near the middle.
 
 from __future__ import annotations
 
-import argparse
 from typing import NamedTuple
 
 import measured_data
@@ -117,10 +116,7 @@ def draw(lines: dict[tuple[Dimple, float], tuple[np.ndarray, np.ndarray]]) -> Fi
 
 def main(words: list[str] | None = None) -> None:
     """Print the table and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("-o", "--output", default="dimple.png", help="picture [dimple.png]")
+    parser = measured_data.parser(__doc__, "dimple.png")
     chosen = parser.parse_args(words)
     print("depth [um], slide/roll: mean film behind and ahead of the dimple [nm]")
     lines = {}

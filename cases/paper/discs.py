@@ -7,7 +7,6 @@ of `data/discs.csv` on a/60, prints measured and computed friction with their ra
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -113,10 +112,7 @@ def draw() -> Figure:
 
 def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("-o", "--output", default="discs.png", help="picture [discs.png]")
+    parser = measured_data.parser(__doc__, "discs.png")
     chosen = parser.parse_args(words)
     print(f"oil, speed [m/s], slide/roll ratio: measured; computed on a/{POINTS}")
     published = computed()

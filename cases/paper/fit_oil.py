@@ -12,7 +12,6 @@ any law; its constants are the first guess.
 
 from __future__ import annotations
 
-import argparse
 import re
 from pathlib import Path
 from typing import Any
@@ -125,13 +124,10 @@ def draw(fit: Fit, rows: dict[str, np.ndarray]) -> Figure:
 
 def main(words: list[str] | None = None) -> None:
     """Print the fitted constants and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = measured_data.parser(__doc__, "fit_oil.png")
     parser.add_argument("data", nargs="?", default="discs.csv", metavar="DATA.csv", help="[discs.csv]")
     parser.add_argument("--case", type=Path, default=CASE, metavar="CASE.toml", help="[cases/discs.toml]")
     parser.add_argument("--oil", help="of the column `oil` [the first one]")
-    parser.add_argument("-o", "--output", default="fit_oil.png", help="picture [fit_oil.png]")
     chosen = parser.parse_args(words)
     data = measured_data.read(chosen.data)
     oil = chosen.oil or (str(data.columns["oil"][0]) if "oil" in data.columns else None)

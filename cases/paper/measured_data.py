@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import csv
 from pathlib import Path
 from typing import NamedTuple
@@ -43,3 +44,11 @@ def _column(values: tuple[str, ...]) -> np.ndarray:
         return np.array([float(value) for value in values])
     except ValueError:
         return np.array([value.strip() for value in values])
+
+
+def parser(text: str | None, picture: str) -> argparse.ArgumentParser:
+    """Parser of a script that writes a picture; `text`: its docstring."""
+    formatter = argparse.RawDescriptionHelpFormatter
+    words = argparse.ArgumentParser(description=text, formatter_class=formatter)
+    words.add_argument("-o", "--output", default=picture, help=f"picture [{picture}]")
+    return words

@@ -7,7 +7,6 @@ in ten minutes of processor time.
 
 from __future__ import annotations
 
-import argparse
 import csv
 from collections.abc import Callable
 from typing import NamedTuple
@@ -89,11 +88,8 @@ def draw(data: measured_data.Measured) -> Figure:
 
 def main(words: list[str] | None = None) -> None:
     """Print the table and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = measured_data.parser(__doc__, "shares.png")
     parser.add_argument("--compute", action="store_true", help="compute the shares again")
-    parser.add_argument("-o", "--output", default="shares.png", help="picture [shares.png]")
     chosen = parser.parse_args(words)
     if chosen.compute:
         compute()
