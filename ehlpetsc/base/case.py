@@ -29,7 +29,6 @@ class Kind(NamedTuple):
     `faults`: of keys that the kind does not have, see :func:`ehlpetsc.case.kinds.faults_of_kind`.
     `work_time`: see :func:`ehlpetsc.run.forecast.work_time`.
     `words`: of the summary, :class:`ehlpetsc.run.explain.Words`.
-    `picture`: of the surfaces of a case, see :func:`ehlpetsc.pictures.profiles.draw_case`.
     `sweeps`: solver by the paper's sweeps; "": none.
     """
 
@@ -43,7 +42,6 @@ class Kind(NamedTuple):
     faults: str
     work_time: str
     words: str
-    picture: str
     sweeps: str = ""
 
     @property
@@ -69,7 +67,6 @@ KINDS = {
         faults="case.kinds:line_faults",
         work_time="run.forecast:line_time",
         words="run.explain:LINE",
-        picture="pictures.profiles:draw_profiles",
         sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
     )
 }
@@ -82,7 +79,6 @@ KINDS["strip"] = KINDS["line"]._replace(
     faults="case.kinds:plane_faults",
     work_time="run.forecast:plane_time",
     words="run.explain:STRIP",
-    picture="pictures.profiles:draw_areas",
     sweeps="",
 )
 KINDS["point"] = KINDS["strip"]._replace(

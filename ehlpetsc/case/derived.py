@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
-    from ehlpetsc.surfaces.samples import Samples
     from ehlpetsc.surfaces.topography import Topography
 
 MAX_VISCOSITY = 1e12  # mm^2/s
@@ -183,7 +182,7 @@ def _heights(folder: Path, surface: Values) -> np.ndarray:
     return measured_samples(folder, surface).z
 
 
-def measured_samples(folder: Path, surface: Values) -> Samples | Topography:
+def measured_samples(folder: Path, surface: Values) -> Topography:
     """Profile or map of a surface, whichever it gives; raises `ProfileError`."""
     from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
     from ehlpetsc.surfaces.samples import samples

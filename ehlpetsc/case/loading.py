@@ -35,7 +35,6 @@ from ehlpetsc.physics.law import Law
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.surfaces.samples import Samples
     from ehlpetsc.surfaces.topography import Topography
 
 DICT_NAME = "case"  # name of a case without a file in messages
@@ -278,7 +277,7 @@ def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:
             _check_plausible(samples(folder, spec), case)
 
 
-def _check_plausible(given: Samples | Topography, case: Case) -> None:
+def _check_plausible(given: Topography, case: Case) -> None:
     from ehlpetsc.surfaces.profile_checks import absurd
 
     scales = Scales.of(case)

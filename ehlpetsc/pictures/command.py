@@ -22,12 +22,13 @@ from pathlib import Path
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import frames, style
+from ehlpetsc.pictures.case_surfaces import draw_case
 from ehlpetsc.pictures.frame_data import described
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
 from ehlpetsc.pictures.movie import save_movie
 from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures
-from ehlpetsc.pictures.profiles import draw_case, draw_running_in
 from ehlpetsc.pictures.report import save_report
+from ehlpetsc.pictures.running_in import draw_running_in
 from ehlpetsc.results.index import in_order, open_all
 from ehlpetsc.results.output_guard import PAGES, PICTURES, check_derived
 from ehlpetsc.results.reader import Result

@@ -152,7 +152,10 @@ def _profile(case: Case, s: Scales, profile: RoughSurface) -> list[str]:
     (mean, ra), (rms, rq), (skewness, rsk) = profile.statistics.items()  # Ra, Rq, Rsk or Sa, Sq, Ssk
     heights = f"{mean.capitalize()} {ra * 1e6:.4f} um, {rms.capitalize()} {rq * 1e6:.4f} um"
     lines = [f"{heights}, {skewness.capitalize()} {rsk:.3f}"]
-    lines += [samples.extent_text] * bool(samples.extent_text) + list(samples.notes)
+    extent = [samples.extent_text] * samples.measured
+    if KINDS[case.kind].is_areal and samples.is_ridge:
+        extent.append("a profile: a ridge across the width")
+    lines += ["; ".join(extent)] * bool(extent) + list(samples.notes)
     if samples.measured:
         if profile.travelled > samples.length:
             lines.append(f"continued by reflection: {1e3 * profile.travelled:.4g} mm enter during the run")

@@ -6,7 +6,7 @@ The `limits` follow from the totals over all steps, are printed at the end of a 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -126,11 +126,10 @@ def _tilt_warnings(case: Case, profiles: Roughness) -> Iterator[str]:
         profile, spec = profiles.side(side), case.surface.side(side)
         if not profile or not profile.given.measured or spec.level:
             continue
-        given: Any = profile.given  # of a map with Y
-        z = np.atleast_2d(given.z)
+        z = profile.given.z
         axes = [(profile.X, z.mean(axis=0))]
         if len(z) > 1:
-            axes.append((given.Y, z.mean(axis=1)))
+            axes.append((profile.given.Y, z.mean(axis=1)))
         slopes = [np.polyfit(X - X.mean(), heights, 1)[0] for X, heights in axes]
         variance = sum(slope**2 * X.var() for slope, (X, _) in zip(slopes, axes, strict=True))
         total = float(z.var())  # 0 also of heights whose squares are below the smallest number

@@ -11,7 +11,6 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.areal_files import Map, checked, is_map, read_map
-from ehlpetsc.surfaces.continued_spline import Continuation
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, levelled, mean_surface, without_form
 from ehlpetsc.surfaces.profile_files import UNITS
 from ehlpetsc.surfaces.samples import centred, layout_of, samples, without_short_waves
@@ -39,11 +38,7 @@ def areal_samples(folder: Path, spec: Values, width: float, is_strip: bool) -> T
         _refuse(
             spec, ("spacing_across", "direction", "position_across", "mask"), "of a map, not of a profile"
         )
-        profile = samples(folder, spec)
-        along: Continuation = "mirrored" if profile.repeats else "zero"
-        return Topography(
-            profile.X, np.zeros(1), profile.z[np.newaxis], along, measured=True, notes=profile.notes
-        )
+        return samples(folder, spec)
     if spec.z is not None and spec.x is None:
         _refuse(spec, ("x_unit",), "of x, not of spacing, which is in m; leave it out")
     surface = _processed(_map(folder, spec), spec)
@@ -167,8 +162,7 @@ def synthetic_map(spec: Values, direction: float, width: float, is_strip: bool) 
         return _waves(spec, width, is_strip)
     if spec.kind == "dent" or spec.kind == "ridge" and spec.wavelength_across is not None:
         return _bump(spec, width, is_strip)
-    X, z, repeats = synthetic.sampled(spec)
-    return Topography(X, np.zeros(1), z[np.newaxis], "mirrored" if repeats else "zero")
+    return Topography.profile(*synthetic.sampled(spec))
 
 
 def _waves(spec: Values, width: float, is_strip: bool) -> Topography:

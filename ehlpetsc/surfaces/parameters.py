@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations
 
 SECTIONS = 5  # section lengths of a profile without a cut-off
@@ -13,68 +12,90 @@ CORE_FRACTION = 0.4  # of the material ratio, over which the core has its smalle
 SLOPE_WEIGHTS = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0  # at seven points
 MIN_POINTS = 50
 BINS_PER_DECADE = 12  # of the averaged spectrum
+CORRELATION_THRESHOLD = 0.2  # of the autocorrelation, for Sal and Str
+DIRECTIONS = 360  # of half a turn, in which the autocorrelation is followed
+PRUNED = 0.05  # of Sz: lower hills and dales belong to their neighbours (Wolf pruning)
+PEAK_RATIO, VALLEY_RATIO = 0.1, 0.8  # material ratios of Vmp and Vvv
+EXTREMES = 5  # peaks, and pits, of S10z
+
+PARAMETERS = (
+    ("?a", "um", "arithmetic mean height"),
+    ("?q", "um", "root mean square height"),
+    ("Rz", "um", "mean maximum height of the sections"),
+    ("Sz", "um", "maximum height"),
+    ("S10z", "um", "ten-point height, of peaks and pits of more than 5% of Sz"),
+    ("?sk", "", "skewness"),
+    ("?ku", "", "kurtosis"),
+    ("?pk", "um", "reduced peak height"),
+    ("?k", "um", "core height, from {mr1:.1%} to {mr2:.1%} of material"),
+    ("?vk", "um", "reduced valley depth"),
+    ("Vmp", "um", "volume of the peaks above 10% of material, per area"),
+    ("Vvv", "um", "volume of the valleys below 80% of material, per area"),
+    ("Rdq", "", "root mean square slope"),
+    ("Sdq", "", "root mean square gradient"),
+    ("Sdr", "%", "developed interfacial area ratio"),
+    ("l", "um", "correlation length, autocorrelation 1/e"),
+    ("Sal", "um", "autocorrelation length, 0.2 in the direction of its fastest decay"),
+    ("Str", "", "texture aspect ratio: 0 a lay, 1 isotropic"),
+    ("Std", "°", "direction of the lay against the rows, towards Y"),
+)
+"""Name, with ? for R or S, unit shown, and meaning; mr1, mr2: material ratios of the core."""
 
 
-class CoreParameters(NamedTuple):
-    """Parameters of the core, peaks and valleys by the material ratio curve.
+def profile_parameters(z: np.ndarray, dx: float, section: float | None = None) -> dict[str, float]:
+    """Parameters of heights dx [m] apart by their names in `PARAMETERS`, lengths in m; shape (n,).
 
-    `rpk`, `rk`, `rvk`: reduced peak height, core height, reduced valley depth [m].
-    `mr1`, `mr2`: material ratios at the upper and lower end of the core.
-    `top`: height of the upper end of the core [m].
+    nan: skewness and kurtosis without heights; `l` where the autocorrelation does not fall to 1/e.
+
+    `section`: section length [m], the cut-off.
     """
+    z = deviations(z)
+    return _of_heights(z, "R") | {
+        "Rz": mean_maximum_height(z, dx, section),
+        "Rdq": float(np.sqrt(np.mean(slopes(z, dx) ** 2))),
+        "l": correlation_length(z, dx),
+    }
 
-    rpk: float
-    rk: float
-    rvk: float
-    mr1: float
-    mr2: float
-    top: float
 
+def areal_parameters(z: np.ndarray, dx: float, dy: float) -> dict[str, float]:
+    """Parameters of a map, shape (ny, nx), with spacings [m], as of :func:`profile_parameters`.
 
-class ProfileParameters(NamedTuple):
-    """Parameters of heights minus their mean.
-
-    `ra`, `rq`, `rz`: arithmetic mean and root mean square height, mean maximum height of the sections [m].
-    `rsk`, `rku`: skewness and kurtosis.
-    `rdq`: root mean square slope.
-    `correlation_length`: lag at which the autocorrelation falls to 1/e [m]; nan where it does not.
+    nan: on a plane those of shape; where the autocorrelation stays above 0.2 up to half the size of the map,
+    in all directions Sal, in one Str.
     """
-
-    ra: float
-    rq: float
-    rz: float
-    rsk: float
-    rku: float
-    core: CoreParameters
-    rdq: float
-    correlation_length: float
-
-    @classmethod
-    def of(cls, z: np.ndarray, dx: float, section: float | None = None) -> ProfileParameters:
-        """Parameters of heights that are dx apart; `section`: section length [m], the cut-off."""
-        z = deviations(z)
-        rq = float(np.sqrt(np.mean(z**2)))
-        skewness, kurtosis = (float(np.mean((z / rq) ** k)) if rq > 0 else np.nan for k in (3, 4))
-        return cls(
-            ra=float(np.abs(z).mean()),
-            rq=rq,
-            rz=mean_maximum_height(z, dx, section),
-            rsk=skewness,
-            rku=kurtosis,
-            core=core_parameters(z),
-            rdq=float(np.sqrt(np.mean(slopes(z, dx) ** 2))),
-            correlation_length=correlation_length(z, dx),
-        )
+    z = deviations(z)
+    upper, lower = np.quantile(z, (1.0 - PEAK_RATIO, 1.0 - VALLEY_RATIO))
+    fastest, slowest = correlation_lengths(z, dx, dy) if z.any() else (np.nan, np.nan)
+    return _of_heights(z, "S") | {
+        "Sz": float(np.ptp(z)),
+        "S10z": ten_point_height(z),
+        "Vmp": float(np.maximum(z - upper, 0.0).mean()),
+        "Vvv": float(np.maximum(lower - z, 0.0).mean()),
+        "Sdq": rms_gradient(z, dx, dy),
+        "Sdr": developed_ratio(z, dx, dy),
+        "Sal": fastest,
+        "Str": fastest / slowest,
+        "Std": texture_direction(z, dx, dy) if z.any() else np.nan,
+    }
 
 
-def equally_spaced(x: np.ndarray, z: np.ndarray) -> tuple[float, np.ndarray, bool]:
-    """Mean spacing [m], heights at it, and whether they were interpolated, by the spline of a run."""
+def _of_heights(z: np.ndarray, letter: str) -> dict[str, float]:
+    """Parameters of heights of mean 0 that profiles and maps share, with the letter of their names."""
+    q = float(np.sqrt(np.mean(z**2)))
+    sk, ku = (float(np.mean((z / q) ** k)) if q > 0 else np.nan for k in (3, 4))
+    found = {"a": float(np.abs(z).mean()), "q": q, "sk": sk, "ku": ku} | core_parameters(z)
+    return {letter + name: value for name, value in found.items()}
+
+
+def equally_spaced(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Profile at its mean spacing, and whether it was interpolated, by the spline of a run."""
     from scipy.interpolate import CubicSpline
 
     step = (x[-1] - x[0]) / (x.size - 1)
     if np.ptp(np.diff(x)) <= 2 * SPACING_TOLERANCE * step:
-        return step, z, False
-    return step, CubicSpline(x, z, bc_type="clamped")(np.linspace(x[0], x[-1], x.size)), True
+        return x, z, False
+    even = np.linspace(x[0], x[-1], x.size)
+    return even, CubicSpline(x, z, bc_type="clamped")(even), True
 
 
 def mean_maximum_height(z: np.ndarray, dx: float, section: float | None = None) -> float:
@@ -83,12 +104,15 @@ def mean_maximum_height(z: np.ndarray, dx: float, section: float | None = None) 
     return float(np.mean([np.ptp(part) for part in np.array_split(z, min(count, z.size))]))
 
 
-def core_parameters(z: np.ndarray) -> CoreParameters:
-    """Rpk, Rk, Rvk by the equivalent line of ISO 21920-2 (ISO 13565-2).
+def core_parameters(z: np.ndarray) -> dict[str, float]:
+    """Rpk, Rk, Rvk [m] without their R, by the equivalent line of ISO 21920-2 (ISO 13565-2).
 
     The line is the least-squares one over the 40 % of the material ratio curve whose secant falls least; at
     material ratios 0 and 1 it gives the ends of the core. Triangles with the areas of the peaks above it and
     the valleys below have the heights Rpk and Rvk. Also for heights of an areal surface (Spk, Sk, Svk).
+
+    Returns them as "pk", "k", "vk", with the material ratios "mr1" and "mr2" at the upper and lower end of
+    the core, and the height of its upper end, "top" [m].
     """
     heights, ratio = np.sort(z, axis=None)[::-1], (np.arange(z.size) + 0.5) / z.size
     width = max(int(round(CORE_FRACTION * z.size)), 1)
@@ -100,7 +124,8 @@ def core_parameters(z: np.ndarray) -> CoreParameters:
     mr1, below = float((heights > top).mean()), float((heights < bottom).mean())
     rpk = 2.0 * peaks.mean() / mr1 if mr1 else 0.0
     rvk = 2.0 * valleys.mean() / below if below else 0.0
-    return CoreParameters(float(rpk), 0.0 - float(fall), float(rvk), mr1, 1.0 - below, float(top))
+    lengths = {"pk": float(rpk), "k": 0.0 - float(fall), "vk": float(rvk), "top": float(top)}
+    return lengths | {"mr1": mr1, "mr2": 1.0 - below}
 
 
 def slopes(z: np.ndarray, dx: float) -> np.ndarray:
@@ -157,41 +182,6 @@ def binned(q: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return sums[0][used] / count[used], sums[1][used] / count[used]
 
 
-CORRELATION_THRESHOLD = 0.2  # of the autocorrelation, for Sal and Str
-DIRECTIONS = 360  # of half a turn, in which the autocorrelation is followed
-
-
-class ArealParameters(NamedTuple):
-    """Parameters of heights minus their mean.
-
-    `sa`, `sq`: arithmetic mean and root mean square height [m].
-    `ssk`, `sku`: skewness and kurtosis; nan on a plane.
-    `sdq`: root mean square gradient.
-    `sal`: autocorrelation length: lag at which the autocorrelation falls to 0.2 soonest, in any direction
-        [m]; nan where it stays above up to half the size of the map.
-    `str`: texture aspect ratio, `sal` over the lag in the direction in which it falls last: 0 for a lay, 1
-        for an isotropic surface; nan where it stays above in some direction.
-    """
-
-    sa: float
-    sq: float
-    ssk: float
-    sku: float
-    sdq: float
-    sal: float
-    str: float
-
-    @classmethod
-    def of(cls, z: np.ndarray, dx: float, dy: float) -> ArealParameters:
-        """Parameters of a map, shape (ny, nx), with spacings [m]."""
-        z = deviations(z)
-        sq = float(np.sqrt(np.mean(z**2)))
-        skewness, kurtosis = (float(np.mean((z / sq) ** k)) if sq > 0 else np.nan for k in (3, 4))
-        fastest, slowest = correlation_lengths(z, dx, dy) if sq > 0 else (np.nan, np.nan)
-        gradient, aspect = rms_gradient(z, dx, dy), fastest / slowest
-        return cls(float(np.abs(z).mean()), sq, skewness, kurtosis, gradient, fastest, aspect)
-
-
 def rms_gradient(z: np.ndarray, dx: float, dy: float) -> float:
     """Sdq: root mean square of the gradient, by the formula of :func:`slopes` along rows and columns."""
     return float(np.sqrt(np.mean(slopes(z, dx) ** 2) + np.mean(slopes(z.T, dy) ** 2)))
@@ -238,3 +228,82 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
     if np.isnan(fallen).all():
         return np.nan, np.nan
     return float(np.nanmin(fallen)), float(fallen.max())
+
+
+def developed_ratio(z: np.ndarray, dx: float, dy: float) -> float:
+    r"""Sdr: mean of :math:`\sqrt{1+z_x^2+z_y^2}-1` where both slopes exist.
+
+    Slopes by :func:`slopes`.
+    """
+    along, across = slopes(z, dx), slopes(z.T, dy).T
+    rows, columns = (
+        slice(lost // 2, lost // 2 + count)
+        for lost, count in (
+            (len(along) - len(across), len(across)),
+            (across.shape[1] - along.shape[1], along.shape[1]),
+        )
+    )
+    squared = along[rows] ** 2 + across[:, columns] ** 2
+    return float(np.mean(squared / (np.sqrt(1.0 + squared) + 1.0)))  # without cancellation
+
+
+def texture_direction(z: np.ndarray, dx: float, dy: float) -> float:
+    r"""Std [degrees]: normal to the direction with the largest :math:`\int r|F(r,\theta)|^2 dr`.
+
+    F is the Fourier transform of the heights in polar coordinates, with a Hann window along x and y.
+    """
+    from scipy.ndimage import map_coordinates
+
+    window = np.multiply.outer(*(np.hanning(n + 2)[1:-1] for n in z.shape))
+    power = np.fft.fftshift(np.abs(np.fft.fft2(z * window)) ** 2)
+    steps = [1.0 / (n * step) for n, step in zip(z.shape, (dy, dx), strict=True)]  # of frequencies
+    middle = [n // 2 for n in z.shape]
+    radius = min(steps) * np.arange(1, int(0.5 / max(dx, dy) / min(steps)) + 1)
+    angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    places = [
+        middle[0] + np.outer(radius, np.sin(angle)) / steps[0],
+        middle[1] + np.outer(radius, np.cos(angle)) / steps[1],
+    ]
+    along = radius @ map_coordinates(power, places, order=1)
+    return float(np.degrees(angle[along.argmax()]) + 90.0) % 180.0
+
+
+def ten_point_height(z: np.ndarray) -> float:
+    """S10z [m] of heights of mean 0."""
+    least = PRUNED * np.ptp(z)
+    return float(sum(np.sort(peaks(side, least))[-EXTREMES:].mean() for side in (z, -z)))
+
+
+def peaks(z: np.ndarray, least: float) -> np.ndarray:
+    """Heights of the peaks from which every way to a higher one falls by `least` or more."""
+    order = np.argsort(-z, axis=None, kind="stable")
+    return _peaks(np.ascontiguousarray(z, float), order, float(least))
+
+
+@compiled()
+def _peaks(z: np.ndarray, order: np.ndarray, least: float) -> np.ndarray:
+    """Peaks of hills that grow as points are added in falling order and end where they meet higher ones."""
+    ny, nx = z.shape
+    heights = z.ravel()
+    parent = np.full(z.size, -1)
+    is_peak = np.zeros(z.size, np.bool_)
+    for point in order:
+        row, column, best = point // nx, point % nx, -1
+        for k in range(9):
+            j, i = row + k // 3 - 1, column + k % 3 - 1
+            if j < 0 or j >= ny or i < 0 or i >= nx or parent[j * nx + i] < 0:
+                continue
+            root = j * nx + i
+            while parent[root] != root:
+                parent[root] = parent[parent[root]]
+                root = parent[root]
+            if best < 0:
+                best = root
+            elif root != best:
+                lower = root if heights[root] <= heights[best] else best
+                best = best if lower == root else root
+                is_peak[lower] = heights[lower] - heights[point] >= least
+                parent[lower] = best
+        parent[point] = point if best < 0 else best
+    is_peak[order[0]] = True
+    return heights[is_peak]

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
-    from ehlpetsc.surfaces.samples import Samples
     from ehlpetsc.surfaces.topography import Topography
 
 MAX_SPACING = 0.25  # half-widths between two points: wider than asperities
@@ -25,9 +24,7 @@ OTHER_SPACING = "is x in another unit, x_unit or unit, or spacing not in m?"
 OTHER_HEIGHTS = 'are the heights in another unit, unit = "mm", "um" or "nm", or is level or form needed?'
 
 
-def absurd(
-    surface: Samples | Topography, a: float, across: float, approach: float, film: float
-) -> str | None:
+def absurd(surface: Topography, a: float, across: float, approach: float, film: float) -> str | None:
     """Message on a profile or map that is implausible for a contact, mostly by a wrong unit; None: plausible.
 
     `a`, `across`: half-width along x, and across, of a strip its width [m].
@@ -43,7 +40,7 @@ def absurd(
     return fault and "{}: not a surface of this contact; {}".format(*fault)
 
 
-def doubts(surface: Samples | Topography) -> list[str]:
+def doubts(surface: Topography) -> list[str]:
     """Warning of a profile or map whose spacings or heights are hardly those of roughness, a line or none."""
     fault = _implausible(surface, (USUAL_SPACING, USUAL_SPACING), USUAL_RQ)
     if fault is None and 0.0 < (rq := float(surface.z.std())) < SMALLEST_RQ:
@@ -52,7 +49,7 @@ def doubts(surface: Samples | Topography) -> list[str]:
 
 
 def _implausible(
-    surface: Samples | Topography,
+    surface: Topography,
     spacings: tuple[float, float],
     rq: float,
     beside: tuple[str, str] = ("", ""),
@@ -83,7 +80,7 @@ def mesh_warnings(rough: Roughness | None, scales: Scales, limit: float = MAX_UN
     notes, spacings = [], scales.grid.spacings[::-1]
     shortest = " x ".join(f"{1e6 * WAVE_NODES * spacing:.2f}" for spacing in dict.fromkeys(spacings))
     for side, profile in (rough.sides if rough else {}).items():
-        fraction = profile.unresolved_variance(*spacings)
+        fraction = profile.given.unresolved_variance(*spacings)
         if fraction > limit:
             kind = "map" if len(spacings) > 1 else "profile"
             notes.append(
@@ -102,7 +99,7 @@ def _needed_points(profile: RoughSurface, scales: Scales, limit: float) -> int |
     """
     spacings, half_widths = scales.grid.spacings[::-1], (scales.a, scales.b)
     factor = 1.0
-    while profile.unresolved_variance(*(spacing / factor for spacing in spacings)) > limit:
+    while profile.given.unresolved_variance(*(spacing / factor for spacing in spacings)) > limit:
         factor *= 1.1
     needed = [
         int(np.ceil(factor * (size if np.isfinite(size) else scales.a) / spacing))

@@ -1,8 +1,7 @@
-"""Samples of one surface, from its table in the case file."""
+"""Profile of one surface, from its table in the case file."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ import numpy as np
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.filters import deviations, levelled, mean_line, without_form
 from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, checked, read_profile
+from ehlpetsc.surfaces.topography import Topography
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
@@ -18,57 +18,14 @@ if TYPE_CHECKING:
 MEAN_TOLERANCE = 1e-3  # of Rq: smaller means are rounding
 
 
-@dataclass(frozen=True)
-class Samples:
-    """Heights of one surface, measured or synthetic.
-
-    `X`, `z`: m; heights positive out of the metal, shape (n,).
-    `repeats`: whether the profile is continued by reflection at its ends, otherwise by height 0.
-    `measured`: whether the heights are from a file.
-    `notes`: notes on the processing of the numbers of a file.
-    """
-
-    X: np.ndarray
-    z: np.ndarray
-    repeats: bool
-    measured: bool = False
-    notes: tuple = ()
-
-    @property
-    def length(self) -> float:
-        """Distance from the first sample to the last [m]."""
-        return float(self.X[-1] - self.X[0])
-
-    @property
-    def spacing(self) -> float:
-        """Mean distance of the samples [m]."""
-        return self.length / (self.X.size - 1)
-
-    @property
-    def spacings(self) -> tuple[float]:
-        """`spacing`, as of a map [m]."""
-        return (self.spacing,)
-
-    @property
-    def extent_text(self) -> str:
-        """Length and points for messages; "" of a synthetic profile."""
-        points = f"{self.X.size} points {1e6 * self.spacing:.4g} um apart"
-        return f"{1e3 * self.length:.4g} mm long, {points}" if self.measured else ""
-
-    @property
-    def rms_slope(self) -> float:
-        """Root mean square slope between neighbouring samples."""
-        return float(np.sqrt(np.mean((np.diff(self.z) / np.diff(self.X)) ** 2)))
-
-
-def samples(folder: Path, spec: Values) -> Samples:
-    """Samples of one surface: read or generated, levelled, filtered, centred, flipped, scaled.
+def samples(folder: Path, spec: Values) -> Topography:
+    """Profile of one surface: read or generated, levelled, filtered, centred, flipped, scaled.
 
     Profile files are in `folder`, that of the case file.
     """
     if spec.synthetic is not None:
         X, z, repeats = synthetic.sampled(spec.synthetic)
-        return Samples(X, spec.scale * z, repeats)
+        return Topography.profile(X, spec.scale * z, repeats)
     if spec.z is not None:
         unit, x_unit = spec.unit or "m", spec.x_unit or spec.unit or "m"
         steps = spec.spacing * np.arange(len(spec.z)) if spec.x is None else UNITS[x_unit] * np.array(spec.x)
@@ -88,7 +45,7 @@ def samples(folder: Path, spec: Values) -> Samples:
     z, notes = centred(z, given, notes)
     if spec.flip:
         X, z = X[-1] + X[0] - X[::-1], z[::-1]
-    return Samples(X, z if spec.scale == 1.0 else spec.scale * z, True, True, notes)
+    return Topography.profile(X, spec.scale * z, measured=True, notes=notes)
 
 
 def layout_of(spec: Values) -> Layout:

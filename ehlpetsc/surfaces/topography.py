@@ -1,15 +1,16 @@
-"""Heights of one areal surface on a uniform grid."""
+"""Heights of one surface: a profile, or a map on a uniform grid."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from ehlpetsc.surfaces.continued_spline import Continuation, ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import WAVE_NODES
-from ehlpetsc.surfaces.parameters import ArealParameters, rms_gradient
+from ehlpetsc.surfaces.parameters import areal_parameters, rms_gradient
 
 RIDGE_ROWS = 4  # of a map of ridges, for its parameters
 BLOCK = 256  # columns whose splines across are in memory at a time
@@ -17,10 +18,10 @@ BLOCK = 256  # columns whose splines across are in memory at a time
 
 @dataclass(frozen=True)
 class Topography:
-    """Heights of one areal surface, measured or synthetic.
+    """Heights of one surface, measured or synthetic.
 
-    `X`, `Y`: equally spaced, m, shape (nx,), (ny,); with one row the heights are ridges, independent of Y,
-        whose X need not be equally spaced.
+    `X`, `Y`: equally spaced, m, shape (nx,), (ny,); with one row the heights are a profile, in the plane
+        ridges, independent of Y, whose X need not be equally spaced.
     `z`: heights [m], positive out of the metal, shape (ny, nx); the last row or column equals the first
         where they are periodic.
     `along`, `across`: continuation along X and Y.
@@ -38,9 +39,14 @@ class Topography:
     measured: bool = False
     notes: tuple[str, ...] = ()
 
+    @classmethod
+    def profile(cls, X: np.ndarray, z: np.ndarray, repeats: bool = True, **measured: Any) -> Topography:
+        """Profile, shape (nx,), continued by reflection at its ends or by height 0."""
+        return cls(X, np.zeros(1), z[np.newaxis], "mirrored" if repeats else "zero", **measured)
+
     @property
     def is_ridge(self) -> bool:
-        """Whether the heights do not depend on Y."""
+        """Whether the heights do not depend on Y, as those of a profile."""
         return len(self.Y) == 1
 
     @property
@@ -70,9 +76,9 @@ class Topography:
 
     @property
     def rms_slope(self) -> float:
-        """Sdq, root mean square gradient."""
+        """Root mean square slope between neighbouring points of a profile; of a map Sdq."""
         if self.is_ridge:
-            return float(np.sqrt(np.mean(np.gradient(self.z[0], self.X) ** 2)))
+            return float(np.sqrt(np.mean((np.diff(self.z[0]) / np.diff(self.X)) ** 2)))
         return rms_gradient(self.z, self.dx, self.dy)
 
     @property
@@ -88,36 +94,36 @@ class Topography:
 
     @property
     def extent_text(self) -> str:
-        """Size and points for messages; "" of a synthetic map."""
+        """Size and points for messages."""
         if self.is_ridge:
-            points = f"{1e3 * self.length:.4g} mm long, {len(self.X)} points {1e6 * self.dx:.4g} um apart; "
-            return f"{points if self.measured else ''}a profile: a ridge across the width"
+            return f"{1e3 * self.length:.4g} mm long, {len(self.X)} points {1e6 * self.dx:.4g} um apart"
         width, steps = 1e3 * float(self.Y[-1] - self.Y[0]), f"{1e6 * self.dx:.4g} x {1e6 * self.dy:.4g}"
-        points = f"{len(self.X)} x {len(self.Y)} points {steps} um apart"
-        return f"{1e3 * self.length:.4g} x {width:.4g} mm, {points}" if self.measured else ""
+        return (
+            f"{1e3 * self.length:.4g} x {width:.4g} mm, {len(self.X)} x {len(self.Y)} points {steps} um apart"
+        )
 
     @property
     def statistics(self) -> dict[str, float]:
-        """Sa and Sq [m], Ssk, see :class:`ehlpetsc.surfaces.parameters.ArealParameters`."""
+        """Mean and root mean square height, "a" and "q" [m], and skewness, "sk"."""
         z, sq = self._once - self._once.mean(), self.sq
         skewness = float(((z / sq) ** 3).mean()) if sq > 0 else 0.0
-        return {"sa": float(np.abs(z).mean()), "sq": sq, "ssk": skewness}
+        return {"a": float(np.abs(z).mean()), "q": sq, "sk": skewness}
 
     @cached_property
-    def parameters(self) -> ArealParameters:
-        """Roughness parameters of the map."""
+    def parameters(self) -> dict[str, float]:
+        """Roughness parameters of the map by their names."""
         z = np.repeat(self._once, RIDGE_ROWS, axis=0) if self.is_ridge else self._once
-        return ArealParameters.of(z, self.dx, self.dy)
+        return areal_parameters(z, self.dx, self.dy)
 
     def row_means(self, faces: np.ndarray) -> np.ndarray:
         """Mean heights [m] between faces in Y, at the columns.
 
         `faces`: increasing or decreasing, shape (rows + 1,).
 
-        Returns shape (nx, rows); of ridges (nx, 1).
+        Returns shape (nx, rows); of ridges (nx,).
         """
         if self.is_ridge:
-            return self.z.T
+            return self.z[0]
         blocks = np.array_split(self.z, range(BLOCK, len(self.X), BLOCK), axis=1)
         return np.concatenate([ContinuedSpline(self.Y, z, self.across).means(faces).T for z in blocks])
 
@@ -137,7 +143,7 @@ class Topography:
         z = np.concatenate([ContinuedSpline(self.Y, block, "mirrored")(Y) for block in blocks], axis=1)
         return replace(self, Y=Y, z=z, middle=begin + 0.5 * part)
 
-    def unresolved_variance(self, dx: float, dy: float) -> float:
+    def unresolved_variance(self, dx: float, dy: float = 0.0) -> float:
         """Fraction of the height variance in waves shorter than `WAVE_NODES` spacings of the mesh [m]."""
         power, in_y, in_x = self._spectrum
         short = np.logical_or.outer(in_y * WAVE_NODES * dy > 1.0, in_x * WAVE_NODES * dx > 1.0)

@@ -13,7 +13,7 @@ from ehlpetsc.surfaces.areal_samples import areal_samples
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import Passage
 from ehlpetsc.surfaces.profile_checks import absurd
-from ehlpetsc.surfaces.roughness import MovingTopography, Roughness
+from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
 from ehlpetsc.surfaces.topography import Topography
 
 A = 100e-6  # half-width, m
@@ -38,7 +38,8 @@ def random_map(shape=(41, 61), step=5e-6, **options):
 
 
 def gap(topography, passage=AT_REST, travelled=0.0, y=Y_NODES):
-    surface = MovingTopography(topography, passage, y, DY)
+    faces = np.append(y - 0.5 * DY, y[-1] + 0.5 * DY)
+    surface = RoughSurface(topography, passage, faces)
     return Roughness(surface, None).phi_after(X_NODES, (travelled, 0.0), DX).reshape(len(y), -1)
 
 
@@ -203,9 +204,9 @@ def test_a_ridge_is_endless_unless_it_has_a_width_across():
 def test_self_affine_heights_and_their_stretch():
     keys = {"kind": "self-affine", "sq": 2e-7, "hurst": 0.8, "roll_off": 40e-6, "short_cutoff": 10e-6}
     isotropic = made(**keys, seed=1).parameters
-    assert isotropic.sq == pytest.approx(2e-7, rel=1e-12) and isotropic.str > 0.8
+    assert isotropic["Sq"] == pytest.approx(2e-7, rel=1e-12) and isotropic["Str"] > 0.8
     stretched = made(**keys, seed=1, peklenik=4.0).parameters
-    assert stretched.str == pytest.approx(0.25, abs=0.06)
+    assert stretched["Str"] == pytest.approx(0.25, abs=0.06)
     assert made(**keys, seed=1, scale=-2.0).sq == pytest.approx(4e-7, rel=1e-12)
 
 
@@ -218,12 +219,12 @@ def test_random_surfaces_have_the_period_of_the_mesh_across():
 def test_ground_surfaces_have_their_height_skewness_and_lay():
     keys = {"kind": "ground", "ra": 1e-7, "correlation": 10e-6, "correlation_across": 30e-6, "seed": 2}
     surface = made(**keys, skewness=-1.0)
-    assert surface.parameters.sa == pytest.approx(1e-7, rel=1e-9)
-    assert surface.parameters.ssk == pytest.approx(-1.0, abs=1e-6)
+    assert surface.parameters["Sa"] == pytest.approx(1e-7, rel=1e-9)
+    assert surface.parameters["Ssk"] == pytest.approx(-1.0, abs=1e-6)
     normal = made(**keys).parameters
     # exp(-(lag/l)^2) falls to 0.2 at l sqrt(ln 5)
-    assert normal.sal == pytest.approx(10e-6 * np.sqrt(np.log(5.0)), rel=0.08)
-    assert normal.str == pytest.approx(1.0 / 3.0, abs=0.06)
+    assert normal["Sal"] == pytest.approx(10e-6 * np.sqrt(np.log(5.0)), rel=0.08)
+    assert normal["Str"] == pytest.approx(1.0 / 3.0, abs=0.06)
 
 
 def test_a_direction_of_a_wave_is_refused():

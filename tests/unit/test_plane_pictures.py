@@ -20,7 +20,7 @@ from support.made_results import P0, A, change_case, make_plane, make_result
 from ehlpetsc import read_result
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import fringes, movie, over_time, plane, report, style
-from ehlpetsc.pictures.profiles import draw_case
+from ehlpetsc.pictures.case_surfaces import draw_case
 
 OPTIONS = plot.arguments().parse_args(["x"])
 CASE = """title = "rough ball"
@@ -292,7 +292,7 @@ def test_lines_load_no_module_of_planes(tmp_path):
     words = [sys.executable, "-c", code, str(tmp_path / "line.h5")]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
     assert "ehlpetsc.pictures.frames" in loaded
-    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes|areal_surface)", name)]
+    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes)", name)]
 
 
 def test_text_of_a_narrow_picture_fits(point, tmp_path):

@@ -18,8 +18,8 @@ from ehlpetsc.physics.scales import Scales, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing
 from ehlpetsc.pictures import line, movie, over_time, style
+from ehlpetsc.pictures.case_surfaces import draw_case, passing
 from ehlpetsc.pictures.frame_data import Frame, common
-from ehlpetsc.pictures.profiles import draw_case, passing
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces.roughness import Roughness

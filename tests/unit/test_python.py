@@ -61,7 +61,7 @@ def test_profiles_may_be_arrays():
     for given in (in_metres, in_um):
         case = ehlpetsc.load(CASES / "table1_rough.toml", {"surface.1": given, "surface.2": None})
         profile = ehlpetsc.Simulation(case).roughness.surface_1
-        assert profile.ra == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-9)
+        assert profile.statistics["ra"] == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-9)
 
 
 def test_profile_of_many_points_is_solved_in_memory():

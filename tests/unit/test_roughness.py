@@ -17,8 +17,9 @@ from ehlpetsc.surfaces.filters import levelled, mean_line
 from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH, Passage, directed_speeds
 from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.profile_files import read_profile
-from ehlpetsc.surfaces.roughness import Profile, Roughness
-from ehlpetsc.surfaces.samples import Samples, samples
+from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
+from ehlpetsc.surfaces.samples import samples
+from ehlpetsc.surfaces.topography import Topography
 
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
 A = 1e-3  # half-width of the domains made here, m
@@ -32,7 +33,7 @@ def phi(rough, x, t, cell=None):
 
 def profile(X, z, speed=1.0, moving=True, repeats=True, duration=1.0):
     passage = Passage(speed, moving, -2.5 * A, 1.5 * A, RAMP_LENGTH * A, abs(speed) * duration)
-    return Profile(Samples(X, z, repeats), passage)
+    return RoughSurface(Topography.profile(X, z, repeats), passage)
 
 
 def rough(name, *overrides):
@@ -116,10 +117,10 @@ def test_invalid_filter_input_is_refused():
 def test_surface_keys_are_applied_in_order():
     base, _ = rough("table1_rough.toml")
     flipped, _ = rough("table1_rough.toml", "surface.1.flip=true")
-    np.testing.assert_array_equal(flipped.surface_1.heights, base.surface_1.heights[::-1])
+    np.testing.assert_array_equal(flipped.surface_1.given.z, base.surface_1.given.z[:, ::-1])
     turned, _ = rough("table1_rough.toml", "surface.1.scale=-2")
-    assert turned.surface_1.rsk == pytest.approx(-base.surface_1.rsk)
-    assert turned.surface_1.ra == pytest.approx(4 * base.surface_1.ra)
+    assert turned.surface_1.statistics["rsk"] == pytest.approx(-base.surface_1.statistics["rsk"])
+    assert turned.surface_1.statistics["ra"] == pytest.approx(4 * base.surface_1.statistics["ra"])
     filtered, _ = rough("table1_rough.toml", "surface.1.cutoff=20e-6", "surface.1.level=true")
     assert filtered.surface_1.rq < 0.7 * base.surface_1.rq
 
@@ -294,16 +295,16 @@ def test_square_wave_stays_within_its_amplitude():
 def test_ground_heights_have_their_specified_statistics(skewness):
     spec = f"{{kind='ground', ra=0.3e-6, correlation=25e-6, skewness={skewness}, seed=4}}"
     r, _ = rough("table1_smooth.toml", f"surface.2.synthetic={spec}")
-    assert r.surface_2.ra == pytest.approx(0.3e-6)
-    assert r.surface_2.rsk == pytest.approx(skewness, abs=1e-6)
-    z = r.surface_2.heights - r.surface_2.heights.mean()
+    assert r.surface_2.statistics["ra"] == pytest.approx(0.3e-6)
+    assert r.surface_2.statistics["rsk"] == pytest.approx(skewness, abs=1e-6)
+    z = r.surface_2.given.z[0] - r.surface_2.given.z.mean()
     assert z[10:] @ z[:-10] / (z @ z) == pytest.approx(np.exp(-1), abs=0.1)  # one correlation length apart
 
 
 def test_ground_heights_depend_on_their_seed_only():
     spec = "surface.2.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
     first, again, other = (
-        rough("table1_smooth.toml", spec.format(seed), travel)[0].surface_2.heights
+        rough("table1_smooth.toml", spec.format(seed), travel)[0].surface_2.given.z[0]
         for seed, travel in ((1, "time.travel=2"), (1, "time.travel=9"), (2, "time.travel=2"))
     )
     np.testing.assert_array_equal(first, again)
@@ -317,10 +318,10 @@ def test_self_affine_profile_has_its_height_and_waves():
     profile = r.surface_2
     assert profile.rq == pytest.approx(0.2e-6, rel=1e-9)
     assert profile.given.length == pytest.approx(200 * 80e-6, rel=1e-3)
-    assert profile.unresolved_variance(1.6e-6) < 0.01 < profile.unresolved_variance(4e-6)
+    assert profile.given.unresolved_variance(1.6e-6) < 0.01 < profile.given.unresolved_variance(4e-6)
     falling = (1.0 - 10.0**-1.6) / 1.6  # of the variance, beside 1 of the plateau
     shorter = (0.5 + falling) / (1.0 + falling)  # than twice roll_off
-    assert profile.unresolved_variance(40e-6) == pytest.approx(shorter, abs=0.03)
+    assert profile.given.unresolved_variance(40e-6) == pytest.approx(shorter, abs=0.03)
 
 
 @pytest.mark.parametrize(
@@ -349,7 +350,7 @@ def test_coarse_mesh_note_has_its_figure():
 def test_fraction_of_short_waves_is_that_of_the_variance():
     X = np.arange(8193) * 1e-6
     z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)
-    p = profile(X, z)
+    p = profile(X, z).given
     assert p.unresolved_variance(5e-6) == pytest.approx(0.1, abs=1e-3)  # 4 nodes are 20 um: the 16 um wave
     assert p.unresolved_variance(3.9e-6) < 1e-3
 
@@ -360,7 +361,7 @@ def test_constant_offset_is_removed_with_a_note(tmp_path):
     spec = values_of(PROFILE, {"file": "p.csv", "scale": 0.5})
     given = samples(tmp_path, spec)
     assert len(given.notes) == 1 and "height of 1 um " in given.notes[0]
-    np.testing.assert_allclose(given.z, 0.5 * z, atol=1e-14)
+    np.testing.assert_allclose(given.z[0], 0.5 * z, atol=1e-14)
     assert samples(ALICONA.parent, values_of(PROFILE, {"file": ALICONA.name})).notes == ()
 
 

@@ -1,11 +1,8 @@
-"""Profiles or maps of a case before a run, with the part that passes the contact; passes of running-in."""
+"""Surfaces, pressure, contact and damage pass by pass, as the surfaces run in."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,95 +10,17 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.case.loading import Case, load
-from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
 from ehlpetsc.results.running_in import heights, pass_summary
-from ehlpetsc.surfaces.profile_checks import entry_times
-from ehlpetsc.surfaces.roughness import Profile, Roughness
 
-if TYPE_CHECKING:
-    from ehlpetsc.surfaces.roughness import MovingTopography, RoughSurface
-
-CASE_SIZE = (9.0, 3.3)  # inches, for each profile
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
 LENGTH, AREA, VOLUME = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
 MEASURES = (LENGTH, AREA), (AREA, VOLUME)  # of contact and of its depths, per width and of the whole contact
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
-
-
-def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
-    """Profiles or maps of a case file; overrides as in `ehlpetsc.load`."""
-    case = load(path, overrides)
-    scales = Scales.of(case)
-    rough = Roughness.of(case, scales)
-    sides = [side for side in ("1", "2") if rough and rough.side(side)]
-    if not sides:
-        raise OutputError(f"{path}: both surfaces are smooth: there is no profile to draw")
-    figure = KINDS[case.kind].part("picture")({side: rough.side(side) for side in sides}, case, scales)
-    texts = [f"a = {1e3 * scales.a:.3g} mm", f"p0 = {1e-9 * scales.p0:.3g} GPa"]
-    if case.conditions is not None:
-        texts.append("of the widest contact; conditions over time")
-    elif case.motion:
-        texts.append(f"u = {scales.u:g} m/s, slide/roll ratio {scales.xi:g}")
-    style.set_title(figure, case.title, ", ".join(texts))
-    return figure
-
-
-def draw_profiles(surfaces: dict[str, Profile], case: Case, scales: Scales) -> Figure:
-    """Profiles of a line contact, one above the other."""
-    size = (CASE_SIZE[0], CASE_SIZE[1] * len(surfaces) + 0.5)
-    figure, axes = style.new_figure(len(surfaces), 1, size, squeeze=False)
-    for panel, (side, profile) in zip(axes[:, 0], surfaces.items(), strict=True):
-        draw_heights(panel, profile, case, scales, style.SURFACES[side])
-        panel.set_ylabel(f"surface {side} [µm]")
-    return figure
-
-
-def draw_areas(surfaces: dict[str, MovingTopography], case: Case, scales: Scales) -> Figure:
-    """Maps of a strip or a point contact."""
-    from ehlpetsc.pictures.areal_surface import draw_maps
-
-    parts = [passing(surface, case, scales) for surface in surfaces.values()]
-    return draw_maps(surfaces, parts, scales, case.time.travel if case.time else 0.0)
-
-
-def passing(profile: RoughSurface, case: Case, scales: Scales) -> tuple[float, float]:
-    """Ends [m] of the part of a profile that passes the whole contact; equal if there is none."""
-    first, last = float(profile.X[0]), float(profile.X[-1])
-    arrives = entry_times(profile, scales)
-    if arrives is None:
-        return first, last
-    if not profile.repeats:
-        return (first, last) if case.time.travel >= arrives[1] else (first, first)
-    slower = scales.u_max / abs(profile.speed)
-    through = scales.a * (case.time.travel - arrives[0] - 2.0 * slower) / slower
-    return first, float(np.clip(first + through, first, last))
-
-
-def draw_heights(axes: Axes, profile: Profile, case: Case, scales: Scales, colour: str) -> None:
-    """Draw a profile, the part of it that passes the contact, and the width of the contact."""
-    x, z = 1e3 * profile.X, 1e6 * profile.heights
-    axes.plot(x, z, color=style.FAINT, lw=0.7)
-    arrives = entry_times(profile, scales)
-    begin, end = passing(profile, case, scales)
-    inside = (profile.X >= begin) & (profile.X <= end) & (end > begin)
-    label = "passes the whole contact" if arrives else None  # not where it is in the contact from the start
-    axes.plot(x[inside], z[inside], color=colour, lw=0.8, label=label)
-    room = 0.18 * np.ptp(z)
-    width = dict(color="k", lw=2.0, label=f"2a = {2e3 * scales.a:.3g} mm")
-    axes.plot([x[0], x[0] + 2e3 * scales.a], [z.max() + 0.5 * room] * 2, **width)
-    axes.set(xlim=(x[0], x[-1]), ylim=(z.min() - room, z.max() + 1.4 * room))
-    axes.set_xlabel("abscissa of the profile [mm]")
-    text = f"Ra {1e6 * profile.ra:.3f} µm, Rq {1e6 * profile.rq:.3f} µm, Rsk {profile.rsk:.2f}"
-    if arrives:
-        text += f"; left end first, at the contact at travel {arrives[0]:.2f} a of {case.time.travel:g} a"
-    axes.set_title(text, fontsize="small", loc="left")
-    axes.legend(loc="upper right", ncols=2, frameon=False, **style.SMALL)
 
 
 def draw_running_in(results: list[Result], _options: argparse.Namespace | None) -> Figure:
