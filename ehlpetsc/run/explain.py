@@ -43,11 +43,12 @@ RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
     "(mesh.width), carry more of the load in mixed lubrication"
 )
-NODES_OF_FILM, NODES_OF_FRICTION, NODES_OF_SHARE = (
-    8,
-    16,
-    32,
-)  # to the shortest wave, tests/benchmarks/ACCURACY.md
+NODES = 6, 8, 12, 16, 32  # to the shortest wave; errors of tests/benchmarks/ACCURACY.md on them
+PRESSURE_ERRORS = 0.18, 0.10, 0.04, 0.02, 0.005  # ripple of the faster surface
+FRICTION_ERRORS = 0.24, 0.15, 0.08, 0.05, 0.01  # in mixed contact with a layer, as the next two
+DAMAGE_ERRORS = 0.34, 0.18, 0.09, 0.07, 0.02
+SHARE_RATIOS = 4.8, 3.5, 2.4, 1.8, 1.2  # load on the solids over its limit
+GROUND_WAVE = 1.35  # shortest wave over the correlation length: 0.5 % of the power density
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
@@ -147,24 +148,39 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
 
 def _resolution(case: Case, s: Scales) -> list[str]:
     """Nodes to the shortest wave of each surface, and the error to expect; [] where a wave is not given."""
-    lines = []
+    lines, fewest = [], math.inf
     for number, body in enumerate((case.surface.body_1, case.surface.body_2), 1):
         made = getattr(body, "synthetic", None)
         waves = [getattr(body, "short_cutoff", None)]
         waves += [getattr(made, key, None) for key in ("short_cutoff", "wavelength")] if made else []
+        waves += [GROUND_WAVE * made.correlation] if getattr(made, "kind", None) == "ground" else []
         shortest = min((wave for wave in waves if wave), default=None)
         if shortest is not None:
+            fewest = min(fewest, shortest / s.dx)
             lines.append(
                 f"Waves of surface {number}: {shortest / s.dx:.3g} nodes to the shortest one, "
-                f"{1e6 * shortest:.4g} um; "
+                f"{1e6 * shortest:.4g} um"
             )
-    if not lines:
-        return []
-    lines[-1] += (
-        f"{NODES_OF_FILM} are enough for films and pressures, {NODES_OF_FRICTION} for 5 % in the friction of "
-        f"mixed contact, {NODES_OF_SHARE} for the load on the solids"
+    if not lines or case.time is None or case.fluid is None:
+        return lines
+    return [*lines, expected_errors(fewest, case.contact.asperity_height is not None)]
+
+
+def expected_errors(nodes: float, layer: bool) -> str:
+    """Errors to expect with so many nodes to the shortest wave, interpolated in the table of accuracy.
+
+    `layer`: whether asperities below the waves carry load.
+    """
+
+    def at(table: tuple[float, ...]) -> float:
+        return float(np.exp(np.interp(np.log(nodes), np.log(NODES), np.log(table))))
+
+    bound = "at least " * (nodes < NODES[0]) + "at most " * (nodes > NODES[-1])
+    mixed = (
+        f"; in mixed contact {100.0 * at(FRICTION_ERRORS):.2g} % in friction, "
+        f"{100.0 * at(DAMAGE_ERRORS):.2g} % in damage, {at(SHARE_RATIOS):.2g} times the load on the solids"
     )
-    return [line.rstrip("; ") for line in lines]
+    return f"Mesh error: {bound}{100.0 * at(PRESSURE_ERRORS):.2g} % of the waves of pressure{mixed * layer}"
 
 
 def _dry(case: Case, s: Scales) -> list[str]:

@@ -4,13 +4,20 @@ import re
 
 import numpy as np
 import pytest
-from support import CASES, is_line_with
+from support import CASES, ROOT, is_line_with
 
 from ehlpetsc.api import solve
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run import forecast
-from ehlpetsc.run.explain import explain, main
+from ehlpetsc.run.explain import (
+    DAMAGE_ERRORS,
+    FRICTION_ERRORS,
+    PRESSURE_ERRORS,
+    SHARE_RATIOS,
+    explain,
+    main,
+)
 from ehlpetsc.run.forecast import file_size
 from ehlpetsc.run.validity import warnings
 from ehlpetsc.surfaces.roughness import Roughness
@@ -56,6 +63,28 @@ def test_source_of_a_named_oil_is_printed():
 def test_ridges_of_a_line_contact_are_named(name, count):
     ridges = "Lay: in a line contact all waves are ridges across the motion"
     assert len(starting(lines(name), ridges)) == count
+
+
+def test_expected_errors_are_those_of_the_page_of_accuracy():
+    page = (ROOT / "tests" / "benchmarks" / "ACCURACY.md").read_text()
+    for row, table in {
+        "pressure ripple of the faster surface": PRESSURE_ERRORS,
+        "(`compliant_mixed.toml`): friction": FRICTION_ERRORS,
+        "mean damage of both surfaces, 0.05 a deep": DAMAGE_ERRORS,
+        "| load on the solids": SHARE_RATIOS,
+    }.items():
+        (line,) = [line for line in page.splitlines() if f"{row} |" in line and line.count("|") == 7]
+        printed = [abs(float(word)) for word in re.findall(r"\| ([+-]?[\d.]+) (?:%|times)", line)]
+        unit = 1.0 if table is SHARE_RATIOS else 0.01
+        assert [unit * value for value in printed] == pytest.approx(table[: len(printed)]), row
+    strip = ["mesh.points_per_half_width=50", "surface.1.synthetic.short_cutoff=40e-6"]
+    (line,) = starting(lines("fzg_strip.toml", *strip), "Mesh error: ")
+    assert line == (
+        "Mesh error: 10 % of the waves of pressure; in mixed contact 15 % in friction, 18 % in damage, "
+        "3.5 times the load on the solids"
+    )
+    (line,) = starting(lines("running_in.toml"), "Waves of surface 1: ")
+    assert line == "Waves of surface 1: 8.04 nodes to the shortest one, 27 um"
 
 
 def test_rough_start_is_named():
