@@ -26,7 +26,6 @@ class Kind(NamedTuple):
     `surface`: rough surface of a case, its scales, the table of the surface and its passage.
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.scheme.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
-    `faults`: of keys that the kind does not have, see :func:`ehlpetsc.case.kinds.faults_of_kind`.
     `work_time`: see :func:`ehlpetsc.run.forecast.work_time`.
     `words`: of the summary, :class:`ehlpetsc.run.explain.Words`.
     `sweeps`: solver by the paper's sweeps; "": none.
@@ -39,7 +38,6 @@ class Kind(NamedTuple):
     surface: str
     system: str
     linear_solver: str
-    faults: str
     work_time: str
     words: str
     sweeps: str = ""
@@ -64,7 +62,6 @@ KINDS = {
         surface="surfaces.roughness:moving_profile",
         system="nonlinear.line.system:line_system",
         linear_solver="nonlinear.options:line_solver",
-        faults="case.kinds:line_faults",
         work_time="run.forecast:line_time",
         words="run.explain:LINE",
         sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
@@ -76,7 +73,6 @@ KINDS["strip"] = KINDS["line"]._replace(
     surface="surfaces.roughness:moving_map",
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
-    faults="case.kinds:plane_faults",
     work_time="run.forecast:plane_time",
     words="run.explain:STRIP",
     sweeps="",
@@ -85,7 +81,6 @@ KINDS["point"] = KINDS["strip"]._replace(
     is_whole=True,
     radii=" in a point contact, of two radii",
     geometry="physics.geometry:POINT",
-    faults="case.kinds:point_faults",
     words="run.explain:POINT",
 )
 """Kinds of contact by name, :attr:`Case.kind`."""

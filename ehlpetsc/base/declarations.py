@@ -64,6 +64,8 @@ class Key:
         Texts in place of a value that follows from other tables; of a bool: further values.
     equation
         In which the key appears, where it is too long for messages.
+    contacts
+        Kinds of contact that have the key; (): all.
     table, variants
         Keys of the table that is the value, or of the tables by the value of their key `kind`.
     """
@@ -88,6 +90,7 @@ class Key:
     equation: str = ""
     is_difference: bool = False
     point_unit: str = ""
+    contacts: Collection[str] = ()
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
 

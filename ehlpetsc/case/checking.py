@@ -47,7 +47,7 @@ class _Scope(NamedTuple):
 def in_si(data: Tables) -> list[Fault]:
     """Replace the texts with a unit in the tables of a case by numbers in SI units; returns the faults."""
     faults = []
-    for holder, name, key, place in [*_entries(data, CASE, ""), *_series_entries(data.get("series"))]:
+    for holder, name, key, place in [*entries(data, CASE, ""), *_series_entries(data.get("series"))]:
         if key and key.kind is float and key.unit not in NUMBERS_ONLY:
             try:
                 holder[name] = converted(holder[name], in_contact(key, data).unit, key.is_difference)
@@ -95,13 +95,13 @@ def _faulty_places(table: KeyTable, data: Tables, where: str, root: Tables) -> I
             yield where + name
 
 
-def _entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key | None, str]]:
+def entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, Any, Key | None, str]]:
     """Values in tables: their table or list, their key in it, the key of the case, the place."""
     for name, key in table.keys.items():
         value = data.get(name)
         inner = _table_of(key, value)
         if inner and isinstance(value, dict):
-            yield from _entries(value, inner, f"{where}{name}.")
+            yield from entries(value, inner, f"{where}{name}.")
         elif value is not None:
             yield data, name, key, where + name
 

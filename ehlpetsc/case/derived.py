@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
-    from ehlpetsc.surfaces.topography import Topography
 
 MAX_VISCOSITY = 1e12  # mm^2/s
 MEASURED_KEY = "asperity_height"
@@ -153,6 +152,8 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
 
     `known`: places of faults that have been found already.
     """
+    from ehlpetsc.surfaces.samples import measured_samples
+
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
         return []
@@ -168,28 +169,13 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
         return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
     try:
         profiles = [values_of(PROFILE, table) for table in tables]
-        before = [_heights(folder, profile.copy({"short_cutoff": None})) for profile in profiles]
-        after = [_heights(folder, profile) for profile in profiles]
+        before = [measured_samples(folder, profile.copy({"short_cutoff": None})).z for profile in profiles]
+        after = [measured_samples(folder, profile).z for profile in profiles]
     except (ProfileError, CaseError):  # reported by the checks of the profiles
         return unresolved
     removed = [float((z - z_s).std()) for z, z_s in zip(before, after, strict=True)]
     contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
     return []
-
-
-def _heights(folder: Path, surface: Values) -> np.ndarray:
-    """Heights of a profile or of a map as used [m]."""
-    return measured_samples(folder, surface).z
-
-
-def measured_samples(folder: Path, surface: Values) -> Topography:
-    """Profile or map of a surface, whichever it gives; raises `ProfileError`."""
-    from ehlpetsc.surfaces.areal_samples import areal_samples, holds_map
-    from ehlpetsc.surfaces.samples import samples
-
-    if surface.synthetic is None and holds_map(folder, surface):
-        return areal_samples(folder, surface, math.inf, is_strip=False)
-    return samples(folder, surface)
 
 
 def with_layer_stiffness(case: Case) -> Case:
@@ -223,6 +209,7 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     from ehlpetsc.gears.standards import Rating
     from ehlpetsc.physics.flash_temperature import STEEL, Solid
     from ehlpetsc.physics.laws import reference_temperature, viscosity
+    from ehlpetsc.surfaces.samples import measured_samples
 
     if case.gears is None or case.fluid is None:
         return None

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.toml_file import Tables
-from ehlpetsc.case.checking import Fault, is_point
-from ehlpetsc.case.tables.surface import areal_keys
+from ehlpetsc.case.checking import Fault, entries, is_point
+from ehlpetsc.case.tables import CASE
+from ehlpetsc.case.tables.surface import AREAL
 from ehlpetsc.case.values import show
+from ehlpetsc.effects import EFFECTS
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
@@ -60,35 +61,22 @@ def approach_faults(data: Tables) -> list[Fault]:
     return [Fault("contact.approach", f"contact.approach = {show(contact['approach'])}: {reason}")]
 
 
-def faults_of_kind(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
-    """Faults of keys that a line contact, or a plane, does not have; `surfaces` by side."""
-    return KINDS[case.kind].part("faults")(case, data, surfaces)
-
-
-def line_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
-    """Faults of keys of planes."""
-    reason = "of maps, and a line contact has profiles; leave it out"
-    keys = [f"surface.{side}.{key}" for side, spec in surfaces.items() if spec for key in areal_keys(spec)]
-    faults = [Fault("", f"{key}: {reason}") for key in keys]
-    file = "output.xdmf = true: of points and strips, and a line contact has no plane; leave it out"
-    return faults + [Fault("output.xdmf", file)] * case.output.xdmf
-
-
-def plane_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
-    """Faults of keys of line contacts, and of too many nodes."""
-    faults = []
-    if "near_field" in data["mesh"]:
-        text = (
-            f"mesh.near_field = {case.mesh.near_field}: of line contacts, not of a {case.kind}; leave it out"
-        )
-        faults.append(Fault("mesh.near_field", text))
-    return faults + _size_faults(case)
-
-
-def point_faults(case: Case, data: Tables, surfaces: dict[str, Values | None]) -> list[Fault]:
-    """Faults of keys of line contacts and strips."""
-    life = Fault("life", "[life]: of line contacts and strips, not of a point; leave it out")
-    return [life] * bool(case.life) + plane_faults(case, data, surfaces)
+def contact_faults(case: Case, data: Tables) -> list[Fault]:
+    """Faults of keys and effects that the kind of contact does not have, and of a plane of too many nodes."""
+    kind = KINDS[case.kind]
+    given = [(holder[name], key, place) for holder, name, key, place in entries(data, CASE, "") if key]
+    served = {place: key.contacts for value, key, place in given if key.contacts and value != key.default}
+    served |= {(e.table.name if e.table else e.name): e.contacts for e in EFFECTS if e.is_in(case)}
+    served |= {"[life]": ("line", "strip")} if case.life else {}
+    for value, _, place in given:
+        if place in ("surface.1.z", "surface.2.z") and isinstance(value[0], list):
+            served[place] = AREAL
+    faults = [
+        Fault(place, f"{place}: of {' and '.join(of)} contacts, and this is a {case.kind}; leave it out")
+        for place, of in served.items()
+        if case.kind not in of
+    ]
+    return faults + (_size_faults(case) if kind.is_areal else [])
 
 
 def _size_faults(case: Case) -> list[Fault]:

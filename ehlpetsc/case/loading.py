@@ -18,17 +18,15 @@ from ehlpetsc.case.checking import Fault, check, in_si, unsound_tables
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.derived import (
-    measured_samples,
     rating_of,
     resolve_measured_layer,
     with_derived,
     with_layer_stiffness,
 )
-from ehlpetsc.case.kinds import approach_faults, faults_of_kind, given_by_gears
+from ehlpetsc.case.kinds import approach_faults, contact_faults, given_by_gears
 from ehlpetsc.case.tables import CASE, Case, extend
 from ehlpetsc.case.tables.surface import PROFILE, SIDES, file_digests
 from ehlpetsc.case.values import is_number, shortened, show
-from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.law import Law
@@ -168,20 +166,8 @@ def _checked(
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
-        faults += [Fault("mesh", line) for line in reversed_flow] + _contact_faults(cast(Case, case))
+        faults += [Fault("mesh", line) for line in reversed_flow] + contact_faults(cast(Case, case), data)
     return (case if case and not faults else None), faults + found
-
-
-def _contact_faults(case: Case) -> list[Fault]:
-    """Faults of effects that do not serve the kind of contact."""
-    if not (case.contact and case.mesh):  # their own faults are reported
-        return []
-    faults = []
-    for kind in EFFECTS:
-        if kind.is_in(case) and case.kind not in kind.contacts:
-            key, served = kind.table.name if kind.table else kind.name, " and ".join(kind.contacts)
-            faults.append(Fault(key, f"{key}: of {served} contacts, and this is a {case.kind}; leave it out"))
-    return faults
 
 
 def _file_fault(data: Tables, error: ProfileError) -> Fault:
@@ -242,26 +228,24 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     surface = data.get("surface")
     tables = {side: surface.get(side) if isinstance(surface, dict) else None for side in SIDES}
     specs = {side: check(PROFILE, t)[0] if isinstance(t, dict) else None for side, t in tables.items()}
-    whole = case if case and case.contact and case.mesh else None  # or their faults are reported
-    of_kind = faults_of_kind(whole, data, specs) if whole else []
     for side, spec in specs.items():
-        if spec is None or of_kind:  # smooth, or its faults are reported with its keys
+        if spec is None:  # smooth, or its faults are reported with its keys
             continue
         try:
-            _check_surface(folder, spec, whole)
+            _check_surface(folder, spec, case)
         except ProfileError as error:
             key = "z" if "z" in tables[side] else "file"
-            of_map = whole and KINDS[whole.kind].is_areal  # of several keys
+            of_map = case and KINDS[case.kind].is_areal  # of several keys
             given = "" if of_map else f".{key} = {show(tables[side][key])}"
             faults.append(Fault("", f"surface.{side}{given}: {error}"))
-    return case, faults + of_kind
+    return case, faults
 
 
 def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:
     """Raise `ProfileError` for a surface that cannot be used in a case; None: in any kind of contact."""
-    if case is not None and KINDS[case.kind].is_areal:
-        from ehlpetsc.surfaces.areal_samples import areal_samples
+    from ehlpetsc.surfaces.samples import areal_samples, measured_samples, samples
 
+    if case is not None and KINDS[case.kind].is_areal:
         grid = Scales.of(case).grid
         width = grid.spacings[0] * grid.shape[0]
         if spec.synthetic:
@@ -269,8 +253,6 @@ def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:
         else:
             _check_plausible(areal_samples(folder, spec, width, False), case)  # with its own spacings
     elif not spec.synthetic:
-        from ehlpetsc.surfaces.samples import samples
-
         if case is None:
             measured_samples(folder, spec)
         else:

@@ -25,7 +25,6 @@ from ehlpetsc.pictures import frames, style
 from ehlpetsc.pictures.case_surfaces import draw_case
 from ehlpetsc.pictures.frame_data import described
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
-from ehlpetsc.pictures.movie import save_movie
 from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures
 from ehlpetsc.pictures.report import save_report
 from ehlpetsc.pictures.running_in import draw_running_in
@@ -129,7 +128,7 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
     if options.kind not in OF_SCALARS and not whole:
         results = [section_of(result, options.section or 0.0) for result in results]
     if options.kind == "movie":
-        save_movie(results, options, output)
+        frames.save_movie(results, options, output)
     elif options.kind == "report":
         save_report(results[0], output, options.field)
     else:
@@ -139,9 +138,9 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
 def _function(kind: str | None) -> Callable:
     """Function of the results and the options that draws a kind of picture."""
     if kind in MAPS:
-        from ehlpetsc.pictures import fringes, plane  # which no line contact needs
+        from ehlpetsc.pictures import plane  # which no line contact needs
 
-        return fringes.draw_fringes if kind == "fringes" else plane.draw_contacts
+        return plane.draw_fringes if kind == "fringes" else plane.draw_contacts
     return FIGURES[kind][0] if kind else frames.draw_instant
 
 

@@ -1,24 +1,28 @@
-"""Which stored frame of a result a picture shows, its view, and its title."""
+"""Which stored frames of results a picture or a movie shows, their view, and their title."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
 from importlib import import_module
+from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frame_data import Frame
+from ehlpetsc.pictures.frame_data import Frame, common
 from ehlpetsc.results.means import both_fill
+from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
 
 WINDOW = (-1.6, 1.4)  # limits of x/a by default
 MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
+MAX_FRAMES, RATE, MOVIE_DPI = 150, 15, 80  # of a movie: frames, frames per second, dots per inch
 
 
 class Choice(NamedTuple):
@@ -166,3 +170,26 @@ def instant(results: list[Result], indices: Sequence[int]) -> str:
     if len({float(result.time[k]) for result, k in zip(results, indices, strict=True)}) > 1:
         return travel
     return f"step {first.step[index]}, {1e6 * first.time[index]:.4g} µs, {travel}"
+
+
+def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
+    """Write at most `MAX_FRAMES` frames of the first result, of others those at the same travel."""
+    window, first = view(results, options.window), results[0]
+    chosen = [
+        Choice(results, choose_frames(results, time=first.time[k]), window, options.field)
+        for k in style.spread(len(first.time), MAX_FRAMES)
+    ]
+    limits = common(frame.limits for choice in chosen for frame in choice.frames)
+    figure, kind = Figure(layout="constrained"), chosen[0].module
+    axes = kind.movie_panels(figure, chosen[0].frames[0], limits)
+    writer = PillowWriter(fps=RATE)
+    with replacing(path) as temporary, writer.saving(figure, temporary, MOVIE_DPI):
+        for choice in chosen:
+            for panel in axes:
+                panel.clear()
+            kind.fill(axes, choice, limits)
+            style.set_title(figure, *choice.title)
+            if choice is chosen[0]:  # one layout for all frames
+                figure.draw_without_rendering()
+                figure.set_layout_engine("none")
+            writer.grab_frame()

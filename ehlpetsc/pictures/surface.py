@@ -23,11 +23,9 @@ from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import check, in_si
 from ehlpetsc.case.combinations import parsed, put
-from ehlpetsc.case.derived import measured_samples
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
-from ehlpetsc.surfaces.difference import difference
 from ehlpetsc.surfaces.exports import WRITERS, GridField
 from ehlpetsc.surfaces.parameters import (
     CORRELATION_THRESHOLD,
@@ -40,7 +38,8 @@ from ehlpetsc.surfaces.parameters import (
     profile_parameters,
 )
 from ehlpetsc.surfaces.profile_checks import doubts
-from ehlpetsc.surfaces.topography import Topography
+from ehlpetsc.surfaces.samples import measured_samples
+from ehlpetsc.surfaces.topography import Topography, difference
 
 TABLE = "surface.1."
 SIZE, MAP_SIZE = (9.0, 6.0), (13.0, 4.2)  # inches

@@ -92,13 +92,15 @@ def periodic_mean(z: np.ndarray, cutoff: float) -> np.ndarray:
     return np.fft.irfft(np.fft.rfft(z, axis=0) * np.exp2(-np.square(waves * cutoff)), len(z), axis=0)
 
 
-def mean_surface(x: np.ndarray, y: np.ndarray, z: np.ndarray, cutoff: float, key: str) -> np.ndarray:
-    r"""Mean surface of the areal Gaussian filter of ISO 16610-61.
+def smoothed(axes: Sequence[np.ndarray], z: np.ndarray, cutoff: float, key: str) -> np.ndarray:
+    r"""Mean line of a profile, or mean surface of the areal Gaussian filter of ISO 16610-61.
 
-    Its weight :math:`\exp[-\pi(x^2+y^2)/(\alpha\lambda_c)^2]` is the product of two weights of `mean_line`:
-    of a wave of length :math:`\lambda` in any direction it passes :math:`2^{-(\lambda_c/\lambda)^2}`.
+    The weight of the latter :math:`\exp[-\pi(x^2+y^2)/(\alpha\lambda_c)^2]` is the product of two weights of
+    `mean_line`: of a wave of length :math:`\lambda` in any direction it passes
+    :math:`2^{-(\lambda_c/\lambda)^2}`.
 
-    `z`: m, shape (ny, nx).
+    `axes`: abscissas along each axis of z [m].
     """
-    along = mean_line(x, z, cutoff, key)
-    return mean_line(y, along.T, cutoff, key).T
+    for x in reversed(axes):
+        z = mean_line(x, z, cutoff, key).T
+    return z

@@ -148,7 +148,7 @@ def moving_profile(case: Case, scales: Scales, spec: Values, given: Passage) -> 
 
 def moving_map(case: Case, scales: Scales, spec: Values, given: Passage) -> RoughSurface:
     """Areal surface of a strip or a point contact."""
-    from ehlpetsc.surfaces.areal_samples import areal_samples
+    from ehlpetsc.surfaces.samples import areal_samples
 
     y, dy, is_strip = scales.a * scales.grid.axes[0], scales.grid.spacings[0], scales.grid.periodic
     surface = areal_samples(case.path.parent, spec, dy * len(y), is_strip)

@@ -15,9 +15,9 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.surfaces.areal_files import gap_width, read_map
-from ehlpetsc.surfaces.areal_samples import areal_samples, inscribed, turned
-from ehlpetsc.surfaces.filters import levelled, mean_surface, without_form
+from ehlpetsc.surfaces.filters import levelled, smoothed, without_form
 from ehlpetsc.surfaces.profile_files import Layout
+from ehlpetsc.surfaces.samples import areal_samples, inscribed, turned
 
 DX, DY = 2e-6, 3e-6
 X, Y = DX * np.arange(60), DY * np.arange(40)
@@ -215,13 +215,8 @@ def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
 
 
 def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
-    z = mean_surface(
-        DX * np.arange(150),
-        DX * np.arange(120),
-        np.random.default_rng(2).standard_normal((120, 150)),
-        9 * DX,
-        "short_cutoff",
-    )
+    axes, noise = (DX * np.arange(120), DX * np.arange(150)), np.random.default_rng(2)
+    z = smoothed(axes, noise.standard_normal((120, 150)), 9 * DX, "short_cutoff")
     z = 1e-7 * (z / z.std() + 0.01 * np.random.default_rng(3).standard_normal(z.shape))
     z[40] += 2e-6  # a scratch along a row
     spoilt = z.copy()
@@ -264,12 +259,12 @@ def test_the_areal_filter_has_the_transmission_of_iso_16610_61(waves):
     wave = np.cos(kx * X) * np.cos(ky * Y)[:, np.newaxis]  # mirrored at its edges it goes on as a wave
     cutoff = 30e-6
     left = 2.0 ** -((cutoff * np.hypot(kx, ky) / (2 * np.pi)) ** 2)
-    np.testing.assert_allclose(mean_surface(X, Y, wave, cutoff, "cutoff"), left * wave, atol=1e-12)
+    np.testing.assert_allclose(smoothed((Y, X), wave, cutoff, "cutoff"), left * wave, atol=1e-12)
 
 
 def test_a_cutoff_above_the_width_is_refused():
     with pytest.raises(ProfileError, match=r"^cutoff = 0\.000118 m; allowed: at most .* 0\.000117 m"):
-        mean_surface(X, Y, Z, 118e-6, "cutoff")
+        smoothed((Y, X), Z, 118e-6, "cutoff")
 
 
 @pytest.mark.parametrize(("angle", "turns"), [(0, 0), (90, 1), (180, 2), (270, 3), (-90, 3), (360, 0)])

@@ -9,11 +9,11 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.areal_samples import areal_samples
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import Passage
 from ehlpetsc.surfaces.profile_checks import absurd
 from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
+from ehlpetsc.surfaces.samples import areal_samples
 from ehlpetsc.surfaces.topography import Topography
 
 A = 100e-6  # half-width, m

@@ -160,7 +160,7 @@ def test_picture_of_a_strip_has_maps_of_damage_and_of_pits(tmp_path, monkeypatch
 
 
 def test_points_have_no_life():
-    with pytest.raises(CaseError, match="of line contacts and strips, not of a point"):
+    with pytest.raises(CaseError, match="of line and strip contacts, and this is a point"):
         load(COARSE_LIFE, {"contact.radius": [0.02, 0.02], "contact.load": 100.0})
 
 

@@ -11,8 +11,8 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures.surface import main
-from ehlpetsc.surfaces.areal_samples import areal_samples
-from ehlpetsc.surfaces.difference import difference, displacement
+from ehlpetsc.surfaces.samples import areal_samples
+from ehlpetsc.surfaces.topography import difference, displacement
 
 STEP = 2e-6
 RANDOM = np.random.default_rng(4)

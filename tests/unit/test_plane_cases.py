@@ -104,7 +104,7 @@ def test_refused_values_of_a_point(overrides, message):
 
 def test_xdmf_is_not_of_a_line_contact():
     text = fault(tomllib.loads(template("roller")), output__xdmf=True)
-    assert "output.xdmf = true: of points and strips" in text
+    assert "output.xdmf: of strip and point contacts, and this is a line" in text
 
 
 def test_sweeps_are_not_of_a_point():

@@ -19,7 +19,7 @@ from support.made_results import P0, A, change_case, make_plane, make_result
 
 from ehlpetsc import read_result
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures import fringes, movie, over_time, plane, report, style
+from ehlpetsc.pictures import frames, over_time, plane, report, style
 from ehlpetsc.pictures.case_surfaces import draw_case
 
 OPTIONS = plot.arguments().parse_args(["x"])
@@ -167,20 +167,20 @@ def test_field_in_movie_and_page(point):
 
 
 def test_fringes_are_bright_at_whole_waves_and_fade():
-    film = np.arange(5) * fringes.WAVELENGTHS["green"] / (4.0 * fringes.OIL_INDEX)
-    np.testing.assert_allclose(fringes.monochromatic(film, fringes.OIL_INDEX), [1, 0, 1, 0, 1], atol=1e-12)
+    film = np.arange(5) * plane.WAVELENGTHS["green"] / (4.0 * plane.OIL_INDEX)
+    np.testing.assert_allclose(plane.monochromatic(film, plane.OIL_INDEX), [1, 0, 1, 0, 1], atol=1e-12)
     far = 50 * film[-1]
-    np.testing.assert_allclose(fringes.coloured(np.array([0.0, far]), 1.5), [[1.0] * 3, [0.5] * 3], atol=1e-3)
+    np.testing.assert_allclose(plane.coloured(np.array([0.0, far]), 1.5), [[1.0] * 3, [0.5] * 3], atol=1e-3)
 
 
 def test_fringes_name_wavelengths_and_resolve_the_film(point):
     with read_result(point) as r:
-        figure = fringes.draw_fringes([r], OPTIONS)
+        figure = plane.draw_fringes([r], OPTIONS)
     assert [axes.get_title() for axes in figure.axes[:2]] == [
         "wavelength 530 nm",
         "wavelengths 630, 530, 460 nm",
     ]
-    assert max(figure.axes[0].images[0].get_array().shape) == fringes.PIXELS
+    assert max(figure.axes[0].images[0].get_array().shape) == plane.PIXELS
     assert figure.axes[1].images[0].get_array().shape[2] == 3
 
 
@@ -193,13 +193,13 @@ def test_contacts_are_shares_of_all_steps(point):
 def test_movie_has_every_frame_with_common_colours(point, monkeypatch):
     seen = []
 
-    class Writer(movie.PillowWriter):
+    class Writer(frames.PillowWriter):
         def grab_frame(self, **keys):
             images = [image for axes in self.fig.axes[:2] for image in axes.images]
             seen.append(([image.get_clim() for image in images], images[0].get_array().copy()))
             super().grab_frame(**keys)
 
-    monkeypatch.setattr(movie, "PillowWriter", Writer)
+    monkeypatch.setattr(frames, "PillowWriter", Writer)
     assert draw(point, "--movie") == 0
     with image.open(point.with_suffix(".gif")) as shown:
         assert shown.n_frames == 5
@@ -292,7 +292,7 @@ def test_lines_load_no_module_of_planes(tmp_path):
     words = [sys.executable, "-c", code, str(tmp_path / "line.h5")]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
     assert "ehlpetsc.pictures.frames" in loaded
-    assert not [name for name in loaded if re.search(r"pictures\.(plane|fringes)", name)]
+    assert not [name for name in loaded if re.search(r"pictures\.plane", name)]
 
 
 def test_text_of_a_narrow_picture_fits(point, tmp_path):

@@ -17,7 +17,7 @@ from ehlpetsc.physics.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales, reduced_modulus
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import frames as drawing
-from ehlpetsc.pictures import line, movie, over_time, style
+from ehlpetsc.pictures import line, over_time, style
 from ehlpetsc.pictures.case_surfaces import draw_case, passing
 from ehlpetsc.pictures.frame_data import Frame, common
 from ehlpetsc.results.means import both_fill
@@ -196,15 +196,15 @@ def test_contact_is_outlined_in_a_map_without_hiding_the_pressure(result):
 def test_movie_has_every_frame_on_fixed_axes(tmp_path, monkeypatch):
     seen = []
 
-    class Writer(movie.PillowWriter):
+    class Writer(drawing.PillowWriter):
         def grab_frame(self, **keys):
             bounds = [(*axes.get_position().bounds, *axes.get_ylim()) for axes in self.fig.axes]
             seen.append((bounds, self.fig._suptitle.get_text()))
             super().grab_frame(**keys)
 
-    monkeypatch.setattr(movie, "PillowWriter", Writer)
-    monkeypatch.setattr(movie, "MAX_FRAMES", 4)
-    monkeypatch.setattr(movie, "DPI", 40)
+    monkeypatch.setattr(drawing, "PillowWriter", Writer)
+    monkeypatch.setattr(drawing, "MAX_FRAMES", 4)
+    monkeypatch.setattr(drawing, "MOVIE_DPI", 40)
     assert draw(reversing(tmp_path / "one.h5"), "--movie") == 0
     with image.open(tmp_path / "one.gif") as shown:
         assert shown.n_frames == 4

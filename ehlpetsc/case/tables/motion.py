@@ -186,7 +186,9 @@ MESH_KEYS = {
         "of a point contact in b [4]; with one radius, in a: a strip, periodic across",
         *("half-widths", 0.01, 1000),
     ),
-    "near_field": Key("nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3),
+    "near_field": Key(
+        "nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3, contacts=("line",)
+    ),
 }
 MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_complete_mesh)
 

@@ -20,7 +20,10 @@ OUTPUT_KEYS = {
     "fields": Key("stored fields", choices=FIELDS, many="list", default=STORED),
     "precision": Key("of the stored fields", choices=("float64", "float32"), default="float64"),
     "xdmf": Key(
-        "of a point or strip: RESULT.xdmf for ParaView, beside the result file", kind=bool, default=False
+        "of a point or strip: RESULT.xdmf for ParaView, beside the result file",
+        kind=bool,
+        default=False,
+        contacts=("strip", "point"),
     ),
     "thin_film": Key("mixed contact: films below it count as thin", "boundary films", 1, 1000, default=2.0),
     "checkpoint": Key("time between restart files", "minutes", gt=0, le=1e5, default=10.0),

@@ -16,6 +16,7 @@ UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of pr
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
+AREAL = ("strip", "point")  # kinds of contact
 
 
 def _kinds(*kinds: str, text: str, keys: dict[str, Key]) -> dict[str, KeyTable]:
@@ -29,7 +30,9 @@ GROUND_KEYS = {
     "correlation": Required("`l` of the autocorrelation `exp(-(lag/l)^2)`", *LENGTH),
     "skewness": Key("negative: plateaus with valleys", "", -3, 3, default=0.0),
     "seed": Required("of the random numbers", "", 0, 2**32 - 1, kind=int),
-    "correlation_across": Key("`l` across, of an areal surface with a lay; left out: ridges", *LENGTH),
+    "correlation_across": Key(
+        "`l` across, of an areal surface with a lay; left out: ridges", *LENGTH, contacts=AREAL
+    ),
 }
 SELF_AFFINE_KEYS = {
     "sq": Required("root mean square height", "m", 1e-12, 1e-3),
@@ -39,7 +42,12 @@ SELF_AFFINE_KEYS = {
     "roll_off": Required("wavelength above which `C` is constant", *LENGTH),
     "short_cutoff": Required("shortest wavelength", *LENGTH, below="roll_off"),
     "peklenik": Key(
-        "of a map: waves along its rows, of unchanged spectrum, over those across", "", 0.01, 100, default=1.0
+        "of a map: waves along its rows, of unchanged spectrum, over those across",
+        "",
+        0.01,
+        100,
+        default=1.0,
+        contacts=AREAL,
     ),
     "seed": GROUND_KEYS["seed"],
 }
@@ -52,13 +60,16 @@ SINE_KEYS = WAVE_KEYS | {
         "of an areal surface, `z = amplitude cos(2 pi X/wavelength) cos(2 pi y/wavelength_across)`; "
         "left out: ridges",
         *LENGTH,
+        contacts=AREAL,
     )
 }
 BUMP_KEYS = {
     "amplitude": Required("height of the ridge, depth of the dent", *HEIGHT),
     "wavelength": Required("full width at 1/e, `exp(-(2 (X - position)/wavelength)^2)`", *LENGTH),
     "position": Key("abscissa of the centre; left out: 2 wavelengths", "m", 0, 10),
-    "wavelength_across": Key("full width across; left out: endless ridge, round dent", *LENGTH),
+    "wavelength_across": Key(
+        "full width across; left out: endless ridge, round dent", *LENGTH, contacts=AREAL
+    ),
 }
 SYNTHETIC = (
     _kinds("ground", text="random profile with prescribed Ra and skewness", keys=GROUND_KEYS)
@@ -103,7 +114,7 @@ KEYS = {
     "unit": Key("of the heights in the file; left out: m", choices=UNITS),
     "x_unit": Key("of x in the file; left out: as unit", choices=UNITS),
     "spacing": Key("distance of points without x in the file", *LENGTH),
-    "spacing_across": Key("distance of the rows of a map; left out: as spacing", *LENGTH),
+    "spacing_across": Key("distance of the rows of a map; left out: as spacing", *LENGTH, contacts=AREAL),
     "columns": Key("of x and z, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2),
     "decimal": Key("decimal sign; left out: found from the file", choices=(".", ",")),
     "header_lines": Key("lines before the numbers; left out: found from the file", "", 0, 100_000, kind=int),
@@ -125,14 +136,20 @@ KEYS = {
         default=False,
         words=("rows",),
     ),
-    "mask": Key("of a map: file of a matrix beside it; where it is not 0, heights are missing", kind=str),
+    "mask": Key(
+        "of a map: file of a matrix beside it; where it is not 0, heights are missing",
+        kind=str,
+        contacts=AREAL,
+    ),
     "form": Key("degree of the least-squares polynomial subtracted", "", 1, 12, kind=int),
     "cutoff": Key("Gaussian high-pass, ISO 16610-21: a wave `L` loses `2^(-(cutoff/L)^2)` of it", *LENGTH),
     "short_cutoff": Key(
         "Gaussian low-pass, ISO 3274: a wave `L` keeps `2^(-(short_cutoff/L)^2)`", *LENGTH, below="cutoff"
     ),
-    "direction": Key("of the rows of a map against x, towards y", "degrees", -360, 360),
-    "position_across": Key("of a map: its Y that runs along y = 0; left out: its middle", "m", 0, 10),
+    "direction": Key("of the rows of a map against x, towards y", "degrees", -360, 360, contacts=AREAL),
+    "position_across": Key(
+        "of a map: its Y that runs along y = 0; left out: its middle", "m", 0, 10, contacts=AREAL
+    ),
     "flip": Key("run the profile from its other end", kind=bool, default=False),
     "synthetic": Key('{ kind = "' + '" | "'.join(SYNTHETIC) + '", ... }', kind=dict, variants=SYNTHETIC),
     "scale": Key("factor on the heights; negative: turned over", "", -1e4, 1e4, default=1.0),
@@ -165,19 +182,6 @@ def check_unchanged(case: Case) -> None:
     """Refuse a case whose surface files are no longer as they were read: CaseError."""
     if changed := changed_files(case.digests, file_digests(case)):
         raise CaseError([f"{case.path}: {changed}: changed since the case was read; load the case again"])
-
-
-OF_MAPS = ("spacing_across", "direction", "position_across", "mask")
-OF_SYNTHETIC_MAPS = ("wavelength_across", "correlation_across", "peklenik")
-
-
-def areal_keys(surface: Values) -> list[str]:
-    """Keys given for a surface that a line contact, of profiles, cannot use."""
-    given = [key for key in OF_MAPS if getattr(surface, key) is not None]
-    if surface.z is not None and isinstance(surface.z[0], list):
-        given.append("z")
-    made = surface.synthetic.as_dict() if surface.synthetic else {}
-    return given + [f"synthetic.{key}" for key in OF_SYNTHETIC_MAPS if made.get(key) not in (None, 1.0)]
 
 
 class Surface(Values):
