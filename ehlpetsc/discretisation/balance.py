@@ -1,14 +1,15 @@
-r"""The border of the system: the unknown of the whole contact, h00, and its equation.
+r"""The border of the system: the unknowns of the whole contact, and their equations.
 
 .. math:: h=h_{00}+g+D\,p,\qquad\sum p\,\Delta A=W\quad\mathrm{or}\quad h_{00}=-\delta.
 
 The last rank owns both, behind the unknowns and the rows of its nodes. In units of the scales: h00 in a^2/R,
-the load in p0 times the unit of the grid's cell.
+the load in p0 times the unit of the grid's cell. All other modules store the unknowns of the border as one
+array, shape (unknowns,), and call the methods below.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,51 +22,67 @@ if TYPE_CHECKING:
 
 
 class Load:
-    """Balance of the load by h00.
+    """Balance of the load by the separation h00.
 
-    `unknowns`: of the whole contact; as many equations.
-    `equation`: name of the equation in messages.
-    `by_h00`, `by_load`: derivatives of the row by h00 and by the integral of the pressure.
+    `equations`: name of each equation in messages; as many unknowns.
+    `by_border`, `by_forces`: derivatives of each row by its own unknown and by its own force.
     """
 
-    unknowns = 1
-    equation = "load"
-    by_h00, by_load = 0.0, 1.0
+    equations: tuple[str, ...] = ("load",)
+    by_border, by_forces = np.zeros(1), np.ones(1)
 
     def __init__(self, scales: Scales):
         self.scales = scales
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns of the whole contact."""
+        return len(self.equations)
 
     def share(self, inputs: StepInputs) -> float:
         """Load of a step over the load of the scales."""
         return inputs.load_share * (inputs.conditions.load / self.scales.load)
 
-    def residual(self, h00: float, load: float, inputs: StepInputs) -> float:
-        """Row of the equation; `load`: integral of the pressure."""
-        return load - self.scales.grid.load * self.share(inputs)
+    def uniform(self, gap: float) -> np.ndarray:
+        """Unknowns that add the same gap at every node."""
+        return np.array([gap])
 
-    def product(self, h00: float, load: float) -> float:
-        """Derivative of the row times changes of h00 and of the integral of the pressure."""
-        return self.by_h00 * h00 + self.by_load * load
+    def gap(self, border: np.ndarray, nodes: slice = slice(None)) -> Any:
+        """Gap that the unknowns add at nodes of the mesh; a number where it is the same at all of them."""
+        return border[0]
 
-    def gap(self, nodes: int) -> np.ndarray:
-        """Gap that a unit of h00 adds at each of some nodes."""
-        return np.ones(nodes)
+    def separation(self, border: np.ndarray) -> float:
+        """Undeformed separation h00 [m]."""
+        return border[0] * self.scales.h
 
-    def change(self, row: float, load: float, by_unit: float) -> float:
-        """Change of h00 for a right-hand side of the row.
+    def forces(self, pressure: np.ndarray, nodes: slice = slice(None)) -> np.ndarray:
+        """Work of the pressures at nodes of the mesh on the gap of a unit of each unknown: the load."""
+        return np.array([self.scales.grid.cell * pressure.sum()])
+
+    def residual(self, border: np.ndarray, forces: np.ndarray, inputs: StepInputs) -> np.ndarray:
+        """Rows of the equations; `forces`: of all nodes."""
+        return forces - self.scales.grid.load * self.share(inputs)
+
+    def product(self, border: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Derivatives of the rows times changes of the unknowns and of the forces."""
+        return self.by_border * border + self.by_forces * forces
+
+    def change(self, rows: np.ndarray, forces: np.ndarray, by_unit: np.ndarray) -> np.ndarray:
+        """Change of the unknowns for a right-hand side of the rows.
 
         Parameters
         ----------
-        row
+        rows
             Right-hand side.
-        load
-            Integral of the pressures that follow from the rows of the nodes while h00 does not change.
+        forces
+            Of the pressures that follow from the rows of the nodes while the unknowns do not change.
         by_unit
-            Change of that integral by a unit of h00.
+            Changes of the forces by a unit of each unknown, shape (unknowns, unknowns).
         """
-        return (row - self.by_load * load) / (self.by_h00 + self.by_load * by_unit)
+        matrix = np.diag(self.by_border) + self.by_forces[:, None] * by_unit.T
+        return np.linalg.solve(matrix, rows - self.by_forces * forces)
 
-    def error(self, h00: float, load: float, conditions: Conditions) -> float:
+    def error(self, border: np.ndarray, load: float, conditions: Conditions) -> float:
         """Relative error of the equation; load in N or N/m."""
         return abs(load / conditions.load - 1.0)
 
@@ -76,20 +93,20 @@ class Approach(Load):
     `approach`: of the case [m].
     """
 
-    equation = "approach"
-    by_h00, by_load = 1.0, 0.0
+    equations = ("approach",)
+    by_border, by_forces = np.ones(1), np.zeros(1)
 
     def __init__(self, scales: Scales, approach: float):
         super().__init__(scales)
         self.approach = approach / scales.h
 
-    def residual(self, h00: float, load: float, inputs: StepInputs) -> float:
+    def residual(self, border: np.ndarray, forces: np.ndarray, inputs: StepInputs) -> np.ndarray:
         """Row of the equation: a fraction of the load is that of a smaller approach."""
-        return h00 + self.approach * self.share(inputs) ** self.scales.grid.growth
+        return border + self.approach * self.share(inputs) ** self.scales.grid.growth
 
-    def error(self, h00: float, load: float, conditions: Conditions) -> float:
+    def error(self, border: np.ndarray, load: float, conditions: Conditions) -> float:
         """See :class:`Load`."""
-        return abs(h00 / self.approach + 1.0)
+        return abs(border[0] / self.approach + 1.0)
 
 
 def balance_of(case: Case, scales: Scales) -> Load:

@@ -1,12 +1,12 @@
-r"""The discrete contact problem: one interleaved system for q, w and the approach h00.
+r"""The discrete contact problem: one interleaved system for q, w and the border.
 
-Unknowns (q_0, w_0, q_1, w_1, ..., h00), see :mod:`ehlpetsc.discretisation.contact`; rows in the same order,
+Unknowns (q_0, w_0, q_1, w_1, ...), see :mod:`ehlpetsc.discretisation.contact`; rows in the same order,
 because SNESVI pairs row with unknown:
 
 * row of q: deflection, :mod:`.line.deflection`, :mod:`.plane.deflection`;
 * row of w: Reynolds equation, :class:`.reynolds.Reynolds`, in direct contact complementary to the bound of
   the film; without oil :class:`.reynolds.NoOil`;
-* last row: :mod:`.balance`, of the load :math:`\sum p\,\Delta x=\pi/2`.
+* last rows: the border, :mod:`.balance`, of the load :math:`\sum p\,\Delta x=\pi/2`.
 
 The problem is stateless: `StepInputs` and `Evaluation` are frozen records. A rank evaluates its own rows from
 the unknowns of its window, see :mod:`.deflection`.
@@ -25,7 +25,7 @@ from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
-from ehlpetsc.discretisation.unknowns import Share, Unknowns, n_dofs, q_of, w_of
+from ehlpetsc.discretisation.unknowns import Share, Unknowns, border_of, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
 
@@ -107,9 +107,14 @@ class EHLProblem:
                 self.inlet_film = self.fluid.inlet_film / scales.h
 
     @property
-    def border(self) -> int:
-        """Number of unknowns of the whole contact that this rank owns, behind those of its nodes."""
-        return self.balance.unknowns if self.last == self.n else 0
+    def owns_border(self) -> bool:
+        """Whether this rank has the border behind the unknowns of its nodes."""
+        return self.last == self.n
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns of this rank."""
+        return n_dofs(self.local) + self.owns_border * self.balance.unknowns
 
     def inputs(
         self,
@@ -126,9 +131,9 @@ class EHLProblem:
             phi, history, self.oil, self.inlet_film, conditions, dt=dt, boundary_friction=friction
         )
 
-    def film(self, pressure: np.ndarray, h00: float, phi: np.ndarray) -> np.ndarray:
+    def film(self, pressure: np.ndarray, border: np.ndarray, phi: np.ndarray) -> np.ndarray:
         """Separation by the integral form, in a^2/R."""
-        return h00 + self.grid.undeformed + phi + self.deflection.integral(pressure)
+        return self.balance.gap(border) + self.grid.undeformed + phi + self.deflection.integral(pressure)
 
     def mass_per_area(self, q: np.ndarray, w: np.ndarray) -> np.ndarray | None:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
@@ -154,18 +159,19 @@ class EHLProblem:
 
         `sums` of the pressures at these unknowns are required unless the window is the whole mesh.
         """
-        (q, w, h00), model = unknowns, inputs.contact or self.model
+        (q, w, border), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
-        residual = np.empty(n_dofs(self.local) + self.border)
+        residual = np.empty(self.size)
         # the parabola's second difference is dx^2 exactly
         curvature = self.scales.R / inputs.conditions.radius
         separation = state.separation - curvature * self._undeformed - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
-        q_of(residual, self.local)[:] = self.deflection.residual(separation, h00, sums)
+        approach = self.balance.gap(border, self.share.local)
+        q_of(residual, self.local)[:] = self.deflection.residual(separation, approach, sums)
         reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
         w_of(residual, self.local)[:] = reynolds
-        if self.border:
-            residual[-1] = self.balance.residual(h00, sums.load[-1], inputs)
+        if self.owns_border:
+            border_of(residual, self.local)[:] = self.balance.residual(border, sums.forces, inputs)
         return Evaluation(model, state, residual, derivatives)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, extrapolated, fill_mass
+from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.physics.laws import density_law, ln_viscosity, viscosity_law
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
@@ -231,6 +232,8 @@ def mirrored(value: Any) -> Any:
     """
     if isinstance(value, np.ndarray):
         return np.ascontiguousarray(value[..., ::-1])
+    if isinstance(value, Unknowns):
+        return value._replace(q=mirrored(value.q), w=mirrored(value.w))
     if isinstance(value, Conditions):
         return value._replace(u1=-value.u1, u2=-value.u2)
     if hasattr(value, "_make"):

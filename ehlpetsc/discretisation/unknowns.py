@@ -1,6 +1,7 @@
-"""Unknowns of the discrete problem, and their order in a vector: (q_0, w_0, q_1, w_1, ..., h00).
+"""Unknowns of the discrete problem, and their order in a vector: (q_0, w_0, q_1, w_1, ...), then the border.
 
-Rows have the same order. Rows of coefficients over some nodes have it too, without h00.
+Rows have the same order. Rows of coefficients over some nodes have it too, without the border, see
+:mod:`.balance`.
 """
 
 from __future__ import annotations
@@ -11,19 +12,19 @@ import numpy as np
 
 
 class Unknowns(NamedTuple):
-    """Both unknowns of the nodes, shape (nodes,), see :mod:`.contact`, and the approach h00 in a^2/R."""
+    """Both unknowns of the nodes, shape (nodes,), see :mod:`.contact`; those of the :mod:`.balance`."""
 
     q: np.ndarray
     w: np.ndarray
-    h00: float
+    border: np.ndarray
 
 
 class Rows(NamedTuple):
-    """Residual: deflection and Reynolds rows, shape (nodes,), and the load row."""
+    """Residual: deflection and Reynolds rows, shape (nodes,), and those of the border."""
 
     deflection: np.ndarray
     reynolds: np.ndarray
-    load: float
+    border: np.ndarray
 
 
 class Share(NamedTuple):
@@ -62,7 +63,7 @@ def w_index(nodes: np.ndarray) -> np.ndarray:
 
 
 def n_dofs(nodes: int) -> int:
-    """Number of unknowns q and w of `nodes` nodes, which is also the index of h00."""
+    """Number of unknowns q and w of `nodes` nodes, which is also the index of the border."""
     return 2 * nodes
 
 
@@ -79,6 +80,11 @@ def q_of(vector: np.ndarray, nodes: int) -> np.ndarray:
 def w_of(vector: np.ndarray, nodes: int) -> np.ndarray:
     """View of w, or of the Reynolds rows, of the first nodes."""
     return vector[1 : 2 * nodes : 2]
+
+
+def border_of(vector: np.ndarray, nodes: int) -> np.ndarray:
+    """View of the unknowns, or of the rows, of the border, behind those of all nodes of the vector."""
+    return vector[2 * nodes :]
 
 
 def pairs(vector: np.ndarray, nodes: int) -> np.ndarray:

@@ -264,11 +264,10 @@ class NewtonSolver:
         if reason <= 0:
             raise SolveFailed("SNES", REASONS.get(reason, str(reason)), iterations)
         solution = self.system.solution()
-        q, w, h00 = solution
-        if not np.isfinite([q.sum(), w.sum(), h00]).all():
+        if not all(np.isfinite(part.sum()) for part in solution):
             raise SolveFailed("SNES", "NOT_FINITE", iterations)
         bound = self.system.model.lower_bound
-        if bound is not None and not self.bounded and w.min() < bound:
+        if bound is not None and not self.bounded and solution.w.min() < bound:
             raise SolveFailed("SNES", "FILM_BELOW_ITS_BOUND", iterations)
         return solution, iterations
 

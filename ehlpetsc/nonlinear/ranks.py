@@ -22,7 +22,9 @@ from ehlpetsc.discretisation.unknowns import Unknowns, n_dofs
 
 LINEAR_TOLERANCE = 1e-6  # of the far kernel in the product with the Jacobian, which GMRES solves to 1e-4
 EDGE = n_dofs(HALO)
-LOAD = 2 * EDGE + 1  # place in a message of three sums and a flag, behind the outer unknowns and h00
+LOAD = (
+    2 * EDGE + 1
+)  # place in a message of three sums and a flag, behind the outer unknowns and that of the border
 BEHIND_LOAD = LOAD + 4
 
 
@@ -80,9 +82,9 @@ class LineExchange:
         self, vector: np.ndarray, pressure: np.ndarray, flag: bool
     ) -> tuple[Unknowns, PressureSums, bool]:
         """See :class:`Exchange`."""
-        nodes, h00, curvature, load = exchange_unknowns(*self.halo, (vector, pressure, flag))
+        nodes, border, curvature, load = exchange_unknowns(*self.halo, (vector, pressure, flag))
         q, w = np.ascontiguousarray(nodes.T)
-        return Unknowns(q, w, h00), PressureSums(curvature, load[:3]), load[3] > 0.0
+        return Unknowns(q, w, border), PressureSums(curvature, load[:3]), load[3] > 0.0
 
 
 def first_nodes(n: int, ranks: int) -> list[int]:
@@ -98,17 +100,18 @@ def exchange_unknowns(place: tuple, buffers: tuple, matrices: tuple, room: tuple
     """Unknowns at the nodes of the window, and sums over all pressures.
 
     `place`, `buffers`, `matrices`, `room`: of a `Halo`.
-    `local`: local unknowns, interleaved, h00 last on the last rank; pressures of the local nodes; flag.
+    `local`: local unknowns, interleaved, on the last rank the border's behind; pressures of the local nodes;
+        flag.
 
-    Returns the unknowns, shape (window, 2), valid until the next exchange, h00, and curvature and load of
-    `deflection.PressureSums`: on the last rank some more of the first; of the second the number of ranks with
-    the flag, too, shape (4,).
+    Returns the unknowns, shape (window, 2), valid until the next exchange, the border's, shape (1,), and
+    curvature and load of `deflection.PressureSums`: on the last rank some more of the first; of the second
+    the number of ranks with the flag, too, shape (4,).
     """
     (collective, rank), (load_weights, messages, window), (vector, pressure, flag) = place, buffers, local
     mine, last, local_unknowns = messages[rank], len(messages) - 1, vector[: 2 * len(pressure)]
     np.dot(load_weights, pressure, out=mine[LOAD : LOAD + 3])
     mine[LOAD + 3] = flag
-    mine[LOAD - 1] = vector[-1]  # h00 on the last rank
+    mine[LOAD - 1] = vector[-1]  # of the border on the last rank
     pack(rank, matrices, room, pressure, mine[BEHIND_LOAD:])
     nodes = local_unknowns.reshape(-1, 2)
     if last > 0:
@@ -123,7 +126,12 @@ def exchange_unknowns(place: tuple, buffers: tuple, matrices: tuple, room: tuple
     load = messages[0, LOAD:BEHIND_LOAD].copy()
     for other in range(last):
         load += messages[other + 1, LOAD:BEHIND_LOAD]
-    return nodes, messages[last, LOAD - 1], unpack(rank, matrices, room, messages[:, BEHIND_LOAD:]), load
+    return (
+        nodes,
+        messages[last, LOAD - 1 : LOAD].copy(),
+        unpack(rank, matrices, room, messages[:, BEHIND_LOAD:]),
+        load,
+    )
 
 
 ALLGATHER = ctypes.cast(ctypes.CDLL(MPI.__file__).MPI_Allgather, ctypes.c_void_p).value

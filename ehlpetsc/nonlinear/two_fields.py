@@ -1,7 +1,7 @@
 """The nonlinear system of a case for PETSc: two unknowns a node, vectors, matrices, bounds, step limits.
 
-Each rank stores the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ..., h00), h00 on the last rank, and
-evaluates its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`) with data of other ranks from
+Each rank stores the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ...), the last rank the border behind,
+and evaluates its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`) with data of other ranks from
 :mod:`ehlpetsc.nonlinear.ranks`. The Jacobian is matrix-free (:class:`Jacobian`), so
 that Newton's method converges as with the full matrix; the default preconditioner reads its coefficients from
 it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of the near field.
@@ -10,6 +10,7 @@ it, others (``-pc_type lu`` ...) get an assembled matrix with the deflection of 
 from __future__ import annotations
 
 import weakref
+from collections.abc import Iterator
 from copy import copy
 from functools import partial
 from typing import Any, Protocol
@@ -24,6 +25,7 @@ from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import (
     Rows,
     Unknowns,
+    border_of,
     n_dofs,
     nodes_of_w,
     pairs,
@@ -54,7 +56,7 @@ class Jacobian:
         self.state: Any = None
         self.derivatives: np.ndarray = None
         self.reynolds_derivatives: np.ndarray = None
-        self.size = n_dofs(problem.local) + problem.border
+        self.size = problem.size
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """Fill in the local rows of the product with a local vector, zero in inactive rows; collective."""
@@ -167,7 +169,7 @@ class TwoFields:
         self.bound_reached = False
 
     def _create_vectors(self) -> None:
-        sizes = (n_dofs(self.local) + self.problem.border, n_dofs(self.n) + self.problem.balance.unknowns)
+        sizes = self.problem.size, n_dofs(self.n) + self.problem.balance.unknowns
         self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
         self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
         self.lower.set(PETSc.NINFINITY)
@@ -193,8 +195,8 @@ class TwoFields:
         self._given, self.inputs, self.x_evaluated, self.rows = inputs, inputs.begin(), None, None
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
-        if self.problem.border:
-            self.x.array[-1] = guess.h00
+        if self.problem.owns_border:
+            border_of(self.x.array, self.local)[:] = guess.border
 
     def continue_from(self, local: np.ndarray) -> None:
         """Set the unknowns of this rank, and the inputs as at the begin of the solve."""
@@ -205,10 +207,10 @@ class TwoFields:
         """The whole solution on every rank."""
         return Unknowns(*self._parts_of(self.x))
 
-    def _parts_of(self, v: PETSc.Vec) -> tuple[np.ndarray, np.ndarray, float]:
+    def _parts_of(self, v: PETSc.Vec) -> Iterator[np.ndarray]:
         self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
         values = self.all.array_r
-        return q_of(values, self.n).copy(), w_of(values, self.n).copy(), values[-1]
+        return (part(values, self.n).copy() for part in (q_of, w_of, border_of))
 
     def residual(self) -> Rows:
         """Residual of the solution, on every rank."""

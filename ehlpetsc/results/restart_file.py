@@ -24,7 +24,7 @@ from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
 
-VERSION = 7  # of the format
+VERSION = 8  # of the format
 HEADER_BYTES = 512
 SIGNATURE = b"ehlpetsc restart file %d\n" % VERSION
 

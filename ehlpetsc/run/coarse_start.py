@@ -36,7 +36,7 @@ def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:
     """Unknowns of a problem interpolated from the solution by another one, on other nodes."""
     h, solids = by.model.state(coarse.q, coarse.w).film, by.model.contact_pressure(coarse.w)
     q, h, solids = (by.grid.interpolated(values, problem.grid) for values in (coarse.q, h, solids))
-    return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.h00)
+    return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.border)
 
 
 def cures(case: Case, scales: Scales, conditions: Conditions, film: float) -> str:

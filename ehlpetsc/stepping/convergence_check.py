@@ -93,8 +93,8 @@ def solve_step(
 
 def find_fault(problem: EHLProblem, unknowns: Unknowns, rows: Rows, tolerance: float) -> str | None:
     """Reason for which a solution with these rows is rejected; None where it is accepted."""
-    (q, w, h00), (deflection, reynolds, load) = unknowns, rows
-    if not np.isfinite([q.sum(), w.sum(), h00, deflection.sum(), reynolds.sum(), load]).all():
+    (q, w, _), (deflection, reynolds, border) = unknowns, rows
+    if not all(np.isfinite(part.sum()) for part in (*unknowns, *rows)):
         return "it is not finite"
     if problem.fluid is not None and q.min() < -1.0 - VOID_TOLERANCE:
         return f"a node has {q.min() + 1.0:.2g} of its gap full of oil"
@@ -103,7 +103,7 @@ def find_fault(problem: EHLProblem, unknowns: Unknowns, rows: Rows, tolerance: f
     if fault:
         return fault
     for equation, norm in (
-        (problem.balance.equation, abs(load)),
+        *zip(problem.balance.equations, np.abs(border), strict=True),
         ("deflection", np.linalg.norm(deflection)),
         ("open gap" if problem.fluid is None else "oil balance", np.linalg.norm(reynolds)),
     ):

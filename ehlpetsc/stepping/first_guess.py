@@ -47,19 +47,19 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
     if oil_carries:
         p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
     p *= grid.load * load / (grid.cell * p.sum())
-    h = problem.film(p, 0.0, undeformed_gap(problem, inputs))
+    h = problem.film(p, problem.balance.uniform(0.0), undeformed_gap(problem, inputs))
     if not oil_carries:
         lowest = 0.0 if problem.fluid is None else problem.model.minimum_film
         gap = lowest + np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
         q, w = problem.model.dry_start(p, gap)
-        return Unknowns(q, w, lowest - h[np.argmax(p)])
-    h00 = problem.model.start_film(thick * film) - h.min()
-    h += h00
+        return Unknowns(q, w, problem.balance.uniform(lowest - h[np.argmax(p)]))
+    raised = problem.model.start_film(thick * film) - h.min()
+    h += raised
     oil, w = problem.model.oil_start(p, h)
     behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT)
     entrained = film + np.repeat(grid.rows(h).min(axis=1) - h.min(), len(grid.x))  # beside the contact more
     q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
-    return Unknowns(q, w, h00)
+    return Unknowns(q, w, problem.balance.uniform(raised))
 
 
 def smoothed_over(grid: Grid, p: np.ndarray, width: float) -> np.ndarray:
@@ -88,28 +88,29 @@ def smoothed(p: np.ndarray, width: float) -> np.ndarray:
 def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknowns:
     """Hertz pressure and the oil film of the inlet, with void where the gap of the inlet is wider."""
     oil = inputs.inlet_film
-    q, w, h00 = hertz_start(problem, min(film, oil), inputs)
-    h = problem.model.state(q, w).film
+    begin = hertz_start(problem, min(film, oil), inputs)
+    h = problem.model.state(begin.q, begin.w).film
     void = (problem.x < 0.0) & (problem.grid.distance > 1.0) & (h > oil)
-    return Unknowns(np.where(void, oil / h - 1.0, q), w, h00)
+    return begin._replace(q=np.where(void, oil / h - 1.0, begin.q))
 
 
 def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
     """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
     limit, load, grid = problem.model.yield_pressure, problem.balance.share(inputs), problem.grid
     total, phi = grid.load * load / grid.cell, undeformed_gap(problem, inputs)
+    border = problem.balance.uniform(0.0)
     rate = 1.0 / problem.deflection.largest_eigenvalue
     p = ahead = project(np.sqrt(np.maximum(load**grid.growth - grid.distance**2, 0.0)), limit, total)
     momentum = 1.0
     for _ in range(MAX_ITERATIONS):
-        new = project(ahead - rate * problem.film(ahead, 0.0, phi), limit, total)
+        new = project(ahead - rate * problem.film(ahead, border, phi), limit, total)
         if np.abs(new - p).max() < STEP_TOLERANCE * limit:
             break
         if (ahead - new) @ (new - p) > 0.0:
             momentum = 1.0
         following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
         ahead, p, momentum = new + (momentum - 1.0) / following * (new - p), new, following
-    return new, problem.film(new, 0.0, phi)
+    return new, problem.film(new, border, phi)
 
 
 def project(p: np.ndarray, limit: float, total: float) -> np.ndarray:
@@ -131,18 +132,19 @@ def bounded_start(problem: EHLProblem, film: float, inputs: StepInputs, smoothin
     oil_carries = problem.fluid is not None and not inputs.rests
     lowest = max(film, model.minimum_film) if oil_carries else model.minimum_film
     elastic = (p > 0.0) & (p < limit)
-    h00 = lowest - gap[elastic if elastic.any() else p > 0.0].max()
-    depth = np.where(p < limit, 0.0, np.maximum(lowest - gap - h00, 0.0))
+    raised = lowest - gap[elastic if elastic.any() else p > 0.0].max()
+    border = problem.balance.uniform(raised)
+    depth = np.where(p < limit, 0.0, np.maximum(lowest - gap - raised, 0.0))
     if not oil_carries:
         carried = p + depth / model.compliance
-        return Unknowns(*model.dry_start(carried, gap + h00 + depth), h00)
+        return Unknowns(*model.dry_start(carried, gap + raised + depth), border)
     rows = problem.grid.rows
     edge = np.where(rows(p) > 0.0, rows(problem.x), 0.0).max(axis=1)
     if smoothing:
         p = smoothed_over(problem.grid, p, smoothing * film ** (2.0 / 3.0))
     depth[p < limit * (1.0 - 1e-9)] = 0.0
-    h = np.maximum(problem.film(p, h00, undeformed_gap(problem, inputs)) + depth, lowest)
+    h = np.maximum(problem.film(p, border, undeformed_gap(problem, inputs)) + depth, lowest)
     behind = (rows(problem.x) > edge[:, None]).ravel() & (p < AMBIENT)
     oil, w = model.oil_start(p + depth / model.compliance, h)
     q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
-    return Unknowns(q, w, h00)
+    return Unknowns(q, w, border)

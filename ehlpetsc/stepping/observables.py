@@ -68,7 +68,7 @@ class Observation:
     @property
     def load_error(self) -> float:
         """Relative error of the border's equation."""
-        return self.problem.balance.error(self.state.solution.unknowns.h00, self.load, self.conditions)
+        return self.problem.balance.error(self.state.solution.unknowns.border, self.load, self.conditions)
 
     @cached_property
     def friction_1(self) -> float:
@@ -82,8 +82,8 @@ class Observation:
 
     @property
     def approach(self) -> float:
-        """Undeformed separation h00 [m]."""
-        return self.state.solution.unknowns.h00 * self.scene.scales.h
+        """Undeformed separation [m]."""
+        return self.problem.balance.separation(self.state.solution.unknowns.border)
 
     @cached_property
     def mean_film(self) -> float:

@@ -73,11 +73,6 @@ class State:
         return self.unknowns.w
 
     @property
-    def h00(self) -> float:
-        """Approach in a^2/R."""
-        return self.unknowns.h00
-
-    @property
     def p(self) -> np.ndarray:
         """Pressure in p0."""
         return self.solution.nodes.pressure

@@ -250,7 +250,7 @@ class TimeStepping:
         unknowns = solution.unknowns
         q, w = self.problem.model.reset_yielding(unknowns.q, unknowns.w)
         return State(
-            Unknowns(q, w, unknowns.h00),
+            unknowns._replace(q=q, w=w),
             solution,
             m=solution.mass,
             time=end.time,
@@ -276,8 +276,9 @@ class TimeStepping:
         self._is_prepared = True
         q, w = self.baseline
         m = self.problem.mass_per_area(q, w)
-        history = self.history(State(Unknowns(q, w, 0.0), m=m, m_older=m, dt=dt), dt)
-        self.solver.prepare(Unknowns(q, w, 0.0), self.problem.inputs(history=history, dt=dt))
+        smooth = Unknowns(q, w, self.problem.balance.uniform(0.0))
+        history = self.history(State(smooth, m=m, m_older=m, dt=dt), dt)
+        self.solver.prepare(smooth, self.problem.inputs(history=history, dt=dt))
 
     def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:
         """State after one time step of `dt` [s], by default of the step control; halved as needed."""
@@ -290,7 +291,7 @@ class TimeStepping:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
                 step, inputs = self.inputs(state, dt)
-                solved, iterations = self._solve_step(inputs, Unknowns(*guess, state.h00), watch)
+                solved, iterations = self._solve_step(inputs, Unknowns(*guess, state.unknowns.border), watch)
                 break
             except SolveFailed as error:
                 newton, retries = newton + error.iterations, retries + 1

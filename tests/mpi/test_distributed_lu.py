@@ -33,7 +33,7 @@ def state(case, scales):
     w = expected_film(case, scales) * rng.uniform(0.2, 3.0, scales.nx)
     if case.contact.model == "mixed":
         w[TOUCHING] *= -1.0
-    return q, w, 0.0
+    return q, w, np.zeros(1)
 
 
 def dense(problem, at, inactive_nodes):

@@ -69,10 +69,10 @@ def test_film_equation_has_zero_deflection_residual(model):
     scales = Scales.of(case)
     problem = line_problem(case, scales, expected_film(case, scales), 0, scales.nx)
     rng = np.random.default_rng(5)
-    q, phi, h00 = rng.uniform(0.1, 1.5, scales.nx), 1e-3 * rng.standard_normal(scales.nx), 9.0
-    film = problem.film(q, h00, phi)
+    q, phi, border = rng.uniform(0.1, 1.5, scales.nx), 1e-3 * rng.standard_normal(scales.nx), np.array([9.0])
+    film = problem.film(q, border, phi)
     assert film.min() > 0.0
-    evaluation = problem.evaluate(Unknowns(q, problem.model.w_from_film(film), h00), problem.inputs(phi))
+    evaluation = problem.evaluate(Unknowns(q, problem.model.w_from_film(film), border), problem.inputs(phi))
     terms = problem.deflection.curvature_coefficient * film.max()
     assert np.abs(q_of(evaluation.residual, problem.n)).max() < 1e-12 * terms
 

@@ -56,7 +56,7 @@ class Scene:
     def residual(self, state):
         system = self.solver.system
         n = system.n
-        unknowns = Unknowns(q_of(state, n).copy(), w_of(state, n).copy(), state[-1])
+        unknowns = Unknowns(q_of(state, n).copy(), w_of(state, n).copy(), state[-1:])
         return system.problem.evaluate(unknowns, self.inputs).residual.copy()
 
 
@@ -93,7 +93,7 @@ def differences(at, direction, step):
 def linearised(at):
     """The system with its Jacobian at the state, as SNES asks for it."""
     system, n = at.solver.system, at.solver.system.n
-    system.set_initial_guess(Unknowns(q_of(at.state, n), w_of(at.state, n), at.state[-1]), at.inputs)
+    system.set_initial_guess(Unknowns(q_of(at.state, n), w_of(at.state, n), at.state[-1:]), at.inputs)
     at.solver.snes.computeJacobian(system.x, system.operator, system.preconditioned)
     return system
 

@@ -67,7 +67,7 @@ def scene(name):
         m = problem.mass_per_area(np.abs(q), np.abs(w) + film)
         history = FilmHistory(m, 0.9 * m, 0.02, 0.02)
     inputs = problem.inputs(history=history)
-    return system, Unknowns(q, w, -0.8), inputs
+    return system, Unknowns(q, w, np.array([-0.8])), inputs
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -108,7 +108,7 @@ def test_void_has_no_shear_stress():
 
 
 def state_of(problem, q, w):
-    unknowns = Unknowns(q, w, 0.0)
+    unknowns = Unknowns(q, w, np.zeros(1))
     return State(unknowns, problem.solution(unknowns, np.zeros_like(w), problem.inputs()))
 
 

@@ -233,7 +233,9 @@ def test_squeeze_film_of_an_approaching_cylinder():
     pressure = (200.0 / film) ** 2
     pressure *= 0.5 * np.pi / (pressure.sum() * (x[1] - x[0]))
     model = simulation.stepper.problem.model
-    simulation.dimensionless = State(Unknowns(pressure, model.w_from_film(film), 200.0), m=film.copy())
+    simulation.dimensionless = State(
+        Unknowns(pressure, model.w_from_film(film), np.array([200.0])), m=film.copy()
+    )
 
     def sinking(_, h):
         gap = h[0] + y**2 / (2.0 * radius)

@@ -73,7 +73,7 @@ def test_dry_ball_under_a_harmonic_load_is_steady_at_every_instant():
     hertz = hertz_ellipse(now.load, now.radius, now.radius, S.E)
     assert hertz.a < 0.9 * S.a and state.load == pytest.approx(now.load, rel=1e-10)
     assert state.p_max == pytest.approx(hertz.p0, rel=2e-2)
-    assert -state.dimensionless.h00 * S.h == pytest.approx(hertz.approach, rel=1e-2)
+    assert -state.dimensionless.unknowns.border[0] * S.h == pytest.approx(hertz.approach, rel=1e-2)
 
 
 def test_slow_harmonic_conditions_approach_the_steady_film():

@@ -43,7 +43,7 @@ def dry(changes, ellipticity, points, load_error=1e-10):
     exact = np.sqrt(np.maximum(1.0 - s.grid.distance**2, 0.0))
     wrong = np.abs(state.dimensionless.p - exact)
     hertz = hertz_ellipse(s.load, R, R * radius_ratio(ellipticity), s.E)
-    approach = -state.dimensionless.h00 * s.h / hertz.approach - 1.0
+    approach = -state.dimensionless.unknowns.border[0] * s.h / hertz.approach - 1.0
     assert state.load_error < load_error
     return wrong[s.grid.distance < 0.9].max(), wrong.mean(), abs(approach)
 
@@ -110,7 +110,7 @@ def test_smooth_films_with_their_order(M, L, central, minimum, pressure, approac
     for points in (12, 24, 48) if M == 200.0 and L == 10.0 else (8, 16, 32):
         simulation, state, film, p = smooth(M, L, points)
         middle = len(film) // 2, int(np.argmin(np.abs(simulation.scales.x)))
-        found.append((film[middle], lowest(film), p[middle], state.dimensionless.h00))
+        found.append((film[middle], lowest(film), p[middle], state.dimensionless.unknowns.border[0]))
         np.testing.assert_allclose(film, film[::-1], rtol=1e-6)
         assert state.load_error < 1e-10 and state.mass_error < 2e-6
     orders, limits = zip(*(order_and_limit(*values) for values in np.array(found).T), strict=True)

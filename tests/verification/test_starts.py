@@ -179,7 +179,7 @@ def test_start_from_rest_does_not_depend_on_rounding(monkeypatch, solids):
 
     def disturbed(system, guess, inputs):
         q, w = (values * (1.0 + 1e-15 * random.uniform(-1.0, 1.0, len(values))) for values in guess[:2])
-        set_guess(system, Unknowns(q, w, guess.h00), inputs)
+        set_guess(system, Unknowns(q, w, guess.border), inputs)
 
     monkeypatch.setattr(TwoFields, "set_initial_guess", disturbed)
     taken = [Simulation(load(FROM_REST, solids)).advance().newton for _ in range(3)]

@@ -1,12 +1,12 @@
-r"""The deflection rows: one linear form of separation, pressure and approach.
+r"""The deflection rows: one linear form of separation, pressure and the border's gap.
 
 Inside the mesh in second differences (Evans & Hughes 2000; Holmes et al. 2005, eq. (2)),
 
 .. math:: \frac{\pi}{\Delta x}\,\delta^2 g-\sum_kf_kp_{i+k},
 
-at the two end nodes the whole integral with the approach h00,
+at the two end nodes the whole integral with the gap :math:`g_b` of the border,
 
-.. math:: \frac{1}{\Delta x}\Big(g-h_{00}+\frac1\pi\int p\ln|x-s|\,ds\Big),
+.. math:: \frac{1}{\Delta x}\Big(g-g_b+\frac1\pi\int p\ln|x-s|\,ds\Big),
 
 where g is the separation of the solids less that of their undeformed shapes. Residual, matrix-free product,
 assembled matrices and Gauss-Seidel sweeps use the same coefficients.
@@ -109,6 +109,11 @@ class PressureSums(NamedTuple):
     curvature: np.ndarray
     load: np.ndarray
 
+    @property
+    def forces(self) -> np.ndarray:
+        """Of the border, see :mod:`ehlpetsc.discretisation.balance`."""
+        return self.load[2:]
+
 
 class Deflection:
     """Deflection rows of the nodes first .. last-1.
@@ -119,8 +124,8 @@ class Deflection:
     `window`: nodes on which the rows depend, first .. last-1 among them.
     `curvature`: kernel f_k, shape (n,).
     `curvature_coefficient`: coefficient of the second difference of the separation.
-    `end_row_coefficient`: coefficient of the separation in the row of an end node; that of h00 is its
-        negative.
+    `end_row_coefficient`: coefficient of the separation in the row of an end node; that of the border's
+        gap is its negative.
     `ends`: end nodes of the mesh among the local nodes.
     `form`: constants of :func:`deflection_rows`.
     `load_weights`: coefficients of the local pressures in `PressureSums.load`, shape (3, last - first).
@@ -159,13 +164,13 @@ class Deflection:
         """`PressureSums` of the pressures (n,) of the mesh, on one rank."""
         return PressureSums(product(self._blocks, pressure), self.load_weights @ pressure)
 
-    def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
+    def residual(self, separation: np.ndarray, of_border: float, sums: PressureSums) -> np.ndarray:
         """Linear form in the local rows.
 
         `separation`: at the nodes of `window`.
         """
         rows = np.empty(self.last - self.first)
-        deflection_rows(separation, approach, *sums, self.form, rows)
+        deflection_rows(separation, of_border, *sums, self.form, rows)
         return rows
 
     def integral(self, pressure: np.ndarray) -> np.ndarray:
@@ -175,11 +180,11 @@ class Deflection:
 
 @compiled
 def deflection_rows(
-    g: np.ndarray, approach: float, curvature: np.ndarray, load: np.ndarray, form: tuple, rows: np.ndarray
+    g: np.ndarray, of_border: float, curvature: np.ndarray, load: np.ndarray, form: tuple, rows: np.ndarray
 ) -> None:
     """Fill in the deflection rows, shape (rows,).
 
-    `g`: separation.
+    `g`, `of_border`: separation, and the gap of the border.
     `curvature`, `load`: see `PressureSums`.
     `form`: index in g of the first row's node, 0: the first node of the mesh; `curvature_coefficient` and
         `end_row_coefficient` of `Deflection`; whether the last row is that of the last node of the mesh.
@@ -187,9 +192,9 @@ def deflection_rows(
     start, coefficient, end_coefficient, has_last = form
     inner = len(rows) - has_last
     if start == 0:
-        rows[0] = end_coefficient * (g[0] - approach) + load[0]
+        rows[0] = end_coefficient * (g[0] - of_border) + load[0]
     for row in range(1 if start == 0 else 0, inner):
         i = start + row
         rows[row] = coefficient * (g[i - 1] - 2.0 * g[i] + g[i + 1]) - curvature[row]
     if has_last:
-        rows[inner] = end_coefficient * (g[start + inner] - approach) + load[1]
+        rows[inner] = end_coefficient * (g[start + inner] - of_border) + load[1]

@@ -1,11 +1,11 @@
-r"""The deflection rows in the plane: separation, pressure and approach in integral form.
+r"""The deflection rows in the plane: separation, pressure and the border's gap in integral form.
 
-.. math:: s_g\Big(g-h_{00}-C\sum_{kl}K_{|i-k|,|j-l|}\,p_{kl}\Big),
+.. math:: s_g\Big(g-g_b-C\sum_{kl}K_{|i-k|,|j-l|}\,p_{kl}\Big),
 
-g the separation of the solids less that of their undeformed shapes, K of one cell as below. The scale
-:math:`s_g=\sqrt{\Delta x\Delta y}/h_s`, :math:`h_s` that of the films, makes the norm of the rows a relative
-error of the film. The sum is a convolution by FFT: along x, and across for a point contact, over twice the
-nodes, because the domain is free; across a strip over its period.
+g the separation of the solids less that of their undeformed shapes, :math:`g_b` the gap of the border, K of
+one cell as below. The scale :math:`s_g=\sqrt{\Delta x\Delta y}/h_s`, :math:`h_s` that of the films, makes the
+norm of the rows a relative error of the film. The sum is a convolution by FFT: along x, and across for a
+point contact, over twice the nodes, because the domain is free; across a strip over its period.
 
 Points of a rank are whole rows along x. The transform along x is local; before the one across, a
 :class:`Transposition` hands each rank all rows of some wave numbers.
@@ -31,7 +31,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
@@ -166,11 +166,11 @@ class PressureSums(NamedTuple):
     r"""Sums over the pressures of the whole mesh.
 
     `deflection`: :math:`C\sum K p` at the local nodes in a^2/R, shape (local nodes,).
-    `load`: :math:`\sum p\,\Delta x\Delta y`, shape (1,).
+    `forces`: of the border, see :mod:`ehlpetsc.discretisation.balance`.
     """
 
     deflection: np.ndarray
-    load: np.ndarray
+    forces: np.ndarray
 
 
 class Convolution:
@@ -217,7 +217,7 @@ class Deflection:
     `owned`: local nodes in the window.
 
     `kernel`: C K, shape (n_y, n_x).
-    `row_scale`: coefficient of the separation in a row; that of h00 is its negative.
+    `row_scale`: coefficient of the separation in a row; that of the border's gap is its negative.
     `cell`: dx dy.
     """
 
@@ -239,13 +239,9 @@ class Deflection:
         self.kernel = kernel
         self.convolution = Convolution(kernel, periodic, ranks or OneRank())
 
-    def sums(self, pressure: np.ndarray) -> PressureSums:
-        """`PressureSums` of local pressures; the load is that of the local nodes. Collective."""
-        return PressureSums(self.convolution(pressure), np.array([self.cell * pressure.sum()]))
-
-    def residual(self, separation: np.ndarray, approach: float, sums: PressureSums) -> np.ndarray:
-        """Local rows, from the separation at the nodes of the window."""
-        return self.row_scale * (separation[self.owned] - approach - sums.deflection)
+    def residual(self, separation: np.ndarray, of_border: Any, sums: PressureSums) -> np.ndarray:
+        """Local rows, from the separation at the nodes of the window and the gap of the border."""
+        return self.row_scale * (separation[self.owned] - of_border - sums.deflection)
 
     @cached_property
     def largest_eigenvalue(self) -> float:

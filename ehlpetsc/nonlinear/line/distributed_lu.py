@@ -10,8 +10,8 @@ others (Polizzi & Sameh 2006: SPIKE), :math:`x=y-Gw`. The unknowns w at the cuts
 
 Three dense rows d border the band: the whole deflection of both end nodes, and the load. They enter by two
 columns :math:`z=A^{-1}e`, e the rows of the end nodes, and a system of three unknowns: what the band lacks of
-both rows, and h00. The products :math:`d\cdot x=U^{-T}d\cdot y` need no substitution before, so that ranks
-exchange them with the values at the cuts: once a solve.
+both rows, and the border's. The products :math:`d\cdot x=U^{-T}d\cdot y` need no substitution before, so that
+ranks exchange them with the values at the cuts: once a solve.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class DistributedLU:
     """Factors and solves.
 
     `band`: of the nodes of this rank.
-    `approach_coefficient`: of h00 in the deflection rows of the end nodes.
+    `approach_coefficient`: of the border's unknown in the deflection rows of the end nodes.
 
     `factors`: from the first factorisation on, for compiled solves:
 
@@ -213,7 +213,7 @@ def finish_coupling(
     """Finish the columns z; inverse of the system of three unknowns, shape (BORDER, BORDER).
 
     `place`, `lu`, `cuts`, `ends`, `messages`: as of :func:`begin_coupling`, with the rows of the inverse.
-    `coefficient`: of h00 in the deflection rows of the end nodes.
+    `coefficient`: of the border's unknown in the deflection rows of the end nodes.
     """
     inverse = np.empty((BORDER, BORDER))
     matrix = np.array([[1.0, 0.0, -coefficient], [0.0, 1.0, -coefficient], [0.0, 0.0, 0.0]])
@@ -231,7 +231,7 @@ def finish_coupling(
 
 @compiled
 def solve(factors: tuple, b: np.ndarray, solution: np.ndarray) -> None:
-    """Fill in the solution of the local (q, h, q, h, ...), and h00 on the last rank; collective.
+    """Fill in the solution of the local (q, h, q, h, ...), and of the border on the last rank; collective.
 
     `factors`: of a `DistributedLU`.
     `b`: right-hand side, zero in the rows that are not in the system.

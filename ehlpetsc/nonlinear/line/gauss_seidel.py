@@ -13,10 +13,10 @@ B are derivatives of the Reynolds rows at the state before the last sweeps, so t
 system of Newton's method; C and D are exact. Between two evaluations of A and B
 
 * pressures further away than `NEAR_FIELD_NODES` act on E by FFT with their values of the last evaluation;
-* h00 changes with the load error, by `APPROACH_RELAXATION` times the change that Hertz' contact would need;
+* the border changes with the load error, by `APPROACH_RELAXATION` times what Hertz' contact would need;
 * in the open gap, wider than `OPEN_GAP_FILM_RATIO` expected films and below `OPEN_GAP_PRESSURE`, h is set to
-  the integral of p, as at the two ends of the mesh. By second differences alone, a change of h00 or of a
-  distant pressure would need as many sweeps as the square of the number of nodes. In the open gap pressures
+  the integral of p, as at the two ends of the mesh. By second differences alone, a change of the border or
+  of a distant pressure would need as many sweeps as the square of the number of nodes. There pressures
   hardly depend on the film, so that this is stable; in the film, or in valleys between asperities, it is not.
 
 A node that changes between oil and cavity stops at the change, where its derivatives jump, until the next
@@ -39,7 +39,7 @@ from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
 from ehlpetsc.discretisation.line.deflection import SymmetricToeplitz
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
-from ehlpetsc.discretisation.unknowns import Rows, Unknowns, q_of, w_of
+from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, q_of, w_of
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
@@ -54,8 +54,8 @@ MAX_EVALUATIONS = 400  # of A and B in a solve
 NEAR_FIELD_NODES = 100  # nodes on either side whose pressures act in the same sweep
 OPEN_GAP_FILM_RATIO, OPEN_GAP_PRESSURE = 3.0, 0.1  # minimum of h in expected films, maximum of p in p0
 OPEN_GAP_RELAXATION, FILM_RELAXATION = 1.85, 1.3  # over-relaxation in the open gap, in films of time steps
-APPROACH_RELAXATION = 0.2  # of the change of h00 that balances the load of Hertz' contact
-HERTZ_STIFFNESS = np.pi / np.log(2.0)  # -dW/dh00 of Hertz' contact at W = pi/2, both dimensionless
+APPROACH_RELAXATION = 0.2  # of the change of the border that balances the load of Hertz' contact
+HERTZ_STIFFNESS = np.pi / np.log(2.0)  # load per approach of Hertz' contact at W = pi/2, both dimensionless
 
 
 class GaussSeidelSolver:
@@ -93,39 +93,42 @@ class GaussSeidelSolver:
         self, guess: Unknowns, inputs: StepInputs, max_it: int | None = None, watch: Watch = None
     ) -> tuple[Unknowns, int]:
         """As :meth:`.newton.NewtonSolver.solve`; iterations are evaluations of the coefficients."""
-        q, h, h00 = guess.q.copy(), np.maximum(guess.w, self.bound), guess.h00
+        q, h, border = guess.q.copy(), np.maximum(guess.w, self.bound), guess.border
         max_sweeps = max_it or MAX_EVALUATIONS
         for iteration in range(max_sweeps):
             if watch:
                 watch()
             p = np.maximum(q, 0.0)
-            h00, gap_is_open = self._correct(p, h, h00, inputs)
-            norm = self._evaluate(q, h, h00, inputs)
+            border, gap_is_open = self._correct(p, h, border, inputs)
+            norm = self._evaluate(q, h, border, inputs)
             if norm < self.tolerance:
-                return Unknowns(q, h, h00), iteration
+                return Unknowns(q, h, border), iteration
             if not np.isfinite(norm):
                 raise SolveFailed("sweeps", "NOT_FINITE", iteration)
             self._sweep(q, h, p, gap_is_open, inputs)
         raise SolveFailed("sweeps", "MAX_IT", max_sweeps)
 
     def _correct(
-        self, p: np.ndarray, h: np.ndarray, h00: float, inputs: StepInputs
-    ) -> tuple[float, np.ndarray]:
-        """Balance the load by h00; set h of the open gap and of the ends to the integral of p, in place."""
-        error = self.problem.balance.residual(h00, self.problem.dx * p.sum(), inputs)
-        h00 += APPROACH_RELAXATION / HERTZ_STIFFNESS * error
+        self, p: np.ndarray, h: np.ndarray, border: np.ndarray, inputs: StepInputs
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Balance the load; set h of the open gap and of the ends to the integral of p, in place."""
+        balance = self.problem.balance
+        error = balance.residual(border, balance.forces(p), inputs)
+        border = border + APPROACH_RELAXATION / HERTZ_STIFFNESS * error
         gap_is_open = (h > OPEN_GAP_FILM_RATIO * self.problem.film_scale) & (p < OPEN_GAP_PRESSURE)
         gap_is_open[[0, -1]] = True
-        h[gap_is_open] = np.maximum(self.problem.film(p, h00, inputs.phi)[gap_is_open], self.bound)
-        return h00, gap_is_open
+        h[gap_is_open] = np.maximum(self.problem.film(p, border, inputs.phi)[gap_is_open], self.bound)
+        return border, gap_is_open
 
-    def _evaluate(self, q: np.ndarray, h: np.ndarray, h00: float, inputs: StepInputs) -> float:
+    def _evaluate(self, q: np.ndarray, h: np.ndarray, border: np.ndarray, inputs: StepInputs) -> float:
         """Store residual and coefficients at a state; return the norm of the rows off the bound."""
         with np.errstate(over="ignore", invalid="ignore"):
-            evaluation = self.problem.evaluate(Unknowns(q, h, h00), inputs)
+            evaluation = self.problem.evaluate(Unknowns(q, h, border), inputs)
             rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
             reynolds = w_of(rows, self.problem.n)
-            self.rows = Rows(q_of(rows, self.problem.n).copy(), reynolds.copy(), rows[-1])
+            self.rows = Rows(
+                q_of(rows, self.problem.n).copy(), reynolds.copy(), border_of(rows, self.problem.n)
+            )
             reynolds[(h <= self.bound) & (reynolds > 0.0)] = 0.0
             return float(np.linalg.norm(rows))
 

@@ -109,10 +109,10 @@ class NearFieldMatrix:
         set_rows(self.matrix, q_index(nodes), self.columns, np.hstack([by_q, by_w, approach]))
         columns = reynolds_columns(p.first, p.last, p.n)
         set_rows(self.matrix, w_index(nodes), columns, self._by_unknowns(state, derivatives))
-        if p.border:
-            row, weight = np.zeros(n_dofs(p.n) + 1), p.dx * p.balance.by_load
+        if p.owns_border:
+            row, weight = np.zeros(n_dofs(p.n) + 1), p.dx * p.balance.by_forces
             q_of(row, p.n)[:], w_of(row, p.n)[:] = weight * state.p_q, weight * state.p_w
-            row[-1] = p.balance.by_h00  # stored also where it is zero, as LU needs it
+            row[-1:] = p.balance.by_border  # stored also where it is zero, as LU needs it
             self.matrix.setValues([n_dofs(p.n)], np.arange(len(row), dtype=np.int32), row)
         self.matrix.assemble()
 
@@ -158,10 +158,10 @@ def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out:
     (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
     local = 2 * len(derivatives)
     directional_derivative(by[0], v[:local].reshape(len(pressure), 2), form[0], pressure)
-    nodes, h00, curvature, load = exchange_unknowns(*halo, (v, pressure, False))
+    nodes, border, curvature, load = exchange_unknowns(*halo, (v, pressure, False))
     for k in range(3):
         directional_derivative(by[k + 1], nodes, ZERO, change[k])
-    deflection_rows(change[2], h00, curvature, load, form, out[0:local:2])
+    deflection_rows(change[2], border[0], curvature, load, form, out[0:local:2])
     reynolds_product(derivatives, change[0], change[1], 0, form[0], out[1:local:2])
     if len(out) > local:
         out[local] = load[2]  # the border of a line is the balance of the load

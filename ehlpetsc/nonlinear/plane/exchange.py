@@ -10,7 +10,8 @@ from mpi4py import MPI
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.plane.deflection import PressureSums
-from ehlpetsc.discretisation.unknowns import Share, Unknowns, n_dofs
+from ehlpetsc.discretisation.unknowns import Share, Unknowns, border_of, n_dofs
+from ehlpetsc.nonlinear.ranks import global_sum
 
 MIN_ROWS = 4  # of a rank
 
@@ -123,18 +124,18 @@ class PlaneExchange:
             before[:] = received
         return window
 
-    def h00(self, vector: np.ndarray) -> float:
-        """The approach, which the last rank has behind its nodes."""
-        if self.ranks.size == 1:
-            return float(vector[-1])
-        return float(self.ranks.bcast(vector[-1], root=self.ranks.size - 1))
+    def border(self, vector: np.ndarray) -> np.ndarray:
+        """Unknowns, or rows, of the border, which the last rank has behind its nodes."""
+        border = border_of(vector, self.problem.local)
+        return border if self.ranks.size == 1 else self.ranks.bcast(border, root=self.ranks.size - 1)
 
     def sums(self, pressure: np.ndarray) -> PressureSums:
         """`PressureSums` of the pressures of all ranks."""
-        sums = self.problem.deflection.sums(pressure)
-        if self.ranks.size > 1:
-            self.ranks.Allreduce(MPI.IN_PLACE, sums.load)
-        return sums
+        return PressureSums(self.problem.deflection.convolution(pressure), self.forces(pressure))
+
+    def forces(self, pressure: np.ndarray) -> np.ndarray:
+        """Forces of the border by the pressures of all ranks."""
+        return global_sum(self.ranks, self.problem.balance.forces(pressure, self.problem.share.local))
 
     def unknowns(
         self, vector: np.ndarray, pressure: np.ndarray, flag: bool
@@ -143,4 +144,4 @@ class PlaneExchange:
         pairs = vector[: n_dofs(self.problem.local)].reshape(-1, 2)
         q, w = np.ascontiguousarray(self.window(pairs).T)
         is_set = flag if self.ranks.size == 1 else bool(self.ranks.allreduce(int(flag), op=MPI.MAX))
-        return Unknowns(q, w, self.h00(vector)), self.sums(pressure), is_set
+        return Unknowns(q, w, self.border(vector)), self.sums(pressure), is_set

@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.plane.deflection import PressureSums
-from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.ranks import all_ranks
 from ehlpetsc.nonlinear.two_fields import Jacobian
@@ -20,11 +20,11 @@ SAME_PRESSURE = 0.03
 
 
 class KnownDeflection(NamedTuple):
-    """Deflection of the local nodes and load of all, by a change of the local unknowns."""
+    """Deflection of the local nodes and forces of all, by a change of the local unknowns."""
 
     change: np.ndarray
     deflection: np.ndarray
-    load: float
+    forces: np.ndarray
 
 
 class Elimination(Protocol):
@@ -69,11 +69,11 @@ class PlaneJacobian(Jacobian):
         return by[0, 0, owned] * pairs[:, 0] + by[0, 1, owned] * pairs[:, 1]
 
     def remember(self, v: np.ndarray, pressure: np.ndarray, sums: PressureSums) -> None:
-        """Store deflection and load by local pressures, if they are those of the change v of the unknowns."""
+        """Store deflection and forces by local pressures, if these are those of the change v of unknowns."""
         missed, allowed = self.pressure_of(v) - pressure, SAME_PRESSURE * self.linear_rtol
         fits = np.linalg.norm(missed) <= allowed * np.linalg.norm(pressure)
         is_known = all_ranks(self.ranks, fits)
-        self.known = KnownDeflection(v, sums.deflection, float(sums.load[0])) if is_known else None
+        self.known = KnownDeflection(v, *sums) if is_known else None
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
@@ -81,17 +81,16 @@ class PlaneJacobian(Jacobian):
         local, owned = n_dofs(p.local), p.owned
         pairs = v[:local].reshape(-1, 2)
         if self.known is not None and all_ranks(self.ranks, np.array_equal(self.known.change, v)):
-            _, deflection, load = self.known
+            _, deflection, forces = self.known
         else:
-            deflection, loads = self.exchange.sums(self.pressure_of(v))
-            load = loads[0]
+            deflection, forces = self.exchange.sums(self.pressure_of(v))
         window = self.exchange.window(pairs)
         unknown, film = (by[k, 0] * window[:, 0] + by[k, 1] * window[:, 1] for k in (1, 2))
         separation = by[3, 0, owned] * pairs[:, 0] + by[3, 1, owned] * pairs[:, 1]
-        scale = p.deflection.row_scale
-        h00 = self.exchange.h00(v)
-        out[0:local:2] = scale * (separation - h00 - deflection)
+        border = self.exchange.border(v)
+        of_border = p.balance.gap(border, p.share.local)
+        out[0:local:2] = p.deflection.row_scale * (separation - of_border - deflection)
         out[1:local:2] = p.reynolds.product(self.reynolds_derivatives, unknown, film, owned.start)
-        if len(out) > local:
-            out[local] = p.balance.product(h00, load)
+        if p.owns_border:
+            border_of(out, p.local)[:] = p.balance.product(border, forces)
         out[2 * self.inactive_nodes + 1] = 0.0

@@ -1,12 +1,12 @@
 r"""Preconditioner of a contact in the plane: film and load eliminated, the pressures by PETSc.
 
-For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equation and load:
+For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equation and border:
 
-1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta h_{00}+b_g/s_g`, is put
+1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta g_b+b_g/s_g`, is put
    into the Reynolds rows (:mod:`.reduction`).
 2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and from the sparse form
    (:mod:`.screened_poisson`) by PETSc's preconditioner of the user's options, ``-pc_type``, by default
-   incomplete LU. The load is an additional row and column.
+   incomplete LU. The border adds rows and columns.
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
    exact but where pressure and separation depend on each other.
 
@@ -18,6 +18,7 @@ than `MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.unknowns import n_dofs
+from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
@@ -161,11 +162,11 @@ class SparseForm:
 
 
 class Factors(NamedTuple):
-    """Sparse form and coarse correction (None: no use) of one state; the solution for a unit of h00."""
+    """Sparse form and coarse correction (None: no use) of one state; solutions for units of the border."""
 
     sparse: SparseForm
     coarse: CoarseCorrection | None
-    of_h00: tuple[np.ndarray, np.ndarray, float] | None = None
+    of_border: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]] = ()
 
 
 class Elimination:
@@ -232,13 +233,14 @@ class Elimination:
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
             coarse = CoarseCorrection(self.coarse_space, self._gathered(sparse.by), mask)
         self.factors = Factors(sparse, coarse)
-        of_h00 = self._pressures(operator, np.zeros(p.local), p.balance.gap(p.local))
-        self.factors = Factors(sparse, coarse, of_h00)
+        gaps = (np.full(p.local, p.balance.gap(unit, p.share.local)) for unit in np.eye(p.balance.unknowns))
+        of_border = [self._pressures(operator, np.zeros(p.local), gap) for gap in gaps]
+        self.factors = Factors(sparse, coarse, of_border)
 
     def _pressures(
         self, operator: PlaneJacobian, reynolds: np.ndarray, separation: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, float]:
-        """Pressures and Reynolds unknowns of the local nodes, and the load; see :meth:`SparseForm.solve`."""
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pressures and Reynolds unknowns of the local nodes, and forces; see :meth:`SparseForm.solve`."""
         p, (sparse, coarse, _) = self.problem, self.factors
         nothing = np.zeros(p.share.window_size)
         given = operator.exchange.window(separation)
@@ -250,8 +252,7 @@ class Elimination:
                 separation = separation + change
             pressure, r = sparse.solve(reynolds, separation)
         pressure = pressure + coarsely
-        load = p.deflection.cell * pressure.sum()
-        return pressure, r, float(load if self.ranks.size == 1 else self.ranks.allreduce(load))
+        return pressure, r, operator.exchange.forces(pressure)
 
     def _coarsely(self, reynolds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
@@ -264,17 +265,17 @@ class Elimination:
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
-        p, (sparse, _, of_h00) = self.problem, self.factors
+        p, (sparse, _, of_border) = self.problem, self.factors
         exchange, local, scale = operator.exchange, n_dofs(p.local), p.deflection.row_scale
         self.applications += 1
-        b_g, b_load = full[0:local:2] / scale, full[-1] if operator.size > local else 0.0
-        if self.ranks.size > 1:
-            b_load = self.ranks.bcast(b_load, root=self.ranks.size - 1)
-        pressure, r, load = self._pressures(operator, full[1:local:2], b_g)
-        approach = p.balance.change(b_load, load, of_h00[2])
-        pressure, r = pressure + approach * of_h00[0], r + approach * of_h00[1]
+        b_g = full[0:local:2] / scale
+        pressure, r, forces = self._pressures(operator, full[1:local:2], b_g)
+        by_unit = np.array([by_unit for _, _, by_unit in of_border])
+        border = p.balance.change(exchange.border(full), forces, by_unit)
+        for change, (by_pressure, by_r, _) in zip(border, of_border, strict=True):
+            pressure, r = pressure + change * by_pressure, r + change * by_r
         sums = exchange.sums(pressure)
-        separation = sums.deflection + approach + b_g
+        separation = sums.deflection + p.balance.gap(border, p.share.local) + b_g
         kind, back = sparse.kind, self.reduction.back[:, p.owned]
         first, second = (
             np.where(kind == VOID, r, pressure),
@@ -284,7 +285,7 @@ class Elimination:
         out[0:local:2] = back[0] * first + back[1] * second
         out[1:local:2] = back[2] * first + back[3] * second
         out[2 * operator.inactive_nodes + 1] = 0.0
-        if operator.size > local:
-            out[-1] = approach
+        if p.owns_border:
+            border_of(out, p.local)[:] = border
         operator.remember(out, pressure, sums)
         return out
