@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import codecs
+import difflib
 import json
 import os
 import re
 import tomllib
+from pathlib import Path
 from typing import Any
 
 from ehlpetsc.base.errors import CaseError
@@ -33,7 +35,10 @@ def read_text(path: str | os.PathLike) -> str:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise CaseError([f"{path}: cannot be read: {reason}"]) from None
+        known = Path(path).parent.glob("*.toml") if isinstance(error, FileNotFoundError) else ()
+        close = difflib.get_close_matches(Path(path).name, [file.name for file in known])
+        meant = f"; did you mean {Path(path).with_name(close[0])}?" if close else ""
+        raise CaseError([f"{path}: cannot be read: {reason}{meant}"]) from None
 
 
 def parse_toml(path: str | os.PathLike, text: str) -> Tables:

@@ -328,3 +328,12 @@ def test_written_toml_and_stored_text_give_the_same_case(path):
     is_varied = "surface.2" in str(tables.get("series"))
     changed = case.load(path, sets if is_varied else sets | {"surface.2": {"synthetic": wave}})
     assert case.stored_case(changed.text) == changed
+
+
+@pytest.mark.parametrize(
+    "name, hint", [("mine.tml", r"; did you mean \S+mine\.toml\?"), ("other/x.toml", "")]
+)
+def test_mistyped_name_of_a_case_is_answered_by_a_close_one(name, hint, tmp_path):
+    (tmp_path / "mine.toml").touch()
+    with pytest.raises(CaseError, match=rf"No such file or directory{hint}$"):
+        case.load(tmp_path / name)
