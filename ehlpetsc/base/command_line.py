@@ -98,7 +98,8 @@ def exit_status(
         text = not_written(error, error.filename or output) if error.errno else str(error)  # HDF5 has none
         print(f"{name}: {text}", file=sys.stderr)
     except faults as error:
-        print(f"{name}: {error}", file=sys.stderr)
+        if first_rank() or not isinstance(error, UsageError):  # which all ranks have
+            print(f"{name}: {error}", file=sys.stderr)
         return getattr(error, "status", ExitStatus.BAD_INPUT)
     else:
         return ExitStatus.DONE if status is None else status

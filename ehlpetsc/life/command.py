@@ -14,6 +14,8 @@ from pathlib import Path
 
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.compiled import announce_compilation
+from ehlpetsc.base.environment import other_mpi
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.loading import load
 from ehlpetsc.life.ensemble import bands, lines_of_ensembles, read_lives, run_lives
 from ehlpetsc.life.history import read_life
@@ -87,6 +89,8 @@ def _run_life(chosen: Namespace) -> None:
     from ehlpetsc.run.stop import StopRequest
 
     comm = MPI.COMM_WORLD
+    if fault := other_mpi(comm.size):
+        raise UsageError(fault)
     output = file_path(f"{Path(case.path).stem}.life.h5" if chosen.output is None else chosen.output)
     show = partial(print, flush=True) if comm.rank == 0 else lambda text: None
     if comm.rank == 0:

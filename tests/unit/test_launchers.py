@@ -32,9 +32,10 @@ def test_processes_alone_are_noticed(monkeypatch, variables, ranks, is_fault):
     assert bool(other_mpi(ranks)) == is_fault
 
 
-def test_a_run_of_another_launcher_ends_before_the_case_in_one_sentence(tmp_path):
+@pytest.mark.parametrize("case", [["mixed.toml"], ["life", "life.toml"]], ids=["run", "life"])
+def test_a_run_of_another_launcher_ends_before_the_case_in_one_sentence(case, tmp_path):
     environment = {name: value for name, value in os.environ.items() if name not in SIZE_VARIABLES}
-    words = [sys.executable, "-m", "ehlpetsc", CASES / "mixed.toml"]
+    words = [sys.executable, "-m", "ehlpetsc", *case[:-1], CASES / case[-1]]
     environment |= {"PYTHONPATH": os.pathsep.join([str(ROOT), environment.get("PYTHONPATH", "")])}
     for rank in ("0", "1"):
         alone = environment | {"PMI_SIZE": "2", "PMI_RANK": rank}
