@@ -33,6 +33,7 @@ SCENES: dict[str, Callable[[Any], bool]] = {
     "fluid": lambda case: case.fluid is not None,
     "mixed": lambda case: case.contact.has_contact_pressure,
     "compliant": lambda case: case.contact.asperity_height is not None,
+    "tilted": lambda case: case.contact.tilt is not None or case.contact.self_aligning,
     "variable": lambda case: case.conditions is not None,
     "mixed row": lambda case: SCENES["mixed"](case) and not KINDS[case.kind].is_whole,
     "mixed point": lambda case: SCENES["mixed"](case) and KINDS[case.kind].is_whole,
@@ -142,6 +143,12 @@ STEP_SCALARS = {
         of=lambda o: o.mass_error,
     ),
     "approach": Compared("m", "undeformed separation h00", of=lambda o: o.approach),
+    "tilt": StepScalar(
+        "1",
+        "slope of the gap across",
+        only="tilted",
+        of=lambda o: o.problem.balance.tilt(o.state.solution.unknowns.border),
+    ),
     "friction": Integral("N", "friction force on surface 2", of=lambda o: o.friction_2),
     "friction_1": Integral("N", "friction force on surface 1, in +x", of=lambda o: o.friction_1),
     "friction_coefficient": AtEnd(

@@ -109,6 +109,43 @@ class Approach(Load):
         return abs(border[0] / self.approach + 1.0)
 
 
+class Tilt(Load):
+    r"""Balance of the load, and the slope of the gap across, :math:`h=h_{00}+\varphi y+\dots`.
+
+    `tilt`: of the case; None: the moment of the pressure about y = 0 vanishes.
+    """
+
+    def __init__(self, scales: Scales, tilt: float | None):
+        super().__init__(scales)
+        self.unit, self.y = scales.h / scales.a, scales.grid.coordinates[0]
+        self.is_free, self.given = tilt is None, (tilt or 0.0) / self.unit
+        self.equations = "load", "moment" if self.is_free else "tilt"
+        self.by_border, self.by_forces = np.array([0.0, not self.is_free]), np.array([1.0, self.is_free])
+
+    def uniform(self, gap: float) -> np.ndarray:
+        """See :class:`Load`; with the given tilt."""
+        return np.array([gap, self.given])
+
+    def gap(self, border: np.ndarray, nodes: slice = slice(None)) -> np.ndarray:
+        """See :class:`Load`."""
+        return border[0] + border[1] * self.y[nodes]
+
+    def tilt(self, border: np.ndarray) -> float:
+        """Slope of the gap across."""
+        return border[1] * self.unit
+
+    def forces(self, pressure: np.ndarray, nodes: slice = slice(None)) -> np.ndarray:
+        """See :class:`Load`: the load, and its moment about y = 0."""
+        return self.scales.grid.cell * np.array([pressure.sum(), self.y[nodes] @ pressure])
+
+    def residual(self, border: np.ndarray, forces: np.ndarray, inputs: StepInputs) -> np.ndarray:
+        """See :class:`Load`."""
+        moment = forces[1] if self.is_free else border[1] - self.given
+        return np.array([super().residual(border, forces, inputs)[0], moment])
+
+
 def balance_of(case: Case, scales: Scales) -> Load:
     """Border of a case."""
+    if case.contact.tilt is not None or case.contact.self_aligning:
+        return Tilt(scales, case.contact.tilt)
     return Load(scales) if case.contact.approach is None else Approach(scales, case.contact.approach)

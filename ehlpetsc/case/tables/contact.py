@@ -49,6 +49,20 @@ KEYS = {
         *("m", 1e-9, 1e-2),
         equation="`h00 = -delta` in place of the balance of the load",
     ),
+    "tilt": Key(
+        "misalignment of a point contact: slope of the gap across, by which the contact moves `-tilt Ry`",
+        *("", -0.1, 0.1),
+        contacts=("point",),
+        needs=("contact.approach left out",),
+        equation="`h = h00 + tilt y + g`, `g` the shapes and the elastic deflection",
+    ),
+    "self_aligning": Key(
+        "the solids of a point contact tilt until the moment of the pressure about y = 0 vanishes",
+        kind=bool,
+        default=False,
+        contacts=("point",),
+        needs=("contact.approach left out", "contact.tilt left out"),
+    ),
     "material": Key("steel: elastic, fatigue and yield constants", choices=tuple(STEELS), many="both"),
     "youngs_modulus": Required(
         "Young's modulus, `2/E' = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`",
