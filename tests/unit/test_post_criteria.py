@@ -116,6 +116,12 @@ def contact_like(seed, samples=300):
     return -0.6 * load + 4e8 * x * np.exp(-(x**2)), -load, 0.5e9 * x * np.exp(-(x**2)) * (1 + 0.3 * ripple)
 
 
+@pytest.mark.parametrize("components", [3, 6])
+def test_grid_has_each_direction_once(components):
+    """A second one half a turn away would be the second best plane of each best one."""
+    assert planes_and_directions(components=components)[:, 2].max() < np.pi - 1e-3
+
+
 def test_plane_search_equals_exhaustive_search():
     for seed in range(3):
         parts = contact_like(seed)

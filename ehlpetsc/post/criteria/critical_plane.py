@@ -9,7 +9,7 @@ by a pattern search, and the damage of the best plane is counted on all samples.
 from __future__ import annotations
 
 from functools import partial
-from math import cos, pi, sin
+from math import cos, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -54,56 +54,89 @@ def plane_damage(angles: np.ndarray, stress: np.ndarray, law: tuple, threshold: 
 
 
 @compiled(error_model="python", nogil=True)
-def _bound(series: np.ndarray, highest: float, law: tuple) -> float:
-    """Upper bound of the damage of a shear stress with a maximum normal stress."""
-    low, high, way = series[0], series[0], abs(series[-1] - series[0])
-    for k in range(1, series.size):
-        way += abs(series[k] - series[k - 1])
-        low, high = min(low, series[k]), max(high, series[k])
-    # ranges of the cycles sum up to half the way, and damage rises faster than the range
-    cycles = max(0.5 * way / (high - low), 1.0) if high > low else 1.0
-    return cycles * cycle_damage(high - low, highest, law)
+def _bound(width: float, way: float, highest: float, law: tuple) -> float:
+    """Upper bound of the damage of a shear stress: its range, length of its path and maximum normal stress.
+
+    Ranges of the cycles sum up to half the path, and damage rises faster than the range.
+    """
+    cycles = max(0.5 * way / width, 1.0) if width > 0.0 else 1.0
+    return (1 + ROUNDING) * (cycles * cycle_damage(width, highest, law))
 
 
 @compiled(error_model="python", nogil=True)
-def _bounds(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> np.ndarray:
-    """Upper bounds of the damage on all planes of a grid, whose directions in a plane follow each other."""
-    size, bounds = stress.shape[1], np.empty(grid.shape[0])
-    first, across, angles = np.empty(size), np.empty(size), np.empty(3)
-    series, normal = work[2][:size], work[3][:size]
-    highest = 0.0
-    for g in range(grid.shape[0]):
-        if g == 0 or grid[g, 0] != grid[g - 1, 0] or grid[g, 1] != grid[g - 1, 1]:
-            angles[:2] = grid[g, :2]
-            for turn, along in ((0.0, first), (pi / 2, across)):
-                angles[2] = turn
-                on_plane(angles, stress, law, work)
-                along[:] = series
-            highest = normal.max()
-        c, s = cos(grid[g, 2]), sin(grid[g, 2])
-        for k in range(size):
-            series[k] = c * first[k] + s * across[k]
-        bounds[g] = (1 + ROUNDING) * _bound(series, highest, law)
-    return bounds
+def _shear_in_plane(
+    angles: np.ndarray, stress: np.ndarray, law: tuple, work: tuple, shear: np.ndarray
+) -> float:
+    """Set shear (2, samples) to the shear stress in two directions of a plane; maximum normal stress."""
+    size, turned = stress.shape[1], angles.copy()
+    for k in range(2):
+        turned[2] = k * pi / 2
+        on_plane(turned, stress, law, work)
+        shear[k] = work[2][:size]
+    return work[3][:size].max()
+
+
+@compiled(error_model="python", nogil=True)
+def _bound_of_plane(highest: float, shear: np.ndarray, law: tuple) -> float:
+    """Upper bound of the damage in all directions of a plane: that of the box about the path."""
+    way, last = 0.0, shear.shape[1] - 1
+    lows, highs = shear[:, last].copy(), shear[:, last].copy()
+    for k in range(shear.shape[1]):
+        before = k - 1 if k else last
+        way += sqrt((shear[0, k] - shear[0, before]) ** 2 + (shear[1, k] - shear[1, before]) ** 2)
+        for axis in range(2):
+            lows[axis] = min(lows[axis], shear[axis, k])
+            highs[axis] = max(highs[axis], shear[axis, k])
+    return _bound(sqrt(((highs - lows) ** 2).sum()), way, highest, law)
+
+
+@compiled(error_model="python", nogil=True)
+def _bound_in_direction(psi: float, highest: float, shear: np.ndarray, law: tuple) -> float:
+    """Upper bound of the damage in a direction of a plane."""
+    c, s, last = cos(psi), sin(psi), shear.shape[1] - 1
+    before = c * shear[0, last] + s * shear[1, last]
+    low, high, way = before, before, 0.0
+    for k in range(shear.shape[1]):
+        value = c * shear[0, k] + s * shear[1, k]
+        way += abs(value - before)
+        low, high, before = min(low, value), max(high, value), value
+    return _bound(high - low, way, highest, law)
 
 
 @compiled(error_model="python", nogil=True)
 def _coarse(grid: np.ndarray, stress: np.ndarray, law: tuple, work: tuple) -> tuple[np.ndarray, np.ndarray]:
-    """Angles (2, 3) and damage of the best planes of the grid, in falling order."""
-    bounds = _bounds(grid, stress, law, work)
-    order, first, second = np.argsort(-bounds), 0, len(bounds) - 1
-    damages = np.full(order.size, -1.0)
-    for n in range(order.size):
-        if bounds[order[n]] <= damages[second]:
-            break
-        damage = plane_damage(grid[order[n]], stress, law, NEGLIGIBLE_RANGE, work)
-        if damage > damages[first]:
-            first, second = n, first if n else second
-        elif damage > damages[second]:
-            second = n
-        damages[n] = damage
-    best = np.array([first, second])
-    return grid[order[best]], damages[best]
+    """Angles (2, 3) and damage of the best planes of the grid, in falling order.
+
+    Directions in a plane follow each other in the grid. Those of a plane are bounded, and then evaluated, in
+    the order of the upper bounds, as long as these exceed the second damage so far.
+    """
+    shear, bounds = np.empty((2, stress.shape[1])), np.full(len(grid), -1.0)
+    ends, is_plane = np.empty(len(grid), np.int64), np.zeros(len(grid), np.bool_)
+    first = 0
+    for g in range(len(grid)):
+        if grid[g, 0] != grid[first, 0] or grid[g, 1] != grid[first, 1]:
+            first = g
+        ends[first], is_plane[first] = g + 1, True
+    for g in np.flatnonzero(is_plane):
+        highest = _shear_in_plane(grid[g], stress, law, work, shear)
+        bounds[g] = _bound_of_plane(highest, shear, law)
+    best, damages = np.zeros(2, np.int64), np.full(2, -1.0)
+    while True:
+        g = bounds.argmax()
+        if bounds[g] <= damages[1]:
+            return grid[best], damages
+        if is_plane[g]:
+            highest = _shear_in_plane(grid[g], stress, law, work, shear)
+            for k in range(g, ends[g]):
+                bounds[k] = _bound_in_direction(grid[k, 2], highest, shear, law)
+            is_plane[g] = False
+            continue
+        bounds[g], damage = -1.0, plane_damage(grid[g], stress, law, NEGLIGIBLE_RANGE, work)
+        if damage > damages[0]:
+            best[1], damages[1] = best[0], damages[0]
+            best[0], damages[0] = g, damage
+        elif damage > damages[1]:
+            best[1], damages[1] = g, damage
 
 
 @compiled(error_model="python", nogil=True)

@@ -59,7 +59,7 @@ def planes_and_directions(step: float = GRID_STEP, components: int = 3) -> np.nd
     in_section = components == 3
     for tilt in np.arange(0.0 if in_section else degrees - 90.0, 90.0, degrees):
         count = max(1, round(180 / degrees * np.cos(np.radians(tilt))))
-        directions = np.arange(0.0, 180.0, degrees) if tilt or not in_section else (0.0,)
+        directions = degrees * np.arange(round(180.0 / degrees) if tilt or not in_section else 1)
         rows += [(theta, tilt, psi) for theta in 180 / count * np.arange(count) for psi in directions]
     return np.radians(rows)
 

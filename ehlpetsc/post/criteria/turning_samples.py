@@ -80,10 +80,13 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     is_kept = np.zeros(size, np.bool_)
     is_kept[0] = is_kept[size - 1] = True
     directions = DIRECTIONS if points.shape[0] == 3 else DIRECTIONS_OF_SIX
+    along = np.empty(size)
     for way in directions:
-        along = way[0] * points[0, :size]
-        for k in range(1, points.shape[0]):
-            along = along + way[k] * points[k, :size]
+        along[:] = 0.0
+        for axis in range(points.shape[0]):
+            if way[axis] != 0.0:
+                for k in range(size):
+                    along[k] += way[axis] * points[axis, k]
         _mark_reversals(along, tolerance, is_kept)
     count, first = 0, ZERO
     ends = np.empty(size, np.int64)
