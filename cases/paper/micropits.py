@@ -1,0 +1,235 @@
+"""Damage of rough strips by ensembles: the table and the picture of `cases/micropitting.md`.
+
+``ehlpetsc python cases/paper/micropits.py FOLDER [SCENE ...] [-o PICTURE]`` computes one pass of each seed of
+the scenes, by default of all, skips lives that are in the folder, and prints shares of the surface with D
+above 0.1. With all scenes it draws the seven signs. Under mpirun each rank computes lives.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from ehlpetsc.life.body import LifeBody
+from ehlpetsc.life.ensemble import read_lives
+from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.pictures import style
+from ehlpetsc.results.means import bootstrap_bounds
+from ehlpetsc.results.post_result import DAMAGED
+
+CASE = Path(__file__).parent.parent / "micropitting.toml"
+PASSES, RING_PASSES = 1.5e7, 720e3  # of which shares are: of the scene, of the tests of rings
+COMMON = {"life.max_solved": 1, "life.damage_jump": 1.0, "mesh.width": 1.0, "wear.coefficient": 1e-19}
+SEEDS = "surface.1.synthetic.seed", "surface.2.synthetic.seed"
+
+
+class Scene(NamedTuple):
+    """Label, settings beside `COMMON`, seeds of surface 1; surface 2 has seeds 1000 above."""
+
+    label: str
+    settings: dict[str, Any] = {}
+    seeds: tuple[int, ...] = (1, 2, 3)
+    passes: float = PASSES
+
+
+def bearing(radius: float, viscosity: float, speed: float, ratio: float) -> dict[str, Any]:
+    """Settings of a roller on an inner ring at 1.5 GPa [m, Pa s, m/s]."""
+    pressure, modulus = 1.5e9, 226.37e9
+    return {
+        "contact.radius": radius,
+        "contact.load": 2.0 * np.pi * radius * pressure**2 / modulus,
+        "fluid.viscosity": viscosity,
+        "fluid.pressure_viscosity": 20.8e-9,
+        "fluid.eyring_stress": 3e6,
+        "motion.entrainment_speed": speed,
+        "motion.slide_roll_ratio": ratio,
+        "mesh.width": 1.25,
+    }
+
+
+def pair(rq_1: float, rq_2: float) -> Scene:
+    """Rings NU 209 of these roughnesses [um], of the spectrum of the scene, 1 m/s, 0.0094 Pa s."""
+    waves = {"kind": "self-affine", "hurst": 0.8, "roll_off": 150e-6, "short_cutoff": 90e-6, "seed": 0}
+    surfaces = {f"surface.{k}.synthetic": waves | {"sq": 1e-6 * rq} for k, rq in enumerate((rq_1, rq_2), 1)}
+    settings = bearing(4.576e-3, 0.0094, 1.0, 0.02) | surfaces
+    return Scene(f"{rq_1:g} on {rq_2:g} µm", settings, passes=RING_PASSES)
+
+
+def skewed(celsius: int, viscosity: float) -> Scene:
+    """Rings NU 211: skewed surfaces, VG 68 at a temperature [Pa s]."""
+    surfaces = {
+        f"surface.{k}.synthetic": {
+            "kind": "ground",
+            "ra": ra,
+            "correlation": 40e-6,
+            "correlation_across": 40e-6,
+            "skewness": skewness,
+            "seed": 0,
+        }
+        for k, (ra, skewness) in enumerate(((0.26e-6, -1.17), (0.0575e-6, 1.21)), 1)
+    }
+    return Scene(f"{celsius} °C", bearing(5.077e-3, viscosity, 2.24, 0.015) | surfaces)
+
+
+SCENES = {
+    "first": Scene("ten seeds", seeds=tuple(range(1, 11))),
+    "second": Scene("ten other seeds", seeds=tuple(range(11, 21))),
+    "fine": Scene("a/24", {"mesh.points_per_half_width": 24}, (1, 2, 3, 4, 5)),
+    "wide": Scene("twice the width", {"mesh.width": 2.0}, (1, 2, 3, 4, 5)),
+    "rolling": Scene("0.02", {"motion.slide_roll_ratio": 0.02}),
+    "thin": Scene("0.3", {"motion.entrainment_speed": 0.43}),
+    "thick": Scene("3", {"motion.entrainment_speed": 13.5}),
+    "pair_1": pair(0.05, 0.26),
+    "pair_2": pair(0.05, 1.0),
+    "pair_3": pair(0.5, 0.05),
+    "pair_4": pair(0.5, 0.5),
+    "cold": skewed(66, 0.0192),
+    "warm": skewed(73, 0.0151),
+    "hot": skewed(98, 0.0074),
+    "transverse": Scene("across", {"surface.1.synthetic.peklenik": 0.25}),
+    "along": Scene(
+        "along",
+        {
+            "surface.1.synthetic.peklenik": 4.0,
+            "surface.1.synthetic.roll_off": 600e-6,
+            "surface.1.synthetic.short_cutoff": 360e-6,
+        },
+    ),
+    "ridges": Scene("ridges", {"mesh.width": None}),
+}
+SCENE = "scene"  # the first seeds of the scene, of as many as are compared with them
+SIGNS = {  # title of a panel: its scenes; sign 6 is drawn over depth
+    "1. rough and smooth": ("first", "second", "wide", "fine"),
+    "2. slide/roll ratio": ("rolling", SCENE),
+    "3. lambda": ("thin", SCENE, "thick"),
+    "4. Rq of NU 209": ("pair_1", "pair_2", "pair_3", "pair_4"),
+    "5. NU 211, temperature": ("cold", "warm", "hot"),
+    "7. lay": ("transverse", SCENE, "along", "ridges"),
+}
+SCENE_LABELS = {"2": "0.25", "3": "0.84", "7": "isotropic"}  # of a sign's number
+Ensembles = dict[str, list[LifeHistory]]
+
+
+def compute(name: str, folder: Path) -> list[LifeHistory]:
+    """Lives of a scene, computed unless they are there; of every rank."""
+    from mpi4py import MPI
+
+    from ehlpetsc.case.loading import load
+    from ehlpetsc.life.ensemble import run_lives
+
+    scene = SCENES[name]
+    settings = COMMON | scene.settings
+    series: dict[str, Any] = {"key": SEEDS[0], "values": list(scene.seeds)}
+    if "surface.2.synthetic" in settings:
+        values = [scene.seeds, [1000 + seed for seed in scene.seeds]]
+        series = {"keys": list(SEEDS), "values": values, "combine": "step"}
+    case = load(CASE, settings | {"series": series})
+    index = run_lives(case, folder / f"{name}.life.h5", MPI.COMM_WORLD, unresolved=True, show=print)
+    return next(iter(read_lives(index).values()))
+
+
+def share(body: LifeBody, passes: float) -> float:
+    """Share of the columns with a damaged cell after equal passes without wear."""
+    return float((passes * body.damage_rate.max(axis=0) > DAMAGED).mean())
+
+
+def shares(lives: list[LifeHistory], passes: float) -> np.ndarray:
+    """Shares of both surfaces of each life, shape (2, lives)."""
+    return np.array([[share(body, passes) for body in life.bodies[-1]] for life in lives]).T
+
+
+def lines(ensembles: Ensembles) -> list[str]:
+    """Table: means with their bounds (90 %), and, over the same seeds of the scene, their ratio."""
+    found = []
+    for name, lives in ensembles.items():
+        scene = SCENES[name]
+        values = shares(lives, scene.passes)
+        text = ["{:.1f} % ({:.1f} to {:.1f})".format(*100 * statistics(one)) for one in values]
+        last = [life.rows[-1] for life in lives]
+        friction, pressure = (np.mean([row[key] for row in last]) for key in ("friction", "p_max"))
+        line = f"{name}, {scene.label}, {len(lives)} seeds: surface 1 {text[0]}, surface 2 {text[1]}"
+        if name in ("second", "fine", "wide") and "first" in ensembles:
+            paired = len(lives) if name != "second" else None
+            reference = shares(ensembles["first"][:paired], PASSES).mean(axis=1)
+            line += ", {:+.1f} and {:+.1f} % of the first".format(
+                *100 * (values.mean(axis=1) / reference - 1)
+            )
+        found.append(f"{line}; friction {friction:.4f}, {pressure / 1e9:.2f} GPa")
+    return found
+
+
+def statistics(values: np.ndarray) -> np.ndarray:
+    """Mean and its bounds."""
+    return np.array([values.mean(), *bootstrap_bounds(values)])
+
+
+def bars(axes: Axes, labels: list[str], values: list[np.ndarray]) -> None:
+    """Shares of both surfaces with bounds, side by side."""
+    for k, side in enumerate("12"):
+        mean, low, high = 100 * np.array([statistics(one[k]) for one in values]).T
+        at = np.arange(len(labels)) + 0.4 * k - 0.2
+        axes.bar(at, mean, 0.38, color=style.SURFACES[side], label=f"surface {side}")
+        axes.errorbar(at, mean, (mean - low, high - mean), fmt="none", color=style.DARK, lw=1.0, capsize=2)
+    axes.set_xticks(range(len(labels)), labels, fontsize="x-small")
+    axes.set(ylabel="D > 0.1 [% of surface]", ylim=(0.0, None))
+
+
+def draw(ensembles: Ensembles) -> Figure:
+    """Panel of each sign."""
+    figure, panels = style.new_figure(2, 4, (13.0, 6.0))
+    flat = [axes for k, axes in enumerate(panels.flat) if k != 5]
+    for axes, (title, names) in zip(flat, SIGNS.items(), strict=False):
+        labels, values = [], []
+        for name in names:
+            lives = ensembles["first"][:3] if name == SCENE else ensembles[name]
+            passes = PASSES if name == SCENE else SCENES[name].passes
+            labels.append(SCENE_LABELS[title[0]] if name == SCENE else SCENES[name].label)
+            values.append(shares(lives, passes))
+        bars(axes, labels, values)
+        axes.set_title(title, fontsize="medium")
+    panels.flat[0].legend(fontsize="x-small")
+    over_depth(panels.flat[5], ensembles["first"])
+    style.leave_out(panels, len(SIGNS) + 1)
+    return figure
+
+
+def over_depth(axes: Axes, lives: list[LifeHistory]) -> None:
+    """Damage that 1 % of the surface exceeds in a pass, at each depth."""
+    for k, side in enumerate("12"):
+        bodies = [life.bodies[-1][k] for life in lives]
+        edges = 1e6 * bodies[0].edges
+        values = np.array([np.quantile(body.damage_rate, 0.99, axis=(1, 2)) for body in bodies])
+        axes.semilogy(0.5 * (edges[1:] + edges[:-1]), values.mean(axis=0), ".-", color=style.SURFACES[side])
+    axes.axvspan(3.0, 4.0, color=style.FAINT, alpha=0.5)
+    axes.set(xlabel="depth [µm]", ylabel="D of a pass, 1 % of surface")
+    axes.set_title("6. depth", fontsize="medium")
+
+
+def main(words: list[str] | None = None) -> None:
+    """Compute, print, draw."""
+    from mpi4py import MPI
+
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("folder", type=Path, help="of the lives")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
+    parser.add_argument("-o", "--output", type=Path, default=Path("seven_signs.png"), metavar="PICTURE")
+    chosen = parser.parse_args(words)
+    if unknown := [name for name in chosen.scenes if name not in SCENES]:
+        parser.error(f"scene {unknown[0]}; allowed: {', '.join(SCENES)}")
+    chosen.folder.mkdir(exist_ok=True, parents=True)
+    ensembles = {name: compute(name, chosen.folder) for name in chosen.scenes or SCENES}
+    if MPI.COMM_WORLD.rank:
+        return
+    print("\n".join(lines(ensembles)))
+    if not chosen.scenes:
+        style.save(draw(ensembles), chosen.output)
+        print(chosen.output)
+
+
+if __name__ == "__main__":
+    main()
