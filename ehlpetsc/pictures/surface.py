@@ -63,7 +63,9 @@ def arguments() -> CommandParser:
     parser = CommandParser("surface", __doc__)
     parser.add_argument("file", help="profile or map")
     parser.add_argument(
-        "-o", "--output", help="picture [FILE.surface.png]; .gsf, .x3p, .vti: the surface as used"
+        "-o",
+        "--output",
+        help="picture [FILE.surface.png, FILE.minus.png]; .gsf, .x3p, .vti: the surface as used",
     )
     parser.add_argument("--minus", metavar="FILE", help="map to subtract, moved to where both correlate best")
     parser.add_argument("--no-picture", action="store_true", help="the parameters alone")
@@ -84,7 +86,8 @@ def run(chosen: argparse.Namespace) -> None:
     """Print the parameters, write picture and spectrum."""
     path, spec = Path(chosen.file), _spec(chosen.file, chosen.set)
     inputs = [path, *([Path(chosen.minus)] if chosen.minus else [])]
-    target = None if chosen.no_picture else Path(chosen.output or path.with_suffix(".surface.png"))
+    kind = "minus" if chosen.minus else "surface"
+    target = None if chosen.no_picture else Path(chosen.output or path.with_suffix(f".{kind}.png"))
     for file, endings, option in (
         (target, (*PICTURES, *WRITERS), "-o"),
         (chosen.csv, (".csv", ".txt"), "--csv"),
@@ -113,7 +116,7 @@ def run(chosen: argparse.Namespace) -> None:
         atomic_write(target, write(GridField(surface.z, surface.dx, surface.dy)))
     else:
         draw = draw_profile if surface.is_ridge else draw_map
-        style.save(draw(path.name, surface, parameters, densities), target)
+        style.save(draw(" minus ".join(file.name for file in inputs), surface, parameters, densities), target)
     print(target)
 
 

@@ -103,6 +103,8 @@ def test_the_difference_is_what_was_worn(tmp_path, capsys):
     z = np.frombuffer(target.read_bytes()[-4 * 195 * 233 :], "<f4").reshape(195, 233)
     assert z[80:110, 104:125].mean() - z[10:60, 20:220].mean() == pytest.approx(2e-7, rel=1e-2)
     assert z[10:60, 20:220].std() < 2e-9
+    assert main(words) == 0  # beside the picture of the first map, not in its place
+    assert [file.name for file in tmp_path.glob("*.png")] == ["before.minus.png"]
 
 
 def test_maps_of_other_places_or_spacings_have_no_difference(tmp_path, capsys):
