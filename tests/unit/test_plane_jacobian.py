@@ -143,7 +143,7 @@ def test_options_of_a_run_inside_of_another_one_are_its_own():
     assert not table.getAll()
 
 
-@pytest.mark.parametrize(("name", "block"), [("layer", 3), ("strip", 4)])
+@pytest.mark.parametrize(("name", "block"), [("layer", 2), ("strip", 3)])
 def test_blocks_filled_in_place_are_those_of_the_matrix(name, block):
     system, state, inputs = scene(name)
     options = RunOptions(kind="point")
@@ -159,7 +159,7 @@ def test_blocks_filled_in_place_are_those_of_the_matrix(name, block):
     whole = tuple(np.ascontiguousarray(part[p.owned]) for part in elimination.reduction[:6])
     scales, rows = (p.deflection.row_scale, *p.grid.steps), (0, 0, p.n, form.pointers, form.places)
     derivatives = system.jacobian.reynolds_derivatives
-    fill(whole, derivatives, form.terms, scales, form.mesh, rows, blocks, form.by)
+    fill(whole, derivatives, form.term, scales, form.mesh, rows, blocks, form.by)
     expected = bsr_matrix((blocks.transpose(0, 2, 1), form.columns, form.pointers))
     form.b.array[:] = np.random.default_rng(4).standard_normal(p.n * block)
     form.matrix.mult(form.b, form.u)

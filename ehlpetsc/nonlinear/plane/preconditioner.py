@@ -39,11 +39,11 @@ from ehlpetsc.nonlinear.plane.reduction import (
     Reduction,
     reduction_of,
 )
-from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, TERMS, fill, fitted_terms, pattern
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, R, V, fill, fitted_term, pattern
 from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
-MAX_KEPT = 14  # iterations of GMRES up to which factors are kept
+MAX_KEPT = 16  # iterations of GMRES up to which factors are kept
 
 
 class EliminatedFilm:
@@ -69,15 +69,15 @@ class SparseForm:
     """Assembled sparse form with PETSc's preconditioner; its pattern is that of the mesh.
 
     `block`: unknowns of a node.
-    `terms`: of the deflection, see :func:`.screened_poisson.fitted_terms`.
+    `term`: of the deflection, see :func:`.screened_poisson.fitted_term`.
 
     `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
     `by`: derivatives of the local Reynolds rows by v and separation, as `EHLProblem.reynolds` multiplies by
         them, shape (local nodes, 12).
     """
 
-    def __init__(self, problem: EHLProblem, block: int, terms: tuple, comm: PETSc.Comm):
-        self.problem, self.block, self.terms, local = problem, block, terms, problem.local
+    def __init__(self, problem: EHLProblem, block: int, term: tuple, comm: PETSc.Comm):
+        self.problem, self.block, self.term, local = problem, block, term, problem.local
         self.mesh = problem.grid.shape[-1], problem.n, problem.grid.periodic
         self.pointers = np.empty(local + 1, dtype=np.int32)
         self.places = np.empty((local, STENCIL), dtype=np.int8)
@@ -105,17 +105,17 @@ class SparseForm:
         blocks = np.empty((len(self.columns), self.block, self.block)) if is_split else self.parts[0]
         blocks[:] = 0.0
         rows = p.first, p.first, p.last, self.pointers, self.places
-        fill(tuple(whole), derivatives, self.terms, scales, self.mesh, rows, blocks, self.by)
+        fill(tuple(whole), derivatives, self.term, scales, self.mesh, rows, blocks, self.by)
         if is_split:
             self.parts[0][:], self.parts[1][:] = blocks[self.is_own], blocks[~self.is_own]
         self.matrix.stateIncrease()
         self.pc.setUp()
         self.kind, self.p_s = whole[0][p.first : p.last], whole[5][p.first : p.last]
         kind, nodes = self.kind, self.block * np.arange(p.local)
-        self.reynolds_rows = nodes + TERMS + (kind == CONTACT)
+        self.reynolds_rows = nodes + np.where(kind == CONTACT, R, V)
         self.has_reynolds, self.has_pressure = kind != BOUND, (kind != VOID) & (kind != STIFF)
         self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
-        self.deflection_rows = nodes[self.touching] + TERMS
+        self.deflection_rows = nodes[self.touching] + V
 
     def _parts(self) -> list[np.ndarray]:
         """PETSc's own arrays of the blocks, in the order of the columns: on one rank all; else own, others.
@@ -150,15 +150,13 @@ class SparseForm:
         """
         block, deflection, b = self.block, self.problem.deflection, self.b.array
         b[:] = 0.0
-        for j in range(TERMS):
-            b[j::block] = deflection.cell * self.p_s * separation
+        b[::block] = deflection.cell * self.p_s * separation
         b[self.reynolds_rows[self.has_reynolds]] = reynolds[self.has_reynolds]
         b[self.deflection_rows] = deflection.row_scale * separation[self.touching]
         self.pc.apply(self.b, self.u)
         u = self.u.array_r
-        deflected = sum(c * u[j::block] for j, c in enumerate(self.terms[0]))
-        of_asperities = self.p_s * (separation + deflected)
-        return np.where(self.has_pressure, u[TERMS::block], of_asperities), u[self.reynolds_rows]
+        of_asperities = self.p_s * (separation + self.term[0] * u[::block])
+        return np.where(self.has_pressure, u[V::block], of_asperities), u[self.reynolds_rows]
 
 
 class Factors(NamedTuple):
@@ -180,7 +178,7 @@ class Elimination:
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
         self.coarse_space = CoarseSpace(problem.deflection.kernel, problem.grid.periodic)
-        self.terms = fitted_terms(problem.deflection.stiffness, problem.grid.steps)
+        self.term = fitted_term(problem.deflection.stiffness, problem.grid.steps)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again
@@ -222,10 +220,10 @@ class Elimination:
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
-        block = TERMS + 1 + int((whole[0] == CONTACT).any())
+        block = R + int((whole[0] == CONTACT).any())
         if self.form is None or self.form.block != block:
             self.form = self.factors = None  # freed before the next one
-            self.form = SparseForm(p, block, self.terms, self.comm)
+            self.form = SparseForm(p, block, self.term, self.comm)
         sparse = self.form
         sparse.set_up(whole, operator.reynolds_derivatives)
         mask = whole[0] == PRESSURE

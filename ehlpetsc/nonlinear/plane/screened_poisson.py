@@ -1,17 +1,15 @@
 r"""Sparse form of a contact in the plane for PETSc's preconditioners (compiled).
 
-The deflection, :math:`2\pi C/|k|` over the wave numbers k, is a full matrix; the sum
+The deflection, :math:`2\pi C/|k|` over the wave numbers k, is a full matrix; the screened Poisson term
 
-.. math:: \frac{2\pi C}{|k|}\approx\sum_j\frac{c_j}{k^2+s_j^2},\qquad
-   D\,p\approx\sum_jc_ju_j,\quad(-\nabla^2+s_j^2)\,u_j=p
+.. math:: \frac{2\pi C}{|k|}\approx\frac c{k^2+s^2},\qquad D\,p\approx cu,\quad(-\nabla^2+s^2)\,u=p
 
-is a sparse one, of two more unknowns a node that obey screened Poisson equations (five-point stencils,
-zero beyond the mesh). The weights are positive. Longer waves than 1/s_1 are those of the coarse correction;
-without it three terms were needed.
+is a sparse one, of another unknown a node with a five-point stencil, zero beyond the mesh. Longer waves than
+1/s are those of the coarse correction, beside which a second term saves no iteration.
 
-Unknowns of a node, in this order: u_1, u_2, v, and r where solids touch anywhere. v is the pressure, in
+Unknowns of a node, in this order: u, v, and r where solids touch anywhere. v is the pressure, in
 a cavity the unknown of the Reynolds equation; the pressure of asperities in it, :math:`p=p_s\,\delta s`,
-follows from u_1 and u_2.
+follows from u.
 """
 
 from __future__ import annotations
@@ -23,24 +21,19 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, STIFF, VOID
 
-TERMS = 2
-SMALLEST, LARGEST = 4.0, 0.3  # s_j, in 1/a and in the largest wave number of the mesh
+SCREENED, SHORTEST_COARSE = 0.2, 0.15  # s and the smallest fitted k, in the largest wave number of the mesh
+V, R = 1, 2  # places of v and r among the unknowns of a node, behind u
 STENCIL, OWN = 6, 2  # nodes i-2 .. i+1, below, above of a row; index of i
 
 
-def fitted_terms(stiffness: float, spacings: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients c_j and squares of s_j for C of the deflection, shape (TERMS,) each.
-
-    Relative errors of 2 pi C/|k| count the same in each octave. The spectrum of a finite mesh, of the
-    logarithm of a strip above all, swings about it and through zero.
-    """
-    from scipy.optimize import nnls
-
+def fitted_term(stiffness: float, spacings: Sequence[float]) -> tuple[float, float]:
+    """Coefficient c and square of s for C of the deflection; relative errors of 2 pi C/|k| count the same."""
     dy, dx = spacings
-    s_2 = np.geomspace(SMALLEST, LARGEST * np.pi / min(dx, dy), TERMS) ** 2
-    k_2 = np.geomspace(SMALLEST**2, 4.0 / dx**2 + 4.0 / dy**2, 200)  # the largest of the five-point stencil
-    matrix = np.sqrt(k_2)[:, None] / (k_2[:, None] + s_2) / (2.0 * np.pi * stiffness)
-    return nnls(matrix, np.ones(len(k_2)))[0], s_2
+    largest = np.pi / min(dx, dy)
+    s_2 = (SCREENED * largest) ** 2
+    k_2 = np.geomspace((SHORTEST_COARSE * largest) ** 2, 4.0 / dx**2 + 4.0 / dy**2, 200)  # of the stencil
+    ratio = np.sqrt(k_2) / (k_2 + s_2) / (2.0 * np.pi * stiffness)
+    return float(ratio.sum() / (ratio @ ratio)), float(s_2)
 
 
 @compiled
@@ -89,7 +82,7 @@ def pattern(
 def fill(
     reduction: tuple,
     derivatives: np.ndarray,
-    terms: tuple,
+    term: tuple,
     scales: tuple,
     mesh: tuple,
     rows: tuple,
@@ -100,7 +93,7 @@ def fill(
 
     `reduction`: kind, r_p, r_s, h_p, h_s, p_s of all nodes.
     `derivatives`: of the local Reynolds rows, (local nodes, 12).
-    `terms`: c_j, squares of s_j.
+    `term`: c, square of s.
     `scales`: of the deflection rows; dy; dx.
     `mesh`: as of :func:`neighbour`.
     `rows`: first local node; first and last node of the rows; pointers and places of the :func:`pattern`.
@@ -108,13 +101,13 @@ def fill(
     `by`: derivatives of the local Reynolds rows by v and separation at the nodes of their stencil, (local
         nodes, 12).
     """
-    (kind, r_p, r_s, h_p, h_s, p_s), (c, s_2), (row_scale, dy, dx) = reduction, terms, scales
+    (kind, r_p, r_s, h_p, h_s, p_s), (c, s_2), (row_scale, dy, dx) = reduction, term, scales
     first, begin, end, pointers, places = rows
     unknowns = blocks.shape[1]
     for i in range(begin, end):
         row = i - first
         touches = kind[i] == CONTACT or kind[i] == BOUND
-        r = TERMS + int(touches)
+        r = V + int(touches)
         for k in range(STENCIL):
             by[row, 2 * k], by[row, 2 * k + 1] = 0.0, 0.0
             if places[row, k] < 0:
@@ -125,28 +118,23 @@ def fill(
             )
             poisson = 0.0 if k == 0 else -dx / dy if k >= 4 else -dy / dx
             if k == OWN:
-                for j in range(TERMS):
-                    block[j, j] += 2.0 * dy / dx + 2.0 * dx / dy + s_2[j] * dx * dy
-                    block[TERMS, j] -= 0.0 if kind[i] == VOID or kind[i] == STIFF else dx * dy
-                    if touches:  # the row of the deflection is that of v
-                        block[j, TERMS] -= row_scale * c[j]
-                    for m in range(TERMS):
-                        block[m, j] -= dx * dy * p_s[i] * c[m]
-                if kind[i] != CONTACT and unknowns > TERMS + 1:
-                    block[TERMS + 1, TERMS + 1] += 1.0
+                block[0, 0] += 2.0 * dy / dx + 2.0 * dx / dy + (s_2 - p_s[i] * c) * dx * dy
+                block[V, 0] -= 0.0 if kind[i] == VOID or kind[i] == STIFF else dx * dy
+                if touches:  # the row of the deflection is that of v
+                    block[0, V] -= row_scale * c
+                if kind[i] != CONTACT and unknowns > R:
+                    block[R, R] += 1.0
             else:
-                for j in range(TERMS):
-                    block[j, j] += poisson
+                block[0, 0] += poisson
             if kind[i] == BOUND:
                 continue
             by_r, by_h, by_v, gamma = derivatives[row, 2 * k], derivatives[row, 2 * k + 1], 0.0, 0.0
             if kind[near] == CONTACT:
-                block[TERMS + 1, r] += by_r
+                block[R, r] += by_r
             elif kind[near] == VOID or kind[near] == STIFF:
                 by_v, gamma = by_r + by_h * h_p[near], by_h * h_s[near]
             else:
                 by_v, gamma = by_r * r_p[near] + by_h * h_p[near], by_r * r_s[near] + by_h * h_s[near]
-            block[TERMS, r] += by_v
-            for j in range(TERMS):
-                block[j, r] += gamma * c[j]
+            block[V, r] += by_v
+            block[0, r] += gamma * c
             by[row, 2 * k], by[row, 2 * k + 1] = by_v, gamma
