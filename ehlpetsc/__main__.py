@@ -19,7 +19,7 @@ from ehlpetsc import __version__
 from ehlpetsc.base.environment import NUMERICS, READING
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.base.toml_file import is_plain
-from ehlpetsc.run.stop import StopRequest
+from ehlpetsc.run.ranks import StopRequest
 
 MAX_RANKS = 99999
 DRAWING, FORECAST = (*NUMERICS, "matplotlib"), (*READING, "h5py")

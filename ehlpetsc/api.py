@@ -159,11 +159,11 @@ def solve(
     need_solver()
     from ehlpetsc.base.command_line import in_notebook, on_terminal
     from ehlpetsc.case.tables import extend
+    from ehlpetsc.run.ranks import StopRequest
     from ehlpetsc.run.recorder import Progress, Recorder
     from ehlpetsc.run.simulation import Simulation
     from ehlpetsc.run.solve import place_of_stop
     from ehlpetsc.run.solve import solve as write_states
-    from ehlpetsc.run.stop import StopRequest
 
     extend(laws, density_laws, effects, shear_laws)
     simulation = Simulation(case, comm, options)

@@ -26,7 +26,6 @@ class Kind(NamedTuple):
     `surface`: rough surface of a case, its scales, the table of the surface and its passage.
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.scheme.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
-    `work_time`: see :func:`ehlpetsc.run.forecast.work_time`.
     `words`: of the summary, :class:`ehlpetsc.run.explain.Words`.
     `sweeps`: solver by the paper's sweeps; "": none.
     """
@@ -38,7 +37,6 @@ class Kind(NamedTuple):
     surface: str
     system: str
     linear_solver: str
-    work_time: str
     words: str
     sweeps: str = ""
 
@@ -62,7 +60,6 @@ KINDS = {
         surface="surfaces.roughness:moving_profile",
         system="nonlinear.line.system:line_system",
         linear_solver="nonlinear.options:line_solver",
-        work_time="run.forecast:line_time",
         words="run.explain:LINE",
         sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
     )
@@ -73,7 +70,6 @@ KINDS["strip"] = KINDS["line"]._replace(
     surface="surfaces.roughness:moving_map",
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
-    work_time="run.forecast:plane_time",
     words="run.explain:STRIP",
     sweeps="",
 )

@@ -85,8 +85,7 @@ def _run_life(chosen: Namespace) -> None:
     case = load(chosen.case, chosen.set)
     from mpi4py import MPI
 
-    from ehlpetsc.run.ranks import on_root
-    from ehlpetsc.run.stop import StopRequest
+    from ehlpetsc.run.ranks import StopRequest, on_root
 
     comm = MPI.COMM_WORLD
     if fault := other_mpi(comm.size):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -16,30 +16,54 @@ from ehlpetsc.case.loading import Case, load
 from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.checks import check_case, check_files, pass_file, stored_or_new
-from ehlpetsc.life.history import LifeFile, LifeHistory
-from ehlpetsc.life.jumps import Jumps
-from ehlpetsc.life.one_pass import Pass, damage_of_pass, run_pass
-from ehlpetsc.life.positions import Positions
-from ehlpetsc.life.rounds import Ranks, Round
+from ehlpetsc.life.history import LifeFile, LifeHistory, stored_or_new
+from ehlpetsc.life.one_pass import Pass, band, lines_of, passes_to_failure, run_pass
+from ehlpetsc.life.positions import Positions, number_of_positions
+from ehlpetsc.life.rounds import Jumps, Ranks, Round
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import prepare
-from ehlpetsc.results.output_guard import Lock
+from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
 from ehlpetsc.run.forecast import work_time
-from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.run.stop import StopRequest
 from ehlpetsc.surfaces.profile_checks import mesh_warnings
 
-CRITERIA = {  # name: post.criterion, post.mean_stress
-    "von-mises": ("von-mises", "none"),
-    "morrow": ("von-mises", "morrow"),
-    "goodman": ("von-mises", "goodman"),
-    "fatemi-socie": ("fatemi-socie", "none"),
-}
-SIDES = ("1", "2")
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
+NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
+
+
+def check_case(case: Case) -> None:
+    """Check that a case has a life; CaseError."""
+    faults = []
+    if case.life is None:
+        faults.append("no [life] table; allowed: a case with one")
+    if case.series:
+        faults.append("[life] with a [series] has a life for each member: allowed here: one of them")
+    if case.time is None:
+        faults.append("[life] needs [time]: passes of surfaces in motion")
+    if not (case.surface.body_1 or case.surface.body_2):
+        faults.append("[life] needs a rough surface: jumps are a share of its Rq")
+    if case.conditions is not None and 0 in case.conditions.directions():
+        faults.append("[life] needs surfaces that move one way: points would pass the contact several times")
+    if case.output.every != 1 or not set(NEEDED) <= set(case.output.fields):
+        faults.append(f"[life] needs output.every = 1 and the fields {', '.join(NEEDED)}")
+    if faults:
+        raise CaseError([f"{case.path}: {fault}" for fault in faults])
+
+
+def pass_file(path: Path, position: int, positions: int) -> Path:
+    """Result of the last solved pass in a position of surface 2, in the folder of the life `path`."""
+    return path.with_suffix(".pass.h5" if positions == 1 else f".pass{position + 1}.h5")
+
+
+def check_files(path: Path, case: Case) -> None:
+    """Refuse to overwrite an input or a file that is not a life.
+
+    `path`: the life. Raises `OutputError`.
+    """
+    check_derived(path, inputs_of(case), (".h5",))
+    positions = number_of_positions(case)
+    for position in range(positions):
+        check_output_path(pass_file(path, position, positions), inputs_of(case), "-o")
 
 
 def line_of(history: LifeHistory, seconds: float = 0.0) -> str:
@@ -237,36 +261,3 @@ class _Life:
         parted = last["broken_out"] or last["solved"] != len(solved_round.passes)
         yields = self.jumps.is_yielding(max(last["yielded"], solved_round.yielded))
         return 0 if parted or yields else int(last["jump"])
-
-
-def passes_to_failure(file: Path, settings: tuple[str, ...] = ()) -> tuple[float, float]:
-    """Passes until D = 1 at the worst point of each surface, of the pass in a result file."""
-    with Loads(file, settings) as loads:
-        prepared = prepare(loads, SIDES, lambda text: None)
-        worst = [float(np.nanmax(damage_of_pass(prepared, side, settings))) for side in SIDES]
-    first, second = (1.0 / damage if damage > 0.0 else np.inf for damage in worst)
-    return first, second
-
-
-def band(file: Path) -> dict[str, tuple[float, float]]:
-    """`passes_to_failure` by each of the `CRITERIA`, of one solved pass, without wear.
-
-    The criteria are fitted to the same strain-life tests and differ by the stresses that they count; none is
-    tested for rolling contact. The band is the least uncertainty of a life; ratios of lives by one criterion
-    are more certain.
-    """
-    return {
-        name: passes_to_failure(file, (f"post.criterion={criterion}", f"post.mean_stress={mean}"))
-        for name, (criterion, mean) in CRITERIA.items()
-    }
-
-
-def lines_of(found: dict[str, tuple[float, float]], chosen: tuple[float, float]) -> Iterator[str]:
-    """Lines of a band: ratios of each criterion to the `chosen` one, and the factor of the band."""
-    for k, side in enumerate(SIDES):
-        lives = [both[k] for both in found.values()]
-        ratios = ", ".join(f"{name} {both[k] / chosen[k]:.2g}" for name, both in found.items())
-        yield (
-            f"first failure of surface {side} by criterion, over {chosen[k]:.3g} passes: {ratios} "
-            f"(band of a factor {max(lives) / min(lives):.2g})"
-        )

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.run.stop import StopRequest
+    from ehlpetsc.run.ranks import StopRequest
 
 FIGURES = [f"{name}_{k}" for name in ("damaged_share", "pitted_share", "pits", "wear_volume") for k in (1, 2)]
 FIGURES += ["friction"]

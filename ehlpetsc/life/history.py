@@ -9,25 +9,20 @@ from __future__ import annotations
 
 import contextlib
 import json
+import tomllib
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError, OutputLost, not_written
+from ehlpetsc.base.case import changed_files
+from ehlpetsc.base.errors import OutputError
+from ehlpetsc.case.tables import Case
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import (
-    LIBVER,
-    Place,
-    check_space,
-    extend,
-    open_for_reading,
-    open_hdf5,
-    plain,
-)
-from ehlpetsc.results.output_guard import replacing
+from ehlpetsc.results.hdf5_file import GrowingFile, check_space, extend, open_for_reading, plain
 
 BODY_DATASETS = {"s": "m", "y": "m", "edges": "m", "height": "m"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
@@ -38,29 +33,21 @@ COMMIT_DATASET = "passes"  # of the figures, written last
 ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
 
 
-class LifeFile:
+class LifeFile(GrowingFile):
     """File of a life that grows; created with its first row."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self._file: h5py.File | None = None
-        self._place: Place | None = None
 
     def store(self, history: LifeHistory) -> None:
         """Append the last row of a life, or write all rows if the file is not open yet, or deleted.
 
         Raises `OutputError`, and `OutputLost` where another file is in its place.
         """
-        try:
-            if self._place is None or not self.path.exists():
-                self._create(history)
-                self._place = Place(self.path, self._file)
+        if not self.path.exists():
+            self._size = None
+        with self._writing():
+            if self._size is None:
+                self._begin(partial(self._fill, history))
             else:
-                self._place.check()
                 self._append(history, [len(history.rows) - 1])
-                self._place.note()
-        except (OSError, RuntimeError) as error:
-            raise OutputError(not_written(error, self.path)) from error
 
     def close(self, status: str) -> None:
         """Store the final status and close the file.
@@ -68,24 +55,16 @@ class LifeFile:
         `status`: "done", "stopped", "not converged".
         """
         if self._file:
-            with contextlib.suppress(OSError, RuntimeError, OutputLost):  # its rows are complete
-                if self._place:
-                    self._place.check()
-                self._file.attrs.modify("status", np.bytes_(status.encode()))
-                self._file.close()
-        self._file = None
+            with contextlib.suppress(OutputError), self._writing():  # its rows are complete
+                self._end(status)
 
-    def _create(self, history: LifeHistory) -> None:
-        with replacing(self.path) as temporary:
-            file = self._file = open_hdf5(temporary, "w", libver=LIBVER)
-            attributes = {"kind": KIND, "case": history.case, "title": history.title}
-            attributes |= {"digests": json.dumps(history.digests)}
-            status = np.array(b"running", "S16")  # of fixed length, to be overwritten at the end
-            file.attrs.update(attributes | {"format_version": FORMAT, "status": status})
-            _lay_out(file, history)
-            self._append(history, range(len(history.rows)))
-            file.swmr_mode = True
-            file.flush()
+    def _fill(self, history: LifeHistory, file: h5py.File) -> None:
+        attributes = {"kind": KIND, "case": history.case, "title": history.title}
+        attributes |= {"digests": json.dumps(history.digests)}
+        status = np.array(b"running", "S16")  # of fixed length, to be overwritten at the end
+        file.attrs.update(attributes | {"format_version": FORMAT, "status": status})
+        _lay_out(file, history)
+        self._append(history, range(len(history.rows)))
 
     def _append(self, history: LifeHistory, numbers: list[int] | range) -> None:
         for number in numbers:
@@ -225,3 +204,27 @@ def _records(file: h5py.File, name: str, count: int) -> list:
     if dataset.attrs["is_number"]:
         return [value[0] for value in values]
     return [np.moveaxis(value, 0, -1) for value in values]
+
+
+ENDS = ("passes", "max_solved")  # keys of [life] that may change between calls
+
+
+def _tables_of_surfaces(text: str) -> dict:
+    """Tables of a case on which its surfaces depend: without the title and the end of the life."""
+    tables = tomllib.loads(text)
+    tables.pop("title", None)
+    tables["life"] = {name: value for name, value in tables["life"].items() if name not in ENDS}
+    return tables
+
+
+def stored_or_new(case: Case, path: Path, overwrite: bool) -> LifeHistory:
+    """Life stored at `path`, or a new one; OutputError if it is the life of another case."""
+    if overwrite or not path.exists():
+        return LifeHistory(case.text, case.title, digests=case.digests)
+    history = read_life(path)
+    if _tables_of_surfaces(history.case) != _tables_of_surfaces(case.text):
+        raise OutputError(f"{path}: the life of another case; give another -o, or --overwrite to lose it")
+    if changed := changed_files(history.digests, case.digests):
+        reason = f"{changed} changed since it was written"
+        raise OutputError(f"{path}: {reason}; give another -o, or --overwrite to lose it")
+    return replace(history, case=case.text)  # which may extend the life

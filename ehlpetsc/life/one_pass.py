@@ -1,17 +1,16 @@
-"""Solve one pass: wear, fatigue damage of the points that passed the contact, friction."""
+"""Solve one pass: wear, fatigue damage of the points that passed the contact, friction; band of criteria."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import Prepared, prepare
+from ehlpetsc.post.loads import Loads, Prepared, prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.ranks import on_root
@@ -21,7 +20,7 @@ from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
 
 if TYPE_CHECKING:
-    from ehlpetsc.run.stop import StopRequest
+    from ehlpetsc.run.ranks import StopRequest
 
 
 class OfBody(NamedTuple):
@@ -139,3 +138,44 @@ def damage_of_pass(prepared: Prepared, side: str, settings: tuple[str, ...] = ()
     job = Job(str(prepared.loads.path), "", settings=settings, share=1.0, precision="float64")
     values = solve(prepared, side, job)
     return values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
+
+
+CRITERIA = {  # name: post.criterion, post.mean_stress
+    "von-mises": ("von-mises", "none"),
+    "morrow": ("von-mises", "morrow"),
+    "goodman": ("von-mises", "goodman"),
+    "fatemi-socie": ("fatemi-socie", "none"),
+}
+
+
+def passes_to_failure(file: Path, settings: tuple[str, ...] = ()) -> tuple[float, float]:
+    """Passes until D = 1 at the worst point of each surface, of the pass in a result file."""
+    with Loads(file, settings) as loads:
+        prepared = prepare(loads, SIDES, lambda text: None)
+        worst = [float(np.nanmax(damage_of_pass(prepared, side, settings))) for side in SIDES]
+    first, second = (1.0 / damage if damage > 0.0 else np.inf for damage in worst)
+    return first, second
+
+
+def band(file: Path) -> dict[str, tuple[float, float]]:
+    """`passes_to_failure` by each of the `CRITERIA`, of one solved pass, without wear.
+
+    The criteria are fitted to the same strain-life tests and differ by the stresses that they count; none is
+    tested for rolling contact. The band is the least uncertainty of a life; ratios of lives by one criterion
+    are more certain.
+    """
+    return {
+        name: passes_to_failure(file, (f"post.criterion={criterion}", f"post.mean_stress={mean}"))
+        for name, (criterion, mean) in CRITERIA.items()
+    }
+
+
+def lines_of(found: dict[str, tuple[float, float]], chosen: tuple[float, float]) -> Iterator[str]:
+    """Lines of a band: ratios of each criterion to the `chosen` one, and the factor of the band."""
+    for k, side in enumerate(SIDES):
+        lives = [both[k] for both in found.values()]
+        ratios = ", ".join(f"{name} {both[k] / chosen[k]:.2g}" for name, both in found.items())
+        yield (
+            f"first failure of surface {side} by criterion, over {chosen[k]:.3g} passes: {ratios} "
+            f"(band of a factor {max(lives) / min(lives):.2g})"
+        )

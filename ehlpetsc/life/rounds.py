@@ -1,4 +1,4 @@
-"""Round: passes that start from the same surfaces, one for each position of surface 2, on all ranks."""
+"""Rounds of passes from the same surfaces, one for each position of surface 2, and jumps between them."""
 
 from __future__ import annotations
 
@@ -10,13 +10,14 @@ from mpi4py import MPI
 
 from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.effects.depths import PlasticRecord
-from ehlpetsc.life.body import LifeBody, Rates
+from ehlpetsc.life.body import MAX_EXTRAPOLATION, LifeBody, Rates
 from ehlpetsc.life.one_pass import Pass
 from ehlpetsc.run.ranks import WorkQueue
 from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
-    from ehlpetsc.run.stop import StopRequest
+    from ehlpetsc.base.declarations import Values
+    from ehlpetsc.run.ranks import StopRequest
 
 FAULTS = (CaseError, NotConverged, OutputError, PostError, Stopped, UsageError)
 
@@ -113,3 +114,65 @@ def _deepest(fields: list[BodyField]) -> BodyField:
         begin = field.first - first
         depth[..., begin : begin + field.cells] = field.depth
     return BodyField(fields[0].spacing, first, depths.max(axis=0))
+
+
+BREAK_OUT_DELAY = 1.1  # longest jump over the allowed one, where it then ends with a break-out
+
+
+class Jumps:
+    r"""Size of the jumps of a life, and bodies after them.
+
+    Rates change smoothly as wear changes the surface, and at once where cells break out. Between two
+    break-outs they are extrapolated linearly from the last two rounds,
+
+    .. math:: f(t) = f_n + t\,\frac{f_n-f_{n-1}}{h_{n-1}},\qquad y_{n+1} = y_n + \int_0^{h_n} f\,dt
+
+    (Adams-Bashforth of two steps): the error of wear and damage falls with the square of the jumps. After a
+    break-out, and in the first jump of all, rates are constant.
+
+    `rq`: combined root mean square roughness [m].
+    """
+
+    def __init__(self, life: Values, rq: float) -> None:
+        self.life, self.passes = life, int(life.passes)
+        self.wear_allowed = life.wear_jump * rq
+
+    def is_yielding(self, yielded: float) -> bool:
+        """Whether a pass yields more [m] than a jump may wear: plastic deformation is not multiplied."""
+        return yielded > self.wear_allowed
+
+    def jump(
+        self, bodies: tuple[LifeBody, ...], solved_round: Round, done: int, before: int = 0
+    ) -> tuple[tuple[LifeBody, ...], int, tuple[Rates, ...]]:
+        """Jump with the rates of a solved round, up to the allowed wear or damage or the next break-out.
+
+        `done`: passes before it. `before`: passes of the previous jump if the rates are continuous since;
+        else 0.
+
+        Returns
+        -------
+        jump
+            Passes of the jump, including the solved ones.
+        """
+        rates, max_passes = solved_round.rates(bodies), self.passes - done
+        if before:
+            rates = tuple(
+                rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before)
+                for rate, body in zip(rates, bodies, strict=True)
+            )
+            max_passes = min(max_passes, int(MAX_EXTRAPOLATION * before))
+        pairs = list(zip(bodies, rates, strict=True))
+        jump = self._allowed(pairs, solved_round, max_passes)
+        return tuple(body.after(rate, jump, done, self.life.break_out) for body, rate in pairs), jump, rates
+
+    def _allowed(self, pairs: list[tuple[LifeBody, Rates]], solved_round: Round, left: int) -> int:
+        """Passes until the allowed wear or damage is reached or a cell breaks out, `left` at most."""
+        passes: float = 1 if self.is_yielding(solved_round.yielded) else left
+        for body, rate in pairs:
+            passes = min(passes, body.passes_to(rate, self.wear_allowed, self.life.damage_jump))
+        passes = max(int(passes), 1)
+        if (rule := self.life.break_out) != "none":
+            late = min(left, int(BREAK_OUT_DELAY * passes))
+            ends = min(body.passes_to_break_out(rate, late, rule) for body, rate in pairs)
+            passes = ends if ends < late else passes
+        return min(left, max(int(passes), len(solved_round.passes)))

@@ -12,9 +12,9 @@ from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import frame_to_show
+from ehlpetsc.results.means import heights, pass_summary
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result
-from ehlpetsc.results.running_in import heights, pass_summary
 
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation

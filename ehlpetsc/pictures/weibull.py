@@ -8,14 +8,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from ehlpetsc.pictures import style
-from ehlpetsc.post.fatigue.likelihood import CONFIDENCE, weibull_likelihood
 from ehlpetsc.post.fatigue.statistics import (
+    CONFIDENCE,
     MIN_ASPERITIES,
     benard_ranks,
     exceedance,
     fitted_asperities,
     fitted_exceedance,
     log_life,
+    weibull_likelihood,
 )
 from ehlpetsc.results.post_result import PostResult, WeibullFit
 

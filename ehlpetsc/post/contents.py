@@ -11,17 +11,15 @@ import h5py
 import numpy as np
 
 from ehlpetsc.base.materials import DEFAULT
-from ehlpetsc.post.fatigue.likelihood import weibull_likelihood
 from ehlpetsc.post.fatigue.statistics import (
     MIN_ASPERITIES,
     asperities,
     fitted_asperities,
     log_life,
     weibull_fit,
+    weibull_likelihood,
 )
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import Prepared
-from ehlpetsc.post.stresses.body_points import Passage
+from ehlpetsc.post.loads import Loads, Passage, Prepared
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import SURFACES, PointTemperatures, WeibullFit, stored_names
 

@@ -20,8 +20,7 @@ from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import count_damage
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import Prepared, prepare
+from ehlpetsc.post.loads import Loads, Prepared, prepare
 from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress
 from ehlpetsc.post.stresses.histories import histories, runs_of_points
 from ehlpetsc.results.post_result import SURFACES, PostResult

@@ -1,19 +1,26 @@
-"""HDF5 files of the program: opening, attributes, appended rows, free space."""
+"""HDF5 files of the program: opening, attributes, appended rows, free space, provenance."""
 
 from __future__ import annotations
 
+import contextlib
 import errno
+import json
 import os
+import platform
 import resource
 import shutil
-from collections.abc import Sequence
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import h5py
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError, OutputLost
+from ehlpetsc import __version__
+from ehlpetsc.base.errors import OutputError, OutputLost, not_written
+from ehlpetsc.results.output_guard import replacing
 
 LIBVER = ("v110", "v110")  # the first with SWMR, that of Debian 12, which cannot read files of newer formats
 RESERVE_BYTES = 2**22  # more than HDF5 adds to rows: chunks that are not full, its own structures
@@ -66,36 +73,74 @@ def extend(dataset: h5py.Dataset, rows: Sequence | np.ndarray) -> None:
         dataset[begin:] = rows
 
 
-class Place:
-    """Place of an HDF5 file that grows: another program may delete or replace the file meanwhile.
+class GrowingFile:
+    """HDF5 file that is extended while others may read it, complete up to its last flush.
 
-    `file`: opened by this process; between its writes its size is constant.
+    Between the writes of this process its size is constant: another program may delete or replace the file
+    meanwhile, which then ends in OutputLost, and leaves the other file as it is.
+
+    `path`: None: in memory, not begun by :meth:`_begin`.
     """
 
-    def __init__(self, path: Path, file: h5py.File) -> None:
-        self._path, self._number = Path(path), file.id.get_vfd_handle()
-        self.note()
+    _file: Any = None  # an h5py.File
+    _size: int | None = None  # after the last write; None: not begun, or closed
 
-    def note(self) -> None:
-        """Note the size after a write."""
-        self._size = os.fstat(self._number).st_size
+    def __init__(self, path: Path | None) -> None:
+        self.path = path
 
-    def check(self) -> None:
+    def _begin(self, fill: Callable[[h5py.File], None]) -> None:
+        """Create the file, filled, under a temporary name and rename it: a failure keeps an older file."""
+        with replacing(self.path) as temporary:
+            self._file = open_hdf5(temporary, "w", libver=LIBVER)
+            fill(self._file)
+            self._file.swmr_mode = True  # single writer, multiple readers
+            self._file.flush()
+        self._size = self._state().st_size
+
+    def _end(self, status: str) -> None:
+        """Set the status, a text of fixed length, and close the file."""
+        self._size = None
+        self._file.attrs.modify("status", np.bytes_(status.encode()))
+        self._file.close()
+
+    @contextlib.contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Write to the file if it is in its place; after an error close it.
+
+        An error of HDF5 or the system becomes an OutputError.
+        """
+        try:
+            if self._size is not None:
+                self._check()
+            yield
+            if self._size is not None:
+                self._size = self._state().st_size
+        except (OutputError, OSError, RuntimeError) as error:
+            with contextlib.suppress(Exception):  # the first fault is reported
+                self._file.close() if isinstance(error, OutputLost) else self._end("stopped")
+            if isinstance(error, OutputError):
+                raise
+            raise OutputError(not_written(error, self.path)) from error
+
+    def _state(self) -> os.stat_result:
+        return os.fstat(self._file.id.get_vfd_handle())
+
+    def _check(self) -> None:
         """Raise OutputLost if the file is no longer at its path, or has been written by another program.
 
         It may then only be closed.
         """
         try:
-            is_own = os.path.samestat(os.fstat(self._number), self._path.stat())
+            is_own = os.path.samestat(self._state(), self.path.stat())
         except (FileNotFoundError, NotADirectoryError) as error:
-            raise OutputLost(f"{self._path}: deleted during the run ({error.strerror})") from error
-        if is_own and os.fstat(self._number).st_size == self._size:
+            raise OutputLost(f"{self.path}: deleted during the run ({error.strerror})") from error
+        if is_own and self._state().st_size == self._size:
             return
         if is_own:  # written over: closing must not write to it
             nowhere = os.open(os.devnull, os.O_RDWR)
-            os.dup2(nowhere, self._number)
+            os.dup2(nowhere, self._file.id.get_vfd_handle())
             os.close(nowhere)
-        raise OutputLost(f"{self._path}: replaced by another file during the run")
+        raise OutputLost(f"{self.path}: replaced by another file during the run")
 
 
 def check_space(path: Path, data_bytes: int) -> None:
@@ -107,3 +152,38 @@ def check_space(path: Path, data_bytes: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
     if limit != resource.RLIM_INFINITY and limit < size + needed:
         raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), str(path))
+
+
+def versions(other_versions: dict[str, str]) -> str:
+    """Names and versions in one line: of Python and its libraries, then of `other_versions` (by name)."""
+    common = {
+        "ehlpetsc": __version__,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "h5py": h5py.__version__,
+        "hdf5": h5py.version.hdf5_version,
+    }
+    return ", ".join(f"{name} {version}" for name, version in (common | other_versions).items())
+
+
+@cache
+def git_commit() -> str:
+    """Commit of the checkout of the package, ``-dirty`` if changed; "" outside a checkout."""
+    top = Path(__file__).resolve().parents[2]
+    if not (top / ".git").exists():
+        return ""
+    command = ["git", "-C", str(top), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        answer = subprocess.run(command, capture_output=True, text=True, timeout=10, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return ""  # no git, or a checkout of another user
+    return answer.stdout.strip()
+
+
+def earlier_runs(attrs: dict[str, Any], last_step: int) -> str:
+    """JSON list of the configurations of all runs before a restart; `attrs` describes the last one."""
+    runs = json.loads(attrs.get("history", "[]"))
+    keys = ("case", "petsc_options", "ranks", "versions", "git_commit")
+    last_run = {key: attrs[key] for key in keys if key in attrs}
+    run = {key: value if isinstance(value, str) else int(value) for key, value in last_run.items()}
+    return json.dumps([*runs, {"up_to_step": int(last_step), **run}])

@@ -7,25 +7,31 @@ running job can be opened, and the file of a killed job is complete up to its la
 
 from __future__ import annotations
 
-import contextlib
 import io
 import math
 import time as clock
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
 
 from ehlpetsc.base.declarations import Field
-from ehlpetsc.base.errors import OutputError, OutputLost, not_written
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import FIELDS, OTHERS, STEP_SCALARS, dims_in, of_every_case, unit_in
-from ehlpetsc.results.hdf5_file import LIBVER, Place, check_space, extend, open_hdf5
+from ehlpetsc.results.hdf5_file import (
+    LIBVER,
+    GrowingFile,
+    check_space,
+    earlier_runs,
+    extend,
+    git_commit,
+    open_hdf5,
+    versions,
+)
 from ehlpetsc.results.means import means
-from ehlpetsc.results.output_guard import replacing
-from ehlpetsc.results.provenance import earlier_runs, git_commit, versions
 from ehlpetsc.results.reader import FORMAT_VERSION, Result, read_result
 
 if TYPE_CHECKING:
@@ -131,11 +137,8 @@ def _growing(rows: int, *width: int) -> dict[str, tuple]:
     return {"shape": (0, *width), "maxshape": (None, *width), "chunks": (rows, *width)}
 
 
-class ResultWriter:
+class ResultWriter(GrowingFile):
     """Result file of one run.
-
-    A new file is created under a temporary name and renamed when all datasets exist, so that a run that fails
-    at its start does not destroy an older result.
 
     Parameters
     ----------
@@ -157,9 +160,6 @@ class ResultWriter:
         The file has been deleted or replaced since the last flush.
     """
 
-    _file: Any = None  # an h5py.File
-    _place: Place | None = None  # of a file that is not in memory
-
     def __init__(
         self,
         path: Path | None,
@@ -169,7 +169,7 @@ class ResultWriter:
         resume_step: int | None = None,
         contact_count: np.ndarray | None = None,
     ) -> None:
-        self.path = path
+        super().__init__(path)
         self._shape = layout.shape
         self.contact_count = np.zeros(self._shape, "i8")
         if contact_count is not None:
@@ -177,23 +177,24 @@ class ResultWriter:
         self._steps: list[dict] = []
         self._frames: list[dict] = []
         self._memory = io.BytesIO()
+
+        def fill(file: h5py.File) -> None:
+            if path is not None:
+                check_space(path, sum(24 * np.size(surface.z) for surface in layout.surfaces.values()))
+            self._create_in(file, layout, attributes)
+            if resume_step is not None and path is not None and path.exists():
+                self._copy_up_to(path, resume_step)
+
         with self._writing():
             if path is None:
-                self._create(self._memory, layout, attributes)
+                self._file = open_hdf5(self._memory, "w", libver=LIBVER)
+                fill(self._file)
             else:
-                with replacing(path) as target:
-                    check_space(path, sum(24 * np.size(surface.z) for surface in layout.surfaces.values()))
-                    self._create(target, layout, attributes)
-                    if resume_step is not None and path.exists():
-                        self._copy_up_to(path, resume_step)
-                    self._file.swmr_mode = True
-                    self._file.flush()
-                self._place = Place(path, self._file)
+                self._begin(fill)
         self._flushed = clock.monotonic()
         self._fields = [name for name in FIELDS if name in self._file]
 
-    def _create(self, target: Path | BinaryIO, layout: Layout, attributes: dict[str, Any]) -> None:
-        self._file = file = open_hdf5(target, "w", libver=LIBVER)
+    def _create_in(self, file: h5py.File, layout: Layout, attributes: dict[str, Any]) -> None:
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
         common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
         # texts of fixed length, which may be overwritten while the file is read
@@ -265,35 +266,11 @@ class ResultWriter:
         self.flush()
         with self._writing():
             self._file.attrs.modify("limits", np.bytes_("\n".join(limits).encode()))
-            self._place = None
             self._end(status)
 
     def to_bytes(self) -> bytes:
         """Content of a closed file in memory."""
         return self._memory.getvalue()
-
-    def _end(self, status: str) -> None:
-        self._file.attrs.modify("status", np.bytes_(status.encode()))
-        self._file.close()
-
-    @contextlib.contextmanager
-    def _writing(self) -> Iterator[None]:
-        """Write to the file if it is in its place; after an error close it.
-
-        An error of HDF5 or the system becomes an OutputError.
-        """
-        try:
-            if self._place:
-                self._place.check()
-            yield
-            if self._place:
-                self._place.note()
-        except (OutputError, OSError, RuntimeError) as error:
-            with contextlib.suppress(Exception):  # the first fault is reported
-                self._file.close() if isinstance(error, OutputLost) else self._end("stopped")
-            if isinstance(error, OutputError):
-                raise
-            raise OutputError(not_written(error, self.path)) from error
 
     def _copy_up_to(self, path: Path, step: int) -> None:
         """Copy all rows up to a step of an earlier part of the run."""

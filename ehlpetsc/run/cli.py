@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from mpi4py import MPI
     from petsc4py import PETSc
 
+    from ehlpetsc.run.ranks import StopRequest
     from ehlpetsc.run.simulation import Simulation
-    from ehlpetsc.run.stop import StopRequest
 
 NO_SIGNAL_HANDLER = "-no_signal_handler"  # PETSc's handler would end the process with its own report
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from ehlpetsc import __version__
 from ehlpetsc.base.case import KINDS
@@ -18,16 +18,27 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
 
 START_SECONDS = 1.6  # wall clock time of a run's start on one core of a server
-# of a Newton iteration of a line contact, and of each node in it [s]
-ITERATION_SECONDS, NODE_SECONDS = 2.4e-3, 1.5e-6
-# Newton iterations a step: before roughness enters, with roughness in full film, in mixed lubrication
-SMOOTH_ITERATIONS, FILM_ITERATIONS, MIXED_ITERATIONS = 1.6, 2.5, 4.5
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
-STEADY_ITERATIONS = 20  # Newton iterations of a steady solution
-# of a plane of 129 x 129 nodes: wall clock time of a step [s] in the same three regimes
-PLANE_NODES, SMOOTH_SECONDS, FILM_SECONDS, MIXED_SECONDS = 129**2, 0.1, 0.15, 0.4
-# its growth with the nodes, and what does not grow [s]; steady start in steps
-GROWTH, STEP_SECONDS, PLANE_START = 1.0, 0.015, 10
+
+
+class Speed(NamedTuple):
+    """Wall clock times [s] of a kind of contact: of a Newton iteration, each node in it, a step besides.
+
+    `smooth`, `film`, `mixed`: iterations of a step before roughness enters, with roughness in full film, in
+        mixed lubrication, and `start` those of a steady solution.
+    """
+
+    iteration: float
+    node: float
+    step: float
+    smooth: float
+    film: float
+    mixed: float
+    start: float
+
+
+LINE = Speed(2.4e-3, 1.5e-6, 3.6e-3, smooth=1.6, film=2.5, mixed=4.5, start=20.0)
+PLANE = Speed(0.0, 2.4e-6, 0.015, smooth=2.5, film=3.75, mixed=10.0, start=25.0)
 START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 POINT_MEMORY = 70  # of a measured map, while it is read, for each point [bytes]
 COMPRESSED = 0.6  # of the size of the fields
@@ -43,23 +54,10 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps [s]."""
-    return KINDS[case.kind].part("work_time")(case, s, rough)
-
-
-def line_time(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Wall clock time of the steps of a line contact [s]."""
-    solves, passes = (steps(s), case.time.passes) if case.time else (1, 1)
-    each = ITERATION_SECONDS + NODE_SECONDS * s.grid.n
-    return passes * (iterations(case, s, rough) + solves) * each
-
-
-def plane_time(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Wall clock time of the steps of a plane [s]."""
-    fraction = _rough_fraction(case, s, rough)
-    each = (1.0 - fraction) * SMOOTH_SECONDS
-    each += fraction * (MIXED_SECONDS if _is_mixed(case, s, rough) else FILM_SECONDS)
-    count = (steps(s) * case.time.passes if case.time else 0) + PLANE_START
-    return count * (STEP_SECONDS + each * (s.grid.n / PLANE_NODES) ** GROWTH)
+    speed = PLANE if KINDS[case.kind].is_areal else LINE
+    count, passes = (steps(s), case.time.passes) if case.time else (0, 1)
+    each = speed.iteration + speed.node * s.grid.n
+    return passes * (iterations(case, s, rough, speed) * each + count * speed.step)
 
 
 def memory(s: Scales, rough: Roughness | None) -> float:
@@ -69,15 +67,12 @@ def memory(s: Scales, rough: Roughness | None) -> float:
     return START_MEMORY + NODE_MEMORY * s.grid.n + POINT_MEMORY * points
 
 
-def _is_mixed(case: Case, s: Scales, rough: Roughness | None) -> bool:
-    return bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
-
-
-def iterations(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Expected Newton iterations of a run of a line contact."""
-    fraction, mixed = _rough_fraction(case, s, rough), _is_mixed(case, s, rough)
-    each = (1.0 - fraction) * SMOOTH_ITERATIONS + fraction * (MIXED_ITERATIONS if mixed else FILM_ITERATIONS)
-    return STEADY_ITERATIONS + (steps(s) if case.time else 0) * each
+def iterations(case: Case, s: Scales, rough: Roughness | None, speed: Speed = LINE) -> float:
+    """Expected Newton iterations of a pass."""
+    fraction = _rough_fraction(case, s, rough)
+    is_mixed = bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
+    each = (1.0 - fraction) * speed.smooth + fraction * (speed.mixed if is_mixed else speed.film)
+    return speed.start + (steps(s) if case.time else 0) * each
 
 
 def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:

@@ -13,10 +13,9 @@ from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.base.quantities import STEP_SCALARS, unit_in
 from ehlpetsc.results.index import Index
+from ehlpetsc.results.means import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
 from ehlpetsc.results.reader import is_done, read_result
-from ehlpetsc.results.restart_file import is_restart_of
-from ehlpetsc.results.running_in import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
-from ehlpetsc.run.checkpoint import pass_of
+from ehlpetsc.run.checkpoint import is_restart_of, pass_of
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.run.stop import StopRequest
+    from ehlpetsc.run.ranks import StopRequest
 
 
 class Passes:

@@ -23,10 +23,9 @@ from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear import events
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
-from ehlpetsc.results.restart_file import restart_of_same
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
-from ehlpetsc.run.ranks import on_root
-from ehlpetsc.run.stop import Deadline
+from ehlpetsc.run.checkpoint import restart_of_same
+from ehlpetsc.run.ranks import Deadline, on_root
 from ehlpetsc.run.validity import limits
 from ehlpetsc.stepping.time_stepping import on_level
 

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 
     from ehlpetsc.case.combinations import Settings
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.run.ranks import StopRequest
     from ehlpetsc.run.simulation import AcceptedState
-    from ehlpetsc.run.stop import StopRequest
 
 MAX_NAME_LENGTH = 60  # characters
 WAITING = "waiting"  # state of a member that is not computed yet

@@ -27,8 +27,7 @@ from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.domain import domain_faults
-from ehlpetsc.run.ranks import on_root
-from ehlpetsc.run.stop import StopRequest
+from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State

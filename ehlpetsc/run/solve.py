@@ -14,8 +14,8 @@ from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, OutputLo
 from ehlpetsc.run.recorder import Progress, Recorder, summary_line
 
 if TYPE_CHECKING:
+    from ehlpetsc.run.ranks import StopRequest
     from ehlpetsc.run.simulation import AcceptedState, Simulation
-    from ehlpetsc.run.stop import StopRequest
 
 
 STEPS = 100  # after the first state, before which code is compiled

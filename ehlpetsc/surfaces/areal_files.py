@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib.format import MAGIC_PREFIX, read_array
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.outliers import SPIKE_WIDTH, map_spikes, without_no_data
+from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
 from ehlpetsc.surfaces.profile_files import (
     KEYS_OF_TEXT,
     MAX_ABSCISSA,

@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.outliers import groups, held, spikes, without_no_data
+from ehlpetsc.surfaces.filters import groups, held, spikes, without_no_data
 from ehlpetsc.surfaces.text_files import UNITS, Layout, read_softgauge, text_columns, units_in
 from ehlpetsc.surfaces.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 

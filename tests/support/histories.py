@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ehlpetsc.post.stresses.body_points import passage
+from ehlpetsc.post.loads import passage
 from ehlpetsc.post.stresses.body_stress import BodyStress
 from ehlpetsc.post.stresses.histories import histories
 

@@ -10,6 +10,7 @@ import os
 import shutil
 import signal
 import sys
+import time
 from types import SimpleNamespace
 
 from ehlpetsc.__main__ import main
@@ -36,7 +37,7 @@ def kill_at_index(rank, count):
 def tamper(accident, rank, step):
     from mpi4py import MPI
 
-    from ehlpetsc.run import stop
+    from ehlpetsc.run import ranks as stop
     from ehlpetsc.run.simulation import Simulation
 
     advance = Simulation.advance
@@ -48,7 +49,7 @@ def tamper(accident, rank, step):
             if accident == "raise":
                 raise ValueError("an accident")
             if accident == "late":
-                stop.clock = SimpleNamespace(monotonic=lambda: math.inf)
+                stop.clock = SimpleNamespace(monotonic=lambda: math.inf, sleep=time.sleep)
                 return advance(self, **given)
             if accident == "lost":
                 shutil.rmtree("out")

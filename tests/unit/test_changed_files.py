@@ -9,8 +9,7 @@ from support import CASES, COARSE_LIFE, ROOT
 import ehlpetsc
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.life.checks import stored_or_new
-from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.results.reader import is_done
 from ehlpetsc.run.passes import Passes
 from ehlpetsc.run.recorder import Recorder

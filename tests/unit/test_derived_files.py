@@ -21,7 +21,7 @@ from ehlpetsc.pictures.command import main as plot
 from ehlpetsc.pictures.surface import main as surface
 from ehlpetsc.post.command import main as post
 from ehlpetsc.results.output_guard import replacing
-from ehlpetsc.results.restart_file import save_restart
+from ehlpetsc.run.checkpoint import save_restart
 
 CASE = ROOT / "cases" / "dry_hertz.toml"
 PROFILE = "0.0,1e-7\n1e-6,2e-7\n"

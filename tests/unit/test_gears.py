@@ -28,7 +28,7 @@ from ehlpetsc.physics.laws import viscosity
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.pictures.gears import draw_damage
-from ehlpetsc.post.stresses.body_points import body_points, passage
+from ehlpetsc.post.loads import body_points, passage
 
 FZG = {"module": 4.5e-3, "teeth": [16, 24], "pressure_angle": 20.0, "centre_distance": 91.5e-3}  # type C
 FZG |= {"tip_diameter": [82.5e-3, 118.4e-3], "face_width": 14e-3, "torque": 302.0, "speed": 2250.0}

@@ -12,14 +12,12 @@ from ehlpetsc.base.errors import CaseError, OutputError, PostError
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody, Rates
-from ehlpetsc.life.checks import check_case, stored_or_new
 from ehlpetsc.life.command import main
-from ehlpetsc.life.driver import line_of
-from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.life.jumps import MAX_EXTRAPOLATION, Jumps
+from ehlpetsc.life.driver import check_case, line_of
+from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.life.rounds import Round
+from ehlpetsc.life.rounds import MAX_EXTRAPOLATION, Jumps, Round
 from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.body_field import BodyField
 

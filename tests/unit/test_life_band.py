@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_loads import Scene, write
 
-from ehlpetsc.life.driver import CRITERIA, band, lines_of, passes_to_failure
+from ehlpetsc.life.one_pass import CRITERIA, band, lines_of, passes_to_failure
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 

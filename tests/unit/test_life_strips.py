@@ -12,9 +12,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import OfBody
-from ehlpetsc.life.rounds import Round
+from ehlpetsc.life.rounds import Jumps, Round
 from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.body_field import BodyField
 

@@ -12,8 +12,8 @@ from ehlpetsc.base.command_line import exit_status
 from ehlpetsc.base.errors import ExitStatus, OutputLost
 from ehlpetsc.life.history import LifeFile, LifeHistory
 from ehlpetsc.results.hdf5_file import open_for_reading
-from ehlpetsc.results.restart_file import load_restart
 from ehlpetsc.results.writer import Layout, ResultWriter
+from ehlpetsc.run.checkpoint import load_restart
 from ehlpetsc.run.solve import Run
 
 RIDGE = {"mesh.inlet": -1.3, "mesh.points_per_half_width": 20, "time.travel": 0.3, "time.courant": 0.445}

@@ -11,7 +11,7 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.case.tables.outputs import POST
 from ehlpetsc.post import Material
-from ehlpetsc.post.prepare import materials_of
+from ehlpetsc.post.loads import materials_of
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 

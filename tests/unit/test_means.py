@@ -13,9 +13,8 @@ from ehlpetsc.analysis.summary import run_scalars
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.friction_curves import time_statistics
-from ehlpetsc.results.means import both_fill, filled_from, means
+from ehlpetsc.results.means import both_fill, filled_from, means, pass_summary
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.running_in import pass_summary
 from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH
 from ehlpetsc.surfaces.profile_checks import entry_times
 from ehlpetsc.surfaces.roughness import Roughness

@@ -20,8 +20,8 @@ from ehlpetsc.base.declarations import Field, StepScalar
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import FIELDS, of_every_case
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.restart_file import load_restart, save_restart
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
+from ehlpetsc.run.checkpoint import load_restart, save_restart
 
 STORED = [*of_every_case(FIELDS), "void_fraction"]
 STEP_SCALARS = of_every_case(quantities.STEP_SCALARS)

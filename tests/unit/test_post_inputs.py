@@ -10,8 +10,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import DEPTHS, prepare
+from ehlpetsc.post.loads import DEPTHS, Loads, prepare
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 

@@ -12,9 +12,9 @@ from support.made_results import make_result
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.pictures.running_in import draw_fatigue
 from ehlpetsc.post.command import main
+from ehlpetsc.results.means import heights, passes_to_run_in, statistics
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.results.running_in import heights, passes_to_run_in, statistics
 
 
 @pytest.fixture

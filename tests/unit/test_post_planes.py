@@ -12,8 +12,7 @@ from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.fatigue.statistics import asperities
 from ehlpetsc.post.fatigue.strain_life import Material
-from ehlpetsc.post.loads import Loads
-from ehlpetsc.post.prepare import prepare
+from ehlpetsc.post.loads import Loads, prepare
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.post.stresses.block_stress import ORDER, BlockStress
 from ehlpetsc.post.stresses.body_stress import offset_weights
@@ -182,7 +181,7 @@ def test_six_components_of_plane_strain_are_three(mean_stress):
 
 def test_utilisation_does_not_depend_on_the_axes():
     from ehlpetsc.post.criteria.dang_van import count_utilisation
-    from ehlpetsc.post.criteria.laws import Criteria
+    from ehlpetsc.post.criteria.planes import Criteria
 
     line, six = random_histories(2)
     expected = dang_van(*np.moveaxis(line, 1, 0), NU)
@@ -222,7 +221,7 @@ def test_pictures_of_a_plane(scene, tmp_path, capsys):
 def test_critical_plane_of_six_components():
     """As of three under plane strain, to the resolution of the search, and in axes turned by any angle."""
     from ehlpetsc.post.criteria.critical_plane import count_on_planes
-    from ehlpetsc.post.criteria.laws import Criteria
+    from ehlpetsc.post.criteria.planes import Criteria
 
     line, six = random_histories(3)
     constants = {"material": Material(), "constants": Criteria(), "strain": "neuber"}

@@ -8,7 +8,7 @@ from ehlpetsc import Simulation
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import run_life
-from ehlpetsc.life.checks import check_case
+from ehlpetsc.life.driver import check_case
 
 OIL = {"viscosity": 0.0002, "law": "roelands", "pressure_viscosity": 11.1e-9, "roelands_z": 0.568}
 OIL |= {"roelands_pressure": 0.1962e9, "density": "incompressible", "eyring_stress": 10e6}

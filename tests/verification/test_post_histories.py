@@ -6,9 +6,8 @@ from support.histories import history_at
 from support.made_loads import P0, A, Scene, write
 
 from ehlpetsc.post import Material, damage, stress
-from ehlpetsc.post.loads import Loads
+from ehlpetsc.post.loads import Loads, passage
 from ehlpetsc.post.run import Job, run
-from ehlpetsc.post.stresses.body_points import passage
 from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, offset_weights
 from ehlpetsc.results.post_result import PostResult
 

@@ -15,8 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
-from ehlpetsc.post.criteria.laws import Criteria, cycle_damage
-from ehlpetsc.post.criteria.planes import GRID_STEP, on_plane, planes_and_directions, shear_planes
+from ehlpetsc.post.criteria.planes import (
+    GRID_STEP,
+    Criteria,
+    cycle_damage,
+    on_plane,
+    planes_and_directions,
+    shear_planes,
+)
 from ehlpetsc.post.criteria.turning_samples import turning_samples
 from ehlpetsc.post.fatigue.accumulate import evaluate
 from ehlpetsc.post.fatigue.cycles import RESIDUALS, equivalent_points, find_cycles, loop_of, workspace
@@ -318,7 +324,7 @@ def critical_plane(
 ) -> PlaneDamage:
     """Damage of one pass of each history by Fatemi and Socie on its worst plane, planes in three dimensions.
 
-    Equation and sources: :mod:`ehlpetsc.post.criteria.laws`.
+    Equation and sources: :mod:`ehlpetsc.post.criteria.planes`.
 
     `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
     `strain`: see :func:`ehlpetsc.post.damage`.

@@ -24,7 +24,7 @@ from math import asin, cos, sqrt
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.criteria.laws import Criteria
+from ehlpetsc.post.criteria.planes import Criteria
 from ehlpetsc.post.fatigue.accumulate import evaluate
 from ehlpetsc.post.fatigue.cycles import equivalent_points
 

@@ -159,7 +159,7 @@ def damage(
     txz reverses while sz peaks).
 
     `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
-    `mean_stress`: "none" or a correction (:mod:`ehlpetsc.post.fatigue.mean_stress`) by the mean of
+    `mean_stress`: "none" or a correction (:mod:`ehlpetsc.post.fatigue.cycles`) by the mean of
         sigma_x + sigma_y + sigma_z over the two reversals, in uniaxial loading the mean stress; "morrow"
         subtracts it from the fatigue strength. The benefit of compression is limited to
         that of a uniaxial cycle that ends at zero stress: a mean below -dsv/2 counts as -dsv/2. Without this

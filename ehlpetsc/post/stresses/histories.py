@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.stresses.body_points import Passage
 from ehlpetsc.post.stresses.body_stress import BodyStress, offset_weights
 
 if TYPE_CHECKING:
-    from ehlpetsc.post.loads import Loads
+    from ehlpetsc.post.loads import Loads, Passage
     from ehlpetsc.post.stresses.block_stress import BlockStress
 
 FRAMES_PER_READ = 144
