@@ -12,24 +12,17 @@ of the point contact at C of teeth with this crown or end relief at both ends of
 from __future__ import annotations
 
 import argparse
-import io
-import math
 from functools import partial
 from pathlib import Path
-
-import numpy as np
 
 from ehlpetsc.analysis.gear_run import GearRun, lines, panels
 from ehlpetsc.base.command_line import CommandParser, exit_status, put
 from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.case.derived import modulus_of, rating_of
 from ehlpetsc.case.loading import load
-from ehlpetsc.gears.crowning import crowned
-from ehlpetsc.gears.load_sharing import edge_contact
-from ehlpetsc.gears.path import Path as ContactPath
-from ehlpetsc.gears.path import describe, gear_loss_factor, hertz, path_of_contact
-from ehlpetsc.gears.standards import STANDARDS, Rating, bulk_temperatures, loss_factor, values_of
-from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.gears.path import path_of_contact
+from ehlpetsc.gears.standards import bulk_temperatures
+from ehlpetsc.gears.table import crowned, csv, rows
 from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 from ehlpetsc.results.reader import read_result
@@ -155,80 +148,3 @@ def _picture(chosen: argparse.Namespace, kind: str) -> Path | None:
     target = Path(f"{stem}.{kind}.png" if chosen.output is None else chosen.output)
     check_derived(target, [Path(given) for given in chosen.files], PICTURES)
     return target
-
-
-EDGE_RADIUS = 0.05  # of the module: radius of a tip edge that is left out
-EDGES = {"A": "before A, on the tip edge of the wheel", "E": "after E, on the tip edge of the pinion"}
-
-
-def rows(path: ContactPath, modulus: float, rating: Rating | None) -> list[str]:
-    """Lines of text: data of the pair, a table of A to E, mean values of the standards."""
-    pair = path.pair
-    where = [path.index(name) for name in pair.points_on_path]
-    arcs = pair.flank_arcs(path.rho)
-    quantities = [
-        ("time, µs", 1e6 * path.time),
-        ("rho 1, mm", 1e3 * path.rho),
-        ("R, mm", 1e3 * path.radius),
-        ("load, kN/m", 1e-3 * path.load),
-        ("u1, m/s", path.speed_1),
-        ("u2, m/s", path.speed_2),
-        ("u, m/s", path.entrainment),
-        ("u1 - u2, m/s", path.speed_1 - path.speed_2),
-        ("slide/roll", path.slide_roll_ratio),
-        ("arc 1, mm", 1e3 * arcs[0]),
-        ("arc 2, mm", 1e3 * arcs[1]),
-    ]
-    a, p0 = hertz(path, modulus)
-    quantities += [("a, mm", 1e3 * a), ("p0, GPa", 1e-9 * p0)]
-    lines = [*describe(path), *edges(path, modulus)]
-    own, standard = gear_loss_factor(path), loss_factor(pair)
-    lines.append(f"loss factor H_V {own:.4f} of this load sharing, {standard:.4f} of Niemann and Winter")
-    names, values = {}, values_of(rating) if rating is not None else {}
-    for name, value in values.items():
-        entry = STANDARDS[name]
-        if np.ndim(value):
-            label = f"{name.split(' ', 1)[1]}{', ' if entry.unit else ''}{entry.unit}"
-            quantities.append((label, value))
-            names[label] = entry.source
-        elif name != "loss factor H_V":
-            lines.append(f"{name} {value:.4g} {entry.unit}{' ' if entry.unit else ''}by {entry.source}")
-    width = max(len(name) for name, _ in quantities)
-    lines += ["", " " * width + "".join(f"{name:>11}" for name in pair.points_on_path)]
-    for name, values in quantities:
-        source = f"  {names[name]}" if name in names else ""
-        lines.append(f"{name:{width}}" + "".join(f"{_shown(values[i]):>11}" for i in where) + source)
-    return lines
-
-
-def edges(path: ContactPath, modulus: float) -> list[str]:
-    """Contact of the tip edges before A and after E, and bound of its pressure: of an elastic round edge."""
-    pair, lines = path.pair, []
-    edge = pair.tip_radius or EDGE_RADIUS * pair.module
-    flanks = {"A": pair.points["A"], "E": pair.line_of_action - pair.points["E"]}
-    for name, (way, carried) in edge_contact(pair).items():
-        if way > 0.0:
-            load, where = carried * pair.normal_load, EDGES[name]
-            pressure = hertz_line(load, 1.0 / (1.0 / edge + 1.0 / flanks[name]), modulus)[1]
-            lines += [
-                f"contact {1e3 * way:.2f} mm {where}, with up to {1e-3 * load:.1f} kN/m: Hertz pressure of "
-                f"an edge of radius {1e3 * edge:.3g} mm {1e-9 * pressure:.2f} GPa"
-            ]
-    return lines
-
-
-def _shown(value: float) -> str:
-    if not math.isfinite(value):
-        return "-"
-    digits = 3 - (math.floor(math.log10(abs(value))) if abs(value) > 1e-9 else 0)
-    return f"{0.0 if abs(value) <= 1e-9 else value:.{min(max(digits, 0), 4)}f}"
-
-
-def csv(path: ContactPath) -> str:
-    """Loaded part of the path as CSV text for ``[operation]``."""
-    loaded = path.load > 0.0
-    values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[loaded]
-    values[:, 0] -= values[0, 0]
-    text = io.StringIO()
-    np.savetxt(text, values, "%.12g", ", ", header="time, load, radius, speed 1, speed 2", comments="")
-    return text.getvalue()

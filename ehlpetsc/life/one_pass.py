@@ -14,7 +14,7 @@ from ehlpetsc.post.loads import Loads, Prepared, prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.ranks import on_root
-from ehlpetsc.run.recorder import Recorder
+from ehlpetsc.run.recorder import Output, Recorder
 from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.body_field import BodyField
@@ -60,7 +60,7 @@ SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
-class PassProgress:
+class PassProgress(Output):
     """Output that calls `show` with the share of a pass that is done."""
 
     def __init__(self, simulation: Simulation, show: Callable[[float], None]) -> None:
@@ -69,9 +69,6 @@ class PassProgress:
     def write(self, state: AcceptedState) -> None:
         """Show the step."""
         self._show(float(state.time) / self._simulation.end)
-
-    def close(self, status: ExitStatus) -> None:
-        """Do nothing: the pass is evaluated next."""
 
 
 def run_pass(

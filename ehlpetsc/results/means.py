@@ -196,19 +196,15 @@ def heights(result: Result, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def statistics(result: Result, side: str) -> dict[str, float] | None:
-    """Ra, Rq [m], Rsk and maximum indentation [m] of a surface after a pass."""
+    """Ra, Rq [m], Rsk, Rku and maximum indentation [m] of a surface after a pass."""
+    from ehlpetsc.surfaces.parameters import moments
+
     surface = heights(result, side)
     if surface is None:
         return None
     _, z, z_after = surface
-    height = z_after - z_after.mean()
-    rq = float(np.sqrt((height**2).mean()))
-    return {
-        "ra": float(np.abs(height).mean()),
-        "rq": rq,
-        "rsk": float(((height / rq) ** 3).mean()) if rq > 0.0 else 0.0,
-        "deepest": float((z - z_after).max()),
-    }
+    found = {f"r{name}": float(np.nan_to_num(value)) for name, value in moments(z_after).items()}
+    return found | {"deepest": float((z - z_after).max())}
 
 
 def passes_to_run_in(rows: list[dict], in_a_row: int = 1) -> int | None:

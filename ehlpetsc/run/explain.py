@@ -29,7 +29,6 @@ from ehlpetsc.run.forecast import (
     memory,
     steps,
     surface_lines,
-    wave_lines,
     work_time,
 )
 from ehlpetsc.run.validity import load_unit, warnings
@@ -48,6 +47,8 @@ PRESSURE_ERRORS = 0.18, 0.10, 0.04, 0.02, 0.005  # ripple of the faster surface
 FRICTION_ERRORS = 0.24, 0.15, 0.08, 0.05, 0.01  # in mixed contact with a layer, as the next two
 DAMAGE_ERRORS = 0.34, 0.18, 0.09, 0.07, 0.02
 SHARE_RATIOS = 4.8, 3.5, 2.4, 1.8, 1.2  # load on the solids over its limit
+WAVES_ALONG = ("short_cutoff", "wavelength", "correlation")  # keys of the waves of a surface
+WAVES = (*WAVES_ALONG, "wavelength_across", "correlation_across")
 GROUND_WAVE = 1.35  # shortest wave over the correlation length: 0.5 % of the power density
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
@@ -140,27 +141,28 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
         surface_lines(case, scales, rough),
         KINDS[case.kind].part("words").lay * bool(rough),
         _size(case, scales, rough),
-        _resolution(case, scales),
+        _waves(case, scales),
         [f"Warning: {line}" for line in warnings(case, scales, rough)],
     ]
     return "\n".join(line for section in sections for line in section)
 
 
-def _resolution(case: Case, s: Scales) -> list[str]:
-    """Nodes to the shortest wave of each surface, and the error to expect; [] where a wave is not given."""
-    lines, fewest = [], math.inf
-    for number, body in enumerate((case.surface.body_1, case.surface.body_2), 1):
-        made = getattr(body, "synthetic", None)
-        waves = [getattr(body, "short_cutoff", None)]
-        waves += [getattr(made, key, None) for key in ("short_cutoff", "wavelength")] if made else []
-        waves += [GROUND_WAVE * made.correlation] if getattr(made, "kind", None) == "ground" else []
-        shortest = min((wave for wave in waves if wave), default=None)
-        if shortest is not None:
-            fewest = min(fewest, shortest / s.dx)
-            lines.append(
-                f"Waves of surface {number}: {shortest / s.dx:.3g} nodes to the shortest one, "
-                f"{1e6 * shortest:.4g} um"
-            )
+def _waves(case: Case, s: Scales) -> list[str]:
+    """Nodes on the waves that a case prescribes for its surfaces, and the error to expect."""
+    dy, dx, lines, fewest = s.grid.spacings[0], s.grid.spacings[-1], [], math.inf
+    for side in ("1", "2"):
+        spec = case.surface.side(side)
+        table = spec and (spec.synthetic or spec)
+        given = {key: length for key in WAVES if (length := getattr(table, key, None))}
+        nodes = [
+            f"{key} of {1e6 * length:.4g} um: {length / (dy if key.endswith('across') else dx):.1f}"
+            for key, length in given.items()
+        ]
+        along = [GROUND_WAVE * w if k == "correlation" else w for k, w in given.items() if k in WAVES_ALONG]
+        if along:
+            fewest = min(fewest, min(along) / dx)
+            nodes.append(f"{min(along) / dx:.3g} nodes to the shortest one, {1e6 * min(along):.4g} um")
+            lines.append(f"Waves of surface {side}: {'; '.join(nodes)}")
     if not lines or case.time is None or case.fluid is None:
         return lines
     return [*lines, expected_errors(fewest, case.contact.asperity_height is not None)]
@@ -289,7 +291,6 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     extent = f"from {s.x[0]:g} to {s.x[-1]:g} a{KINDS[case.kind].part('words').across(s)}"
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
-        *wave_lines(case, s),
         f"Expected run time on one rank: about {duration(seconds)}; "
         f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}; "
         f"memory: about {1e-6 * memory(s, rough):.0f} MB",

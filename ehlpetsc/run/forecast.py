@@ -42,8 +42,6 @@ PLANE = Speed(0.0, 2.4e-6, 0.015, smooth=2.5, film=3.75, mixed=10.0, start=25.0)
 START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 POINT_MEMORY = 70  # of a measured map, while it is read, for each point [bytes]
 COMPRESSED = 0.6  # of the size of the fields
-# keys of the waves of a surface
-WAVES = ("short_cutoff", "wavelength", "correlation", "wavelength_across", "correlation_across")
 
 
 def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
@@ -107,22 +105,6 @@ def surface_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     profiles = {side: rough and rough.side(side) for side in ("1", "2")}
     lines = {side: _profile(case, s, one) if one else ["smooth"] for side, one in profiles.items()}
     return [f"Surface {side}: {line}" for side in lines for line in lines[side]]
-
-
-def wave_lines(case: Case, s: Scales) -> list[str]:
-    """Nodes on the waves that a case prescribes for its surfaces, a line for each surface."""
-    dy, dx, lines = s.grid.spacings[0], s.grid.spacings[-1], []
-    for side in ("1", "2"):
-        spec = case.surface.side(side)
-        table = spec and (spec.synthetic or spec)
-        lengths = {key: getattr(table, key, None) for key in WAVES}
-        nodes = [
-            f"{key} of {1e6 * length:.4g} um: {length / (dy if key.endswith('across') else dx):.1f}"
-            for key, length in lengths.items()
-            if length
-        ]
-        lines += [f"Surface {side}: nodes a wave: {', '.join(nodes)}"] * bool(nodes)
-    return lines
 
 
 def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:

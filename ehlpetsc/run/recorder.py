@@ -37,7 +37,17 @@ SECONDS_BETWEEN_LINES = 5.0
 MIN_RATE_TIME = 1.0  # s after the first step, which includes compilation, before a remaining time is shown
 
 
-class Progress:
+class Output:
+    """Observer of a run, which receives every accepted state."""
+
+    def write(self, state: AcceptedState) -> None:
+        """Receive a state."""
+
+    def close(self, status: ExitStatus) -> None:
+        """End with the run."""
+
+
+class Progress(Output):
     """Output that shows the steps of a simulation: a line every five seconds, on a terminal one in place."""
 
     def __init__(self, simulation: Simulation, stream: TextIO | None = None) -> None:
@@ -101,7 +111,7 @@ def summary_line(status: ExitStatus, totals: Totals, wall: float) -> str:
     return f"ehlpetsc: {status.words} {totals} wall={wall:.1f}"
 
 
-class Recorder:
+class Recorder(Output):
     """Output that stores the accepted states of a simulation.
 
     The restart file is written every few minutes, at a stop, and where the result is lost.

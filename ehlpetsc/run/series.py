@@ -27,7 +27,7 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.forecast import steps
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
-from ehlpetsc.run.recorder import summary_line
+from ehlpetsc.run.recorder import Output, summary_line
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 from ehlpetsc.run.validity import warnings
@@ -110,7 +110,7 @@ class PrefixedStream(io.TextIOBase):
         self._stream.flush()
 
 
-class MemberProgress:
+class MemberProgress(Output):
     """Output that adds the steps of a member to the line of its series, if this rank has it."""
 
     def __init__(self, simulation: Simulation, line: ProgressLine | None, work: float) -> None:

@@ -6,12 +6,12 @@ import sys
 import time as clock
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from mpi4py import MPI
 
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, OutputLost, Stopped
-from ehlpetsc.run.recorder import Progress, Recorder, summary_line
+from ehlpetsc.run.recorder import Output, Progress, Recorder, summary_line
 
 if TYPE_CHECKING:
     from ehlpetsc.run.ranks import StopRequest
@@ -22,7 +22,7 @@ STEPS = 100  # after the first state, before which code is compiled
 MAX_WAITING = 0.5  # waiting time over processor time of the rank that waits most
 
 
-class BusyCores:
+class BusyCores(Output):
     """Output on every rank that compares processor time with wall clock time over the first steps.
 
     A rank that waits in MPI for another one keeps its core busy: the difference is the time in which the rank
@@ -49,19 +49,8 @@ class BusyCores:
                 "core; all ranks wait for it: -n 1, or a less busy machine, may be faster"
             )
 
-    def close(self, status: ExitStatus) -> None:
-        """Do nothing: a shorter run needs no note."""
-
 
 Outcome = tuple[ExitStatus, NotConverged | OutputError | None]  # of a run, with the reason of a failure
-
-
-class Output(Protocol):
-    """Observer of a run, which receives every accepted state."""
-
-    def write(self, state: AcceptedState) -> None: ...
-
-    def close(self, status: ExitStatus) -> None: ...
 
 
 def solve(
@@ -82,7 +71,7 @@ def solve(
     return status, failure
 
 
-class Run:
+class Run(Output):
     """Run of a simulation by the command, with messages of rank 0 on `out` and `err`; one of its outputs.
 
     `progress`: output that shows the steps, by default a `Progress`.
@@ -133,9 +122,6 @@ class Run:
         """Print the unused options after the first step, when PETSc has read those of the solver."""
         if state.step == 1:
             self._print_unused()
-
-    def close(self, status: ExitStatus) -> None:
-        """Do nothing: the report is printed when all outputs are closed."""
 
     def _print_unused(self) -> None:
         """Print the unused, probably misspelt options that have not been printed yet."""

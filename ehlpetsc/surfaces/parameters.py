@@ -79,12 +79,20 @@ def areal_parameters(z: np.ndarray, dx: float, dy: float) -> dict[str, float]:
     }
 
 
-def _of_heights(z: np.ndarray, letter: str) -> dict[str, float]:
-    """Parameters of heights of mean 0 that profiles and maps share, with the letter of their names."""
+def moments(z: np.ndarray) -> dict[str, float]:
+    """Mean and root mean square of heights minus their mean, "a" and "q" [m]; skewness "sk" and kurtosis "ku".
+
+    The latter are nan without heights.
+    """
+    z = z - z.mean()
     q = float(np.sqrt(np.mean(z**2)))
     sk, ku = (float(np.mean((z / q) ** k)) if q > 0 else np.nan for k in (3, 4))
-    found = {"a": float(np.abs(z).mean()), "q": q, "sk": sk, "ku": ku} | core_parameters(z)
-    return {letter + name: value for name, value in found.items()}
+    return {"a": float(np.abs(z).mean()), "q": q, "sk": sk, "ku": ku}
+
+
+def _of_heights(z: np.ndarray, letter: str) -> dict[str, float]:
+    """Parameters of heights that profiles and maps share, with the letter of their names."""
+    return {letter + name: value for name, value in (moments(z) | core_parameters(z)).items()}
 
 
 def equally_spaced(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, bool]:

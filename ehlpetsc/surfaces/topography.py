@@ -12,7 +12,7 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.continued_spline import Continuation, ContinuedSpline
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE
 from ehlpetsc.surfaces.moving_surface import WAVE_NODES
-from ehlpetsc.surfaces.parameters import areal_parameters, rms_gradient
+from ehlpetsc.surfaces.parameters import areal_parameters, moments, rms_gradient
 
 RIDGE_ROWS = 4  # of a map of ridges, for its parameters
 BLOCK = 256  # columns whose splines across are in memory at a time
@@ -109,9 +109,8 @@ class Topography:
     @property
     def statistics(self) -> dict[str, float]:
         """Mean and root mean square height, "a" and "q" [m], and skewness, "sk"."""
-        z, sq = self._once - self._once.mean(), self.sq
-        skewness = float(((z / sq) ** 3).mean()) if sq > 0 else 0.0
-        return {"a": float(np.abs(z).mean()), "q": sq, "sk": skewness}
+        found = moments(self._once)
+        return {name: float(np.nan_to_num(found[name])) for name in ("a", "q", "sk")}
 
     @cached_property
     def parameters(self) -> dict[str, float]:

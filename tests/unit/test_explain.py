@@ -84,7 +84,7 @@ def test_expected_errors_are_those_of_the_page_of_accuracy():
         "3.5 times the load on the solids"
     )
     (line,) = starting(lines("running_in.toml"), "Waves of surface 1: ")
-    assert line == "Waves of surface 1: 8.04 nodes to the shortest one, 27 um"
+    assert line.endswith("; 8.04 nodes to the shortest one, 27 um")
 
 
 def test_rough_start_is_named():
