@@ -80,7 +80,7 @@ def areal_parameters(z: np.ndarray, dx: float, dy: float) -> dict[str, float]:
 
 
 def moments(z: np.ndarray) -> dict[str, float]:
-    """Mean and root mean square of heights minus their mean, "a" and "q" [m]; skewness "sk" and kurtosis "ku".
+    """Mean "a" and root mean square "q" [m], skewness "sk", kurtosis "ku" of heights minus their mean.
 
     The latter are nan without heights.
     """
