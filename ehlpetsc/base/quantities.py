@@ -72,20 +72,20 @@ def _extents(noun: str, contact: str) -> dict[str, StepScalar]:
         f"contact_{noun}": extent(
             f"{noun} where solids carry; of a compliant layer, integral of the real area fraction",
             only=mixed,
-            of=lambda o: o.cell * o.model.real_area_fraction(o.loads).sum(),
+            of=lambda o: o.node_size * o.model.real_area_fraction(o.loads).sum(),
         ),
         f"contact_{noun}_10mpa": extent(
             f"{noun} where asperities carry more than 10 MPa",
             only=compliant,
-            of=lambda o: o.cell * o.loads.contact_mask.sum(),
+            of=lambda o: o.node_size * o.loads.contact_mask.sum(),
         ),
         f"contact_{noun}_100mpa": extent(
             f"{noun} where asperities carry more than 100 MPa",
             only=compliant,
-            of=lambda o: o.cell * (o.loads.contact_pressure > HIGH_PRESSURE / o.scene.scales.p0).sum(),
+            of=lambda o: o.node_size * (o.loads.contact_pressure > HIGH_PRESSURE / o.scene.scales.p0).sum(),
         ),
         f"thin_{noun}": extent(
-            f"{noun} where the film is thin", only=mixed, of=lambda o: o.cell * o.thin.sum()
+            f"{noun} where the film is thin", only=mixed, of=lambda o: o.node_size * o.thin.sum()
         ),
     }
 

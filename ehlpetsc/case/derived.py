@@ -189,7 +189,7 @@ def with_layer_stiffness(case: Case) -> Case:
     surfaces = [case.surface.side(side) for side in ("1", "2")]
     tables = [table for surface in surfaces if surface for table in (surface, surface.synthetic)]
     cutoffs = [cutoff for table in tables if (cutoff := getattr(table, "short_cutoff", None))]
-    longest = max(cutoffs, default=None) or LAYER_NODES * Scales.of(case).dx
+    longest = max(cutoffs, default=None) or LAYER_NODES * Scales.of(case).spacing
     stiffness = asperity_stiffness(contact.asperity_height, longest)
     return case.copy({"contact": contact.copy({"asperity_stiffness": stiffness})})
 

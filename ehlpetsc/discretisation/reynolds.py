@@ -107,7 +107,7 @@ class Reynolds(NoOil):
         grid = scales.grid
         super().__init__(grid, share)
         self.scales, self.film_scale, self.gap, self.has_sides = scales, film_scale, gap, has_sides
-        self.dx, self.dy, self.cell = grid.dx, 1.0 if has_sides is None else grid.steps[0], grid.cell
+        self.dx, self.dy, self.cell = grid.dx, 1.0 if has_sides is None else grid.increments[0], grid.cell
         rows = max(self.size // self.n_x, 1)
         self.shape = n_y, n_x = rows, self.size // rows
         begin = share.first % self.n_x

@@ -194,7 +194,7 @@ class RoughSurfaces(Effect[NoRecord]):
     def inputs(self, record: NoRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Add the roughness at the end of the step to the gap."""
         scales = self.scene.scales
-        heights = self.scene.roughness.phi_after(scales.x * scales.a, step.travelled, scales.dx)
+        heights = self.scene.roughness.phi_after(scales.x * scales.a, step.travelled, scales.spacing)
         return replace(inputs, phi=inputs.phi + heights / scales.h)
 
 

@@ -51,7 +51,7 @@ class Positions:
         self.rq = self.scenes[0].rq
         shift = case.time.pass_shift if self.count > 1 else 0.0
         # columns of body 2 in excess of position 0, and the direction in which positions follow each other
-        self._columns_more = int(np.ceil(abs((self.count - 1) * shift) / scales.dx))
+        self._columns_more = int(np.ceil(abs((self.count - 1) * shift) / scales.spacing))
         self._sign = -1.0 if (directed_speeds(case, scales)[1] > 0.0) == (shift > 0.0) else 1.0
         self.passes_2 = 1.0
         if case.gears:
@@ -83,7 +83,7 @@ class Positions:
         """Abscissas of the first and last column of body k in a position."""
         if self.count == 1 or k == 0:
             return body.s[0], body.s[-1]
-        length = body.s[-1] - body.s[0] - self._columns_more * self.scales.dx
+        length = body.s[-1] - body.s[0] - self._columns_more * self.scales.spacing
         first = body.s[0] if self._sign > 0 else body.s[-1] - length
         first += self._offset(position, k) - self._offset(0, k)
         return first, first + length
@@ -103,7 +103,7 @@ class Positions:
 
         Raises `PostError` if no stretch of it passed the contact at its full height.
         """
-        s, dx, offset = of_pass.s, self.scales.dx, self._offset(0, k)
+        s, dx, offset = of_pass.s, self.scales.spacing, self._offset(0, k)
         roughness = self.scenes[0].roughness
         profile = roughness and roughness.side("12"[k])
         if profile and profile.is_moving:  # not where its heights come in over the ramp

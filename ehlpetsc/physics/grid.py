@@ -59,22 +59,22 @@ class Grid:
 
     @property
     def dx(self) -> float:
-        """Spacing along the direction of motion in half-widths."""
+        """Difference of the coordinates along the direction of motion in half-widths."""
         return self.axes[-1][1] - self.axes[-1][0]
 
     @property
-    def steps(self) -> tuple[float, ...]:
-        """Spacings along each axis in half-widths."""
+    def increments(self) -> tuple[float, ...]:
+        """Differences of the coordinates along each axis in half-widths."""
         return tuple(axis[1] - axis[0] for axis in self.axes)
 
     @property
     def cell(self) -> float:
         """Size of a cell in half-widths: weight of a node in a sum over the contact."""
-        return math.prod(self.steps)
+        return math.prod(self.increments)
 
     @property
-    def cell_size(self) -> float:
-        """Weight of a node in a sum over the contact: length or area of its cell, in a strip by length."""
+    def node_size(self) -> float:
+        """Weight of a node in a sum: length or area of its cell in m or m^2, in a strip by length."""
         return self.spacings[-1] / self.shape[0] if self.periodic else math.prod(self.spacings)
 
     @cached_property

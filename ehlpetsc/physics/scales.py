@@ -89,7 +89,7 @@ class Scales:
         return len(self.grid.x)
 
     @property
-    def dx(self) -> float:
+    def spacing(self) -> float:
         """Spacing of the nodes along the direction of motion [m]."""
         return self.grid.spacings[-1]
 

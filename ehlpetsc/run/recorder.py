@@ -304,7 +304,7 @@ def stored_surfaces(simulation: Simulation) -> dict[str, StoredSurface]:
             surfaces[side] = StoredSurface(profile.s, profile.z, speed, profile.statistics, depths)
         elif depths:
             ends = scales.x[[0, -1]] * scales.a
-            s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.dx)
+            s = np.arange(ends[0] - extent[1], ends[1] - extent[0], scales.spacing)
             smooth = np.zeros((*scales.grid.shape[:-1], len(s)))
             letter = KINDS[simulation.case.kind].mean_height[0].lower()
             flat = dict.fromkeys((f"{letter}a", f"{letter}q", f"{letter}sk"), 0.0)

@@ -65,7 +65,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
 def smoothed_over(grid: Grid, p: np.ndarray, width: float) -> np.ndarray:
     """Flat field p smoothed along each axis by a Gaussian of a width in half-widths."""
     values = p.reshape(grid.shape)
-    for axis, step in enumerate(grid.steps):
+    for axis, step in enumerate(grid.increments):
         values = np.apply_along_axis(smoothed, axis, values, width / step)
     return values.ravel()
 

@@ -46,9 +46,9 @@ class Observation:
         return self.problem.model
 
     @property
-    def cell(self) -> float:
+    def node_size(self) -> float:
         """Size of a cell [m], of a point contact [m^2]."""
-        return self.scene.scales.grid.cell_size
+        return self.scene.scales.grid.node_size
 
     @cached_property
     def size(self) -> float:
@@ -63,7 +63,7 @@ class Observation:
     @cached_property
     def load(self) -> float:
         """Integral of the pressure [N/m]."""
-        return self.cell * self.fields["pressure"].sum()
+        return self.node_size * self.fields["pressure"].sum()
 
     @property
     def load_error(self) -> float:
@@ -73,12 +73,12 @@ class Observation:
     @cached_property
     def friction_1(self) -> float:
         """Friction force on surface 1 [N/m]."""
-        return self.cell * self.fields["shear_stress_1"].sum()
+        return self.node_size * self.fields["shear_stress_1"].sum()
 
     @cached_property
     def friction_2(self) -> float:
         """Friction force on surface 2 [N/m]."""
-        return self.cell * self.fields["shear_stress_2"].sum()
+        return self.node_size * self.fields["shear_stress_2"].sum()
 
     @property
     def approach(self) -> float:
@@ -150,7 +150,7 @@ def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.
     sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
     oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
     rubbing, rows = solution.inputs.boundary_friction * solids, s.grid.rows
-    gradient = np.gradient(rows(oil), s.dx, axis=-1).ravel()
+    gradient = np.gradient(rows(oil), s.spacing, axis=-1).ravel()
     shear_1, shear_2 = shear_stresses(fluid, rubbing, gradient, conditions.sliding, oil, film, sheared, shear)
     return {
         "pressure": loads.pressure * s.p0,

@@ -243,7 +243,7 @@ class TimeStepping:
 
     def _nodes_moved(self, time: float, dt: float) -> float:
         """Distance of the film from a time [s] on in a step of `dt` [s], in nodes."""
-        return 0.5 * sum(self.operation.displacement(time, dt)) / self.scales.dx
+        return 0.5 * sum(self.operation.displacement(time, dt)) / self.scales.spacing
 
     def _state(self, solution: Solution, end: Step, records: dict, **entries: Any) -> State:
         accepted = {e.name: e.accept(records[e.name], solution, end) for e in self.effects}
@@ -266,7 +266,7 @@ class TimeStepping:
             return state.q, state.w
         levels = (state.level, *state.earlier)
         entrained = 0.5 * sum(self._step_end(state, dt).travelled)
-        nodes = [(entrained - level.travelled) / self.scales.dx for level in levels]
+        nodes = [(entrained - level.travelled) / self.scales.spacing for level in levels]
         return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
 
     def _prepare(self, dt: float) -> None:

@@ -120,8 +120,8 @@ class MeshOnBodies:
     """
 
     def __init__(self, scales: Scales, offsets: Sequence[float] = (0.0, 0.0)) -> None:
-        self.cell, self.offsets, self._rows = scales.dx, offsets, scales.grid.shape[:-1]
-        self._breadth = scales.grid.cell_size / scales.dx
+        self.cell, self.offsets, self._rows = scales.spacing, offsets, scales.grid.shape[:-1]
+        self._breadth = scales.grid.node_size / scales.spacing
         x = scales.x * scales.a
         self._faces = np.append(x - 0.5 * self.cell, x[-1] + 0.5 * self.cell)
 

@@ -78,8 +78,8 @@ def test_a_profile_is_a_ridge_as_in_a_line_contact():
     x = scales.x * scales.a
     for time in (0.0, 1e-4, 3e-4):
         travelled = scales.u1 * time, scales.u2 * time
-        rows = areal.phi_after(x, travelled, scales.dx).reshape(-1, len(x))
-        alone = line.phi_after(x, travelled, scales.dx)
+        rows = areal.phi_after(x, travelled, scales.spacing).reshape(-1, len(x))
+        alone = line.phi_after(x, travelled, scales.spacing)
         np.testing.assert_allclose(rows, np.broadcast_to(alone, rows.shape), rtol=0, atol=1e-21)
 
 

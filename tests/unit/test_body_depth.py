@@ -21,10 +21,10 @@ def made(kind, *keys):
     case = load(CASES / "running_in.toml", [*KEYS, *keys])
     scales = Scales.of(case)
     effect = kind(Scene.of_pass(case, scales, operation_of(case, scales), PASS))
-    zero, reach = BodyFields.zero(scales.dx), 6.0 * scales.a
-    faces = np.arange(-reach, reach, 0.25 * scales.dx)
+    zero, reach = BodyFields.zero(scales.spacing), 6.0 * scales.a
+    faces = np.arange(-reach, reach, 0.25 * scales.spacing)
     pits = 40e-9 * (np.arange(len(faces) - 1) % 12 < 5)
-    depth = BodyFields(*(BodyField.zero(scales.dx).add(faces, pits) for _ in range(2)))
+    depth = BodyFields(*(BodyField.zero(scales.spacing).add(faces, pits) for _ in range(2)))
     record = PlasticRecord(depth, np.zeros(scales.nx), zero)
     return effect, record if kind is PlasticDeformation else WearRecord(depth, zero)
 

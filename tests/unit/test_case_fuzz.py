@@ -50,7 +50,7 @@ def _used(case):
     if case.mesh.nodes < LARGE:
         rough = Roughness.of(case, scales)
         x, half = scales.x * scales.a, 0.5 * (scales.duration or 0.0)
-        for cell in (None, scales.dx) if rough else ():
+        for cell in (None, scales.spacing) if rough else ():
             assert np.isfinite(rough.phi_after(x, (half * scales.u1, half * scales.u2), cell)).all()
         assert explain(case)
     tomllib.loads(case.text)

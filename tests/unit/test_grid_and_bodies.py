@@ -24,20 +24,20 @@ def grid_of(kind):
 
 
 @pytest.mark.parametrize(
-    ("kind", "shape", "cell", "cell_size", "distance", "undeformed"),
+    ("kind", "shape", "cell", "node_size", "distance", "undeformed"),
     [  # the last two at y = -0.4 and x = -1.2
         ("line", (26,), DX, DX * A, 1.2, 0.72),
         ("strip", (7, 26), DX * DY, DX * A / 7, 1.2, 0.72),
         ("point", (7, 26), DX * DY, DX * DY * A**2, np.hypot(1.2, 1.0), 0.25 * 0.16 + 0.75 * 1.44),
     ],
 )
-def test_grid(kind, shape, cell, cell_size, distance, undeformed):
+def test_grid(kind, shape, cell, node_size, distance, undeformed):
     grid, near = grid_of(kind), pytest.approx
     assert (grid.shape, grid.n) == (shape, np.prod(shape))
-    assert grid.x is X and grid.dx == near(0.1) and grid.steps[-1] == near(0.1)
-    assert grid.steps == near([axis[1] - axis[0] for axis in AXES[kind]])
+    assert grid.x is X and grid.dx == near(0.1) and grid.increments[-1] == near(0.1)
+    assert grid.increments == near([axis[1] - axis[0] for axis in AXES[kind]])
     assert (grid.growth, grid.breadth) == (1.0, 1.0)
-    assert (grid.cell, grid.cell_size) == (near(cell, rel=1e-12), near(cell_size, rel=1e-12))
+    assert (grid.cell, grid.node_size) == (near(cell, rel=1e-12), near(node_size, rel=1e-12))
     node = np.ravel_multi_index((1, 3)[-len(shape) :], shape)
     assert [c[node] for c in grid.coordinates] == near([-0.4, -1.2][-len(shape) :])
     assert grid.distance[node] == near(distance)
@@ -78,7 +78,7 @@ def test_growing_field_of_sliding_bodies_conserves_volume(kind):
     """Depths are added step by step while both bodies slide; every deepened stretch remains in place."""
     grid = grid_of(kind)
     offsets = (0.31 * DX * A, -0.17 * DX * A)
-    mesh = MeshOnBodies(SimpleNamespace(grid=grid, dx=DX * A, x=X, a=A), offsets)
+    mesh = MeshOnBodies(SimpleNamespace(grid=grid, spacing=DX * A, x=X, a=A), offsets)
     rng, fields, whole = np.random.default_rng(4), mesh.zero, 0.0
     cell = DX * A * ({"line": 1.0, "strip": 1.0 / 7, "point": DY * A}[kind])
     for step in range(40):

@@ -353,7 +353,7 @@ def test_file_that_another_process_has_locked_is_not_called_damaged(tmp_path):
 
 def test_a_new_scalar_of_the_steps_is_one_entry_of_the_table(monkeypatch):
     weight = StepScalar(
-        "N", "pressure by film", integrated=True, of=lambda o: o.cell * o.fields["pressure"][3]
+        "N", "pressure by film", integrated=True, of=lambda o: o.node_size * o.fields["pressure"][3]
     )
     monkeypatch.setitem(quantities.STEP_SCALARS, "weight", weight)
     case = ehlpetsc.load(CASES / "dry_hertz.toml", {"mesh.points_per_half_width": 20})

@@ -157,7 +157,7 @@ def test_blocks_filled_in_place_are_those_of_the_matrix(name, block):
     assert form.block == block
     blocks = np.zeros((len(form.columns), block, block))
     whole = tuple(np.ascontiguousarray(part[p.owned]) for part in elimination.reduction[:6])
-    scales, rows = (p.deflection.row_scale, *p.grid.steps), (0, 0, p.n, form.pointers, form.places)
+    scales, rows = (p.deflection.row_scale, *p.grid.increments), (0, 0, p.n, form.pointers, form.places)
     derivatives = system.jacobian.reynolds_derivatives
     fill(whole, derivatives, form.term, scales, form.mesh, rows, blocks, form.by)
     expected = bsr_matrix((blocks.transpose(0, 2, 1), form.columns, form.pointers))

@@ -89,7 +89,7 @@ def test_gear_flanks_have_damage_along_the_path_of_contact(tmp_path):
     for now in conditions:
         a, _ = hertz_line(now.load, now.radius, scales.E)
         p = np.sqrt(np.clip(1 - (x / a) ** 2, 0, None))
-        pressure.append(p * now.load / (p.sum() * scales.dx))
+        pressure.append(p * now.load / (p.sum() * scales.spacing))
     ways = np.array([operation.travelled(t) for t in time])
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file.attrs.update(format_version=1, title="flanks", case=case.text, status="done")
@@ -107,5 +107,5 @@ def test_gear_flanks_have_damage_along_the_path_of_contact(tmp_path):
     found = PostResult(tmp_path / "o.h5")
     for side in found.surfaces:
         damage = found.passed(side)
-        assert damage.shape[1] * scales.dx > 0.9 * abs(ways[-1]).min() and np.isfinite(damage).all()
+        assert damage.shape[1] * scales.spacing > 0.9 * abs(ways[-1]).min() and np.isfinite(damage).all()
         assert damage.max() > 1e-9

@@ -77,7 +77,7 @@ def test_nodes_run_from_inlet_to_outlet():
     assert s.nx == s.x.size == 801
     assert (s.x[0], s.x[-1]) == (-2.5, 1.5)
     assert np.ptp(np.diff(s.x)) < 1e-12
-    assert s.dx == pytest.approx(s.a / 200)
+    assert s.spacing == pytest.approx(s.a / 200)
 
 
 def test_dry_case_has_no_lubricant_groups_and_steady_case_no_step():

@@ -41,7 +41,7 @@ def scene(slide_roll_ratio, eyring=EYRING, speed=5.0):
 
 def stresses(case, scales, p, solids, h, sheared):
     friction = case.contact.boundary_friction * solids
-    gradient = np.gradient(p, scales.dx)
+    gradient = np.gradient(p, scales.spacing)
     return shear_stresses(case.fluid, friction, gradient, scales.u1 - scales.u2, p, h, sheared)
 
 
@@ -80,7 +80,7 @@ def test_the_film_is_in_balance(ratio, eyring):
     """What both walls give to the solids together is what the pressure does to the film: -h dp/dx."""
     case, scales, p, h = scene(ratio, eyring)
     fast, slow = shear(case, scales, p, h)
-    np.testing.assert_allclose(fast + slow, -h * np.gradient(p, scales.dx), rtol=1e-9, atol=1e-3)
+    np.testing.assert_allclose(fast + slow, -h * np.gradient(p, scales.spacing), rtol=1e-9, atol=1e-3)
 
 
 def test_pressure_flow_drags_both_walls_in_pure_rolling():

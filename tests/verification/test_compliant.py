@@ -172,9 +172,11 @@ def test_contact_length_is_the_integral_of_the_real_area():
     scales = ehlpetsc.Simulation(given).scales
     modulus = 0.5 * scales.E * 0.1
     area = erf(np.sqrt(np.pi) * state.contact_pressure / modulus)
-    assert state.contact_length == pytest.approx(scales.dx * area.sum(), rel=1e-9)
-    assert state.contact_length_10mpa == pytest.approx(scales.dx * (state.contact_pressure > 10e6).sum())
-    assert state.contact_length_100mpa == pytest.approx(scales.dx * (state.contact_pressure > 100e6).sum())
+    assert state.contact_length == pytest.approx(scales.spacing * area.sum(), rel=1e-9)
+    assert state.contact_length_10mpa == pytest.approx(scales.spacing * (state.contact_pressure > 10e6).sum())
+    assert state.contact_length_100mpa == pytest.approx(
+        scales.spacing * (state.contact_pressure > 100e6).sum()
+    )
     np.testing.assert_array_equal(state.in_contact, state.contact_pressure > 10e6)
 
 

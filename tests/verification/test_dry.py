@@ -82,7 +82,7 @@ def test_parabola_and_quartic_with_its_order(tmp_path):
     assert observed_order(inside) > 1.9
     assert touching[-1] == pytest.approx(1.0, abs=0.005)
     s = found[-1][3].scales
-    assert s.dx * found[-1][3].pressure.sum() == pytest.approx(s.load, rel=1e-10)
+    assert s.spacing * found[-1][3].pressure.sum() == pytest.approx(s.load, rel=1e-10)
 
 
 class Wave:

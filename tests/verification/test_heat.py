@@ -26,7 +26,7 @@ def solved(name, *keys):
 def friction_of_both(simulation, state):
     """Mean of both walls' friction over the load."""
     shear = 0.5 * (state.shear_stress_2 - state.shear_stress_1)
-    return shear.sum() * simulation.scales.dx / state.load
+    return shear.sum() * simulation.scales.spacing / state.load
 
 
 # smooth and steady, by an independent dense solver: central and least film [um], and of the first one, whose
@@ -197,7 +197,7 @@ def surface_rise(simulation, fluxes, times, speed):
     s, steel = simulation.scales, Solid(46.0, 7850.0, 470.0)
     end, rise = times[-1], np.zeros(s.nx)
     points, weights = np.polynomial.legendre.leggauss(3)
-    lag = (np.arange(-(s.nx - 1), s.nx)) * s.dx
+    lag = (np.arange(-(s.nx - 1), s.nx)) * s.spacing
     for k in range(len(times) - 1):
         low, high = np.sqrt(end - times[k + 1]), np.sqrt(end - times[k])  # in sqrt(tau) nothing is singular
         for point, weight in zip(points, weights, strict=True):
@@ -206,7 +206,7 @@ def surface_rise(simulation, fluxes, times, speed):
             share = (end - tau - times[k]) / (times[k + 1] - times[k])
             q = (1.0 - share) * fluxes[k] + share * fluxes[k + 1]
             moved, width = lag - speed * tau, np.sqrt(4.0 * steel.diffusivity) * root
-            cell = erf((moved + 0.5 * s.dx) / width) - erf((moved - 0.5 * s.dx) / width)
+            cell = erf((moved + 0.5 * s.spacing) / width) - erf((moved - 0.5 * s.spacing) / width)
             kernel = 0.5 * cell / (np.sqrt(np.pi) * steel.effusivity * root)
             rise += 0.5 * (high - low) * weight * 2.0 * root * np.convolve(q, kernel)[s.nx - 1 : 2 * s.nx - 1]
     return rise

@@ -87,7 +87,7 @@ def test_rubbing_solids_heat_the_walls():
 def test_next_to_no_heat_does_not_divide_its_imbalance():
     """At a start from rest the heat is that of rounding."""
     zero, inlet = np.zeros(5), np.full(5, 363.0)
-    scales = SimpleNamespace(dx=1e-6, u_max=0.0, h=0.0, grid=SimpleNamespace(cell_size=1e-6))
+    scales = SimpleNamespace(spacing=1e-6, u_max=0.0, h=0.0, grid=SimpleNamespace(node_size=1e-6))
     steps = SimpleNamespace(scales=scales, rows=1, capacity=0.0, inlet=363.0)
     flux = np.full(5, 1e-6)
     film = Film(zero, zero, zero, inlet, *[zero] * 3, np.full(6, 1e4), zero)
@@ -129,7 +129,7 @@ def test_oil_and_pressure_flow_of_an_accepted_state(monkeypatch):
     _, film, _, spread, _ = found[-1]
     assert accepted.void_fraction.max() > 0.1
     np.testing.assert_allclose(film.left, 1.0 - accepted.void_fraction, atol=1e-12)
-    gradient = np.gradient(film.pressure, scales.dx)[1:-1]
+    gradient = np.gradient(film.pressure, scales.spacing)[1:-1]
     sigma = 0.5 * accepted.film_thickness[1:-1] * np.abs(gradient) / case.fluid.eyring_stress
     expected = np.log(np.sinh(sigma + 1e-9) / (sigma + 1e-9))
     assert expected.max() > 0.1

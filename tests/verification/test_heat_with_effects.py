@@ -40,7 +40,7 @@ def test_with_a_contact_model(model):
     assert sum(state.retries for state in states) == 0
     sliding = abs(simulation.scales.u1 - simulation.scales.u2)
     for state in states[1:]:
-        traction = 0.5 * (state.shear_stress_2 - state.shear_stress_1).sum() * simulation.scales.dx
+        traction = 0.5 * (state.shear_stress_2 - state.shear_stress_1).sum() * simulation.scales.spacing
         assert state.scalars["heat"] > abs(traction) * sliding * (1.0 - 1e-6)
     assert any(state.contact_pressure.max() > 0.0 for state in states)
     assert 5.0 < states[-1].film_temperature.max() - BULK < 400.0

@@ -85,7 +85,7 @@ def flow(case, scales, state, left):
     p = np.maximum(state.q[at], 0.0) * scales.p0
     film = state.h * scales.h
     rho, eta = density(p, fluid)[0], fluid.viscosity * np.exp(viscosity(p, fluid)[0])
-    gradient = (p[1] - p[0]) / scales.dx
+    gradient = (p[1] - p[0]) / scales.spacing
     h = np.cbrt(2.0 * film[at].prod() ** 2 / film[at].sum())
     factor = np.ones(2)
     if fluid.eyring_stress:
@@ -125,7 +125,9 @@ def test_oil_inflow_minus_outflow_equals_storage(rough):
         if begin is None:
             begin = last = stored(state)
             continue
-        assert scales.u * state.dt == pytest.approx(scales.dx, rel=1e-9)  # all that a node holds moves on
+        assert scales.u * state.dt == pytest.approx(
+            scales.spacing, rel=1e-9
+        )  # all that a node holds moves on
         inflow = last[0] + flow(case, scales, state, 0)
         outflow = last[-2] + flow(case, scales, state, scales.nx - 2)
         passed, gained, last = passed + inflow, gained + inflow - outflow, stored(state)
@@ -163,11 +165,11 @@ def test_pocket_between_two_contacts_conserves_its_oil(tmp_path):
     (tmp_path / "case.toml").write_text(text[: text.index("[surface.1]")] + RIDGES)
     simulation = Simulation(load(tmp_path / "case.toml", POCKET), options={"snes_atol": "1e-9"})
     case, scales = simulation.case, simulation.scales
-    front = round((first + apart) / scales.dx)  # nodes that the second ridge is behind
+    front = round((first + apart) / scales.spacing)  # nodes that the second ridge is behind
     contents, leak = [], 0.0
     for accepted in simulation:
         state, left = accepted.dimensionless, accepted.step - front
-        right = left + round(apart / scales.dx)
+        right = left + round(apart / scales.spacing)
         if left < 10 or not (accepted.in_contact[left - 2 : left + 2].all()):
             continue
         assert accepted.in_contact[right - 2 : right + 2].all()

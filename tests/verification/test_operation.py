@@ -239,7 +239,7 @@ def test_squeeze_film_of_an_approaching_cylinder():
 
     def sinking(_, h):
         gap = h[0] + y**2 / (2.0 * radius)
-        return [-load_ / (s.dx * (6.0 * radius * (gap**-2 - gap[0] ** -2)).sum())]
+        return [-load_ / (s.spacing * (6.0 * radius * (gap**-2 - gap[0] ** -2)).sum())]
 
     exact = solve_ivp(sinking, (0.0, end), [first], rtol=1e-9, atol=1e-12, dense_output=True).sol
     dt = end / 64

@@ -134,7 +134,7 @@ def test_near_inlet_starves_thick_films():
 def fluxes(simulation):
     """Mass flow through the faces behind each node along x, and those below each node and above the last."""
     s, solution = simulation.scales, simulation.dimensionless.solution
-    (n_y, n_x), (dy, dx), inputs = s.grid.shape, s.grid.steps, solution.inputs
+    (n_y, n_x), (dy, dx), inputs = s.grid.shape, s.grid.increments, solution.inputs
     reynolds = simulation.stepper.problem.reynolds
     at = reynolds.properties(solution.nodes.reynolds_unknown, solution.nodes.film, inputs.oil)
     constants, table = (s.h, *shear_constants(inputs, s), *reynolds.gap), inputs.flow_table

@@ -30,9 +30,9 @@ def test_ridge_at_the_contact_centre():
     for _ in scene.steps(count, arrival / count):
         pass
     # nothing of the ridge is lost where profiles come in
-    height = -scene.simulation.roughness.phi_after(s.x * s.a, scene.state.travelled, s.dx)
-    edges = erf((s.x[:, None] + 0.5 * s.dx / s.a * np.array([-1.0, 1.0])) / 0.1)  # of the cells
-    mean = 0.1e-6 * 0.05 * np.sqrt(np.pi) * (edges[:, 1] - edges[:, 0]) / (s.dx / s.a)
+    height = -scene.simulation.roughness.phi_after(s.x * s.a, scene.state.travelled, s.spacing)
+    edges = erf((s.x[:, None] + 0.5 * s.spacing / s.a * np.array([-1.0, 1.0])) / 0.1)  # of the cells
+    mean = 0.1e-6 * 0.05 * np.sqrt(np.pi) * (edges[:, 1] - edges[:, 0]) / (s.spacing / s.a)
     np.testing.assert_allclose(height, mean, atol=1e-12)
     found = {
         "film at the centre": scene.film[scene.centre],

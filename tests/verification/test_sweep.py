@@ -56,7 +56,7 @@ def test_sweeps_equal_newton(rough, step):
         stepper = simulation.stepper
         history = stepper.history(State(None, m=m, m_older=m_older, time=time, dt=dt_older), dt)
         scales, travelled = simulation.scales, simulation.operation.travelled(time + dt)
-        phi = simulation.roughness.phi_after(scales.x * scales.a, travelled, scales.dx) / scales.h
+        phi = simulation.roughness.phi_after(scales.x * scales.a, travelled, scales.spacing) / scales.h
         with simulation.options:
             found.append(
                 stepper.solver.solve(Unknowns(q, h, np.array([h00])), stepper.problem.inputs(phi, history))[0]

@@ -65,7 +65,7 @@ def solve(viscosity, speed, ratio, heated):
     simulation = Simulation(load(CASES / "table1_smooth.toml", keys + heat))
     [state] = list(simulation)
     scales = simulation.scales
-    shear = 0.5 * (state.shear_stress_2 - state.shear_stress_1).sum() * scales.dx
+    shear = 0.5 * (state.shear_stress_2 - state.shear_stress_1).sum() * scales.spacing
     film = state.film_thickness[np.abs(scales.x).argmin()]
     return Contact(film, state.h_min, shear / state.load, simulation)
 

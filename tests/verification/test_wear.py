@@ -23,7 +23,7 @@ def worn(*keys, after=None):
 def test_worn_volume_is_the_integral_of_the_solids_pressure_times_sliding(scale):
     keys = [f"surface.{side}.scale={scale}" for side in ("1", "2")]
     simulation, states = worn(f"wear.coefficient=[{K}, {3 * K}]", *keys)
-    sliding, dx = simulation.scales.u1 - simulation.scales.u2, simulation.scales.dx
+    sliding, dx = simulation.scales.u1 - simulation.scales.u2, simulation.scales.spacing
     work = sum(state.contact_pressure.sum() * dx * sliding * state.dt for state in states[1:])
     assert work > 0.0
     assert states[-1].wear_volume == pytest.approx(4.0 * K * work, rel=1e-10)
@@ -80,7 +80,7 @@ def test_nothing_wears_or_yields_for_good_before_time_0(keys, monkeypatch):
         assert found[0] == pytest.approx(end, rel=1e-12, abs=0.0)
         assert (np.diff(found, axis=0).sum(axis=0) > 0.0).all()
         before, end = simulation, found[-1]
-    sliding, dx = simulation.scales.u1 - simulation.scales.u2, simulation.scales.dx
+    sliding, dx = simulation.scales.u1 - simulation.scales.u2, simulation.scales.spacing
     work = sum(s.contact_pressure.sum() * dx * abs(sliding) * s.dt for s in states[1:])
     assert found[-1, 0] - found[0, 0] == pytest.approx(2.0 * K * work, rel=1e-10)
 

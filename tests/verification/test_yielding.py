@@ -52,7 +52,7 @@ def test_yielding_steps_pass_the_convergence_check(rough):
 def test_plastic_deformation_is_added_to_both_bodies(rough):
     simulation, states = rough
     scales, sets = simulation.scales, simulation.dimensionless.records["plastic_deformation"].depth
-    total = sum(added(simulation, state).sum() for state in states) * scales.h * scales.dx
+    total = sum(added(simulation, state).sum() for state in states) * scales.h * scales.spacing
     assert sum(one.volume for one in sets) == pytest.approx(total, rel=1e-12)
     assert sets[0].volume == pytest.approx(sets[1].volume, rel=1e-12)
 
@@ -129,9 +129,9 @@ def test_fully_plastic_pressure_is_uniform_over_the_load_width(share, mesh):
     """Far beyond yield the elastic rest at the edges is next to nothing: p_y over W/p_y."""
     simulation, state = pressed(share, mesh)
     bound = simulation.case.contact.yield_pressure[0]
-    flat = (state.pressure == state.pressure.max()).sum() * simulation.scales.dx
+    flat = (state.pressure == state.pressure.max()).sum() * simulation.scales.spacing
     assert state.pressure.max() == pytest.approx(bound, rel=1e-15)
-    assert flat == pytest.approx(simulation.scales.load / bound, abs=3.0 * simulation.scales.dx)
+    assert flat == pytest.approx(simulation.scales.load / bound, abs=3.0 * simulation.scales.spacing)
 
 
 @pytest.mark.slow
@@ -140,14 +140,14 @@ def test_pressure_converges_with_the_mesh_far_beyond_yield():
     meshes, finest = (25, 50, 100, 200, 400, 800), 1600
     simulation, state = pressed(2.0, finest)
     x, exact = simulation.scales.x, state.pressure
-    flat = (exact == exact.max()).sum() * simulation.scales.dx
+    flat = (exact == exact.max()).sum() * simulation.scales.spacing
     errors = []
     for mesh in meshes:
         simulation, state = pressed(2.0, mesh)
         scales = simulation.scales
         errors.append(np.abs(state.pressure - np.interp(scales.x, x, exact)).mean() / scales.p0)
-        width = (state.pressure == state.pressure.max()).sum() * scales.dx
-        assert abs(width - flat) < 3.0 * scales.dx, mesh
+        width = (state.pressure == state.pressure.max()).sum() * scales.spacing
+        assert abs(width - flat) < 3.0 * scales.spacing, mesh
     order = -np.polyfit(np.log(meshes), np.log(errors), 1)[0]
     assert order > 0.9 and errors[-1] < 1e-4, (order, errors)
 

@@ -70,7 +70,7 @@ class HeatStep:
         self.heat, self.fluid = case.heat, case.fluid
         s, self.bulk, self.inlet = self.scales, case.heat.bulk_temperature, case.heat.oil_inlet_temperature
         solids = map(Solid, self.heat.conductivity, self.heat.density, self.heat.heat_capacity)
-        dt = s.dt or 0.5 * s.dx / s.u_max
+        dt = s.dt or 0.5 * s.spacing / s.u_max
         self.bodies = [Body(solid, u, s.grid, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
         self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
         # of films that close the shear would heat without limit, and not at all once they are closed
@@ -134,7 +134,7 @@ class HeatStep:
             q = solution.nodes.reynolds_unknown
             solved, couette, pressure_heat, spread, gradient = self._flow(solution, heat)
             heat = heat._replace(guess=solved)
-            unit = self.capacity * s.u * s.h / s.dx
+            unit = self.capacity * s.u * s.h / s.spacing
             thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
             left, history = 1.0 + np.minimum(q, 0.0), solution.inputs.history
             old, last_step = record.film, (blank, blank)
@@ -166,7 +166,7 @@ class HeatStep:
         filled.fill(q, h, slice(0, len(q)), at)
         solved = filled.guess if isinstance(filled, FilmHeat) else guess
         s, table, max_flow = self.scales.grid, inputs.flow_table, self._max_flow(h, oil, inputs)
-        along, *across = (self._face_law(inputs, spacing) for spacing in reversed(s.steps))
+        along, *across = (self._face_law(inputs, spacing) for spacing in reversed(s.increments))
         of_faces = faces_in_rows(self.rows, at, along, table, oil, max_flow)
         couette, pressure_heat, spread, gradient = of_faces
         for law in across:
@@ -289,7 +289,7 @@ class HeatStep:
         turned = slice(None, None, -1 if speed < 0.0 else 1)
         beyond = limited(rise, following)[:, turned].ravel() * solution.mass * self.capacity * s.h
         rise = rise[:, turned].ravel()
-        return {"rate": rise * (abs(speed) / s.dx), "extrapolated": beyond}
+        return {"rate": rise * (abs(speed) / s.spacing), "extrapolated": beyond}
 
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], in a point contact [W], and the imbalance with what takes it, over it.
@@ -303,9 +303,9 @@ class HeatStep:
         missing = total - temperatures.fluxes[0].sum() - temperatures.fluxes[1].sum() - taken
         s = self.scales
         flow = np.abs(film.couette.reshape(self.rows, -1)).max(axis=1)
-        moved = np.maximum(flow, self.capacity * s.u_max * s.h / s.dx).sum()
+        moved = np.maximum(flow, self.capacity * s.u_max * s.h / s.spacing).sum()
         least = MIN_TEMPERATURE_RISE * (moved + film.stored.sum())
-        return s.grid.cell_size * total, abs(missing) / max(abs(total), least)
+        return s.grid.node_size * total, abs(missing) / max(abs(total), least)
 
 
 def _rubbed(

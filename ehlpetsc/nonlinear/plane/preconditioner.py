@@ -100,7 +100,7 @@ class SparseForm:
 
     def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray) -> None:
         """Assemble and factor for a state; arguments as of :func:`.screened_poisson.fill`."""
-        p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.steps)
+        p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.increments)
         is_split = len(self.parts) > 1
         blocks = np.empty((len(self.columns), self.block, self.block)) if is_split else self.parts[0]
         blocks[:] = 0.0
@@ -178,7 +178,7 @@ class Elimination:
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
         self.coarse_space = CoarseSpace(problem.deflection.kernel, problem.grid.periodic)
-        self.term = fitted_term(problem.deflection.stiffness, problem.grid.steps)
+        self.term = fitted_term(problem.deflection.stiffness, problem.grid.increments)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again

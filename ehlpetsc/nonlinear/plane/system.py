@@ -138,7 +138,7 @@ def plane_system(
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)
     transposition = RankTransposition(cuts, ranks) if ranks.size > 1 else None
     law = scales.stiffness, film_scale_of(case, scales, film_scale), grid.periodic
-    deflection = Deflection(grid.shape, grid.steps, *law, share.owned, transposition)
+    deflection = Deflection(grid.shape, grid.increments, *law, share.owned, transposition)
     problem = problem_of(case, scales, film_scale, share, deflection, has_sides, bound_tolerance)
     exchange = PlaneExchange(problem, ranks, grid.periodic)
     return PlaneFields(problem, exchange, PlaneMatrices(problem, exchange, ranks), comm)
