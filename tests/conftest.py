@@ -10,18 +10,19 @@ from ehlpetsc.base import environment
 
 environment.prepare()
 MPI_TESTS = Path(__file__).parent / "mpi"
-# files of two seconds of processor time and more, longest first. The first two compile post-processing and
-# the solver; those up to test_readme need neither, or three processes would compile the same at the same time
+# Files of two seconds of processor time and more, about longest first. The first two compile post-processing
+# and the solver, those up to test_report_page nothing, those up to test_stops but the first one nothing with
+# heat: processes would compile the same at the same time.
 DEAREST = """
-test_post_run test_compliant test_run_script test_packaging test_plot_series test_report_page test_case_fuzz
-test_derived_files test_output test_readme test_measured test_heat test_stops test_cases
-test_wear_against_fatigue test_series test_passes test_options test_operation test_figures test_sweep
-test_outputs test_yielding test_lives_with_effects test_lives_killed test_film_shear test_heat_runs
-test_extremes test_interruptions test_batch test_python test_heat_with_effects test_starts test_elasticity
-test_body_point_temperatures test_waviness test_gears test_mixed test_effects test_series_of_lives
-test_heat_state test_notebook test_compliant_runs test_heat_order test_plot test_rough test_rheology
-test_fuzz test_thermal_reduction test_stored_figures test_roughness test_post_histories test_post_criteria
-test_life test_newton test_asperities test_order test_dry test_ridge
+test_post_run test_compliant test_plot_series test_case_fuzz test_packaging test_output test_readme
+test_run_script test_derived_files test_report_page test_measured_gears test_wear_against_fatigue
+test_figures test_operation test_series test_stops test_measured test_heat test_cases test_passes
+test_options test_yielding test_waves test_lives_with_effects test_sweep test_body_point_temperatures
+test_lives_killed test_outputs test_extremes test_heat_runs test_film_shear test_batch test_interruptions
+test_python test_heat_with_effects test_starts test_elasticity test_waviness test_gears test_mixed
+test_effects test_heat_state test_notebook test_compliant_runs test_heat_order test_plot test_rough
+test_rheology test_fuzz test_thermal_reduction test_stored_figures test_roughness test_post_histories
+test_post_criteria test_life test_newton test_asperities test_order test_dry test_ridge
 """.split()
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)

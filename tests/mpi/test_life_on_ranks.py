@@ -3,8 +3,11 @@
 from pathlib import Path
 
 import pytest
+from mpi4py import MPI
 from support import COARSE_LIFE
+from support.work_shares import shared_out
 
+from ehlpetsc.base.errors import Stopped
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import run_life
 
@@ -16,37 +19,41 @@ SHORT = {
     "surface.2.scale": 1.0,
     "wear.coefficient": 1e-17,
 }
+LIVES = {
+    "line": {"mesh.points_per_half_width": 20},
+    "positions": {"time.pass_shift": 50e-6, "life.partners": 3},
+    "strip": {"mesh.width": 1.5},  # with rows for three ranks
+}
 
 
-@pytest.mark.parametrize(
-    "keys",
-    [
-        {"mesh.points_per_half_width": 20},
-        {"time.pass_shift": 50e-6, "life.partners": 3},
-        {"mesh.width": 1.5},  # a strip, with rows for three ranks
-    ],
-)
-def test_life_is_independent_of_the_number_of_ranks(keys, tmp_path):
-    from mpi4py import MPI
+def lived(name, folder, **ranks):
+    """Passes of a life of two rounds, positions solved in the first, profiles and damage of its bodies."""
+    case, path = load(CASE, SHORT | LIVES[name]), folder / f"{name}.life.h5"
+    life = run_life(case, path, most=2, unresolved=True, **ranks)
+    bodies = [(body.profile, body.damage) for both in life.bodies for body in both]
+    return life("passes").tolist(), life.rows[0]["solved"], bodies
 
-    world, case = MPI.COMM_WORLD, load(CASE, SHORT | keys)
-    folder = Path(world.bcast(str(tmp_path)))
-    # on each rank by itself
-    alone = run_life(case, folder / f"alone{world.rank}.life.h5", most=2, unresolved=True)
-    together = run_life(case, folder / "together.life.h5", most=2, comm=world, unresolved=True)
-    assert together.rows[0]["solved"] == keys.get("life.partners", 1)
-    assert together("passes").tolist() == alone("passes").tolist()
-    for both, others in zip(together.bodies, alone.bodies, strict=True):
-        for body, other in zip(both, others, strict=True):
-            assert body.profile == pytest.approx(other.profile, rel=1e-9)
-            assert body.damage == pytest.approx(other.damage, rel=1e-9)
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """Lives on one rank, by name."""
+    folder = tmp_path_factory.mktemp("alone")
+    return shared_out(lambda name: lived(name, folder), LIVES)
+
+
+@pytest.mark.several_ranks
+@pytest.mark.parametrize("name", LIVES)
+def test_life_is_independent_of_the_number_of_ranks(name, alone, tmp_path):
+    world = MPI.COMM_WORLD
+    passes, solved, bodies = lived(name, Path(world.bcast(str(tmp_path))), comm=world)
+    assert solved == LIVES[name].get("life.partners", 1)
+    assert passes == alone[name][0]
+    for (profile, damage), (profile_alone, damage_alone) in zip(bodies, alone[name][2], strict=True):
+        assert profile == pytest.approx(profile_alone, rel=1e-9)
+        assert damage == pytest.approx(damage_alone, rel=1e-9)
 
 
 def test_stop_in_one_position_ends_the_life_on_every_rank(tmp_path):
-    from mpi4py import MPI
-
-    from ehlpetsc.base.errors import Stopped
-
     world = MPI.COMM_WORLD
     case = load(CASE, SHORT | {"time.pass_shift": 50e-6, "life.partners": 3})
     folder = Path(world.bcast(str(tmp_path)))

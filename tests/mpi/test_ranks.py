@@ -9,6 +9,7 @@ import pytest
 petsc4py.init([])
 
 from mpi4py import MPI
+from support.work_shares import shared_out
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
@@ -50,10 +51,8 @@ MODELS = {
 
 @pytest.fixture(scope="module")
 def alone():
-    """What one rank finds, by model; the models are shared out to the ranks."""
-    world = MPI.COMM_WORLD
-    mine = {model: marched(MPI.COMM_SELF, model) for model in list(MODELS)[world.rank :: world.size]}
-    return {model: found for part in world.allgather(mine) for model, found in part.items()}
+    """Steps of one rank, by model."""
+    return shared_out(lambda model: marched(MPI.COMM_SELF, model), MODELS)
 
 
 def marched(comm, model):
@@ -69,6 +68,7 @@ def marched(comm, model):
     )
 
 
+@pytest.mark.several_ranks
 @pytest.mark.parametrize("model", MODELS)
 def test_rough_run_is_independent_of_the_number_of_ranks(model, alone):
     pressure, film, touching, newton, volume = marched(MPI.COMM_WORLD, model)
