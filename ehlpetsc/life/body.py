@@ -32,18 +32,24 @@ class Rates(NamedTuple):
     volume: float
     slopes: tuple = (0.0, 0.0, 0.0)
 
-    def continued(self, before: tuple[np.ndarray, np.ndarray, float], passes: int) -> Rates:
+    def continued(
+        self, before: tuple[np.ndarray, np.ndarray, float], passes: int, column_area: float
+    ) -> Rates:
         """Rates with the slopes since a previous round.
 
-        No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes.
+        No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes. The worn volume of
+        the columns changes as their wear does, also where this limits it.
 
-        `before`: rates of that round. `passes`: since it.
+        `before`: rates of that round. `passes`: since it. `column_area`: of a column, over the width of the
+        body across [m].
         """
         slopes = []
         new: Any
-        for new, old in zip((self.wear, self.damage, self.volume), before, strict=True):
-            bound = new / (MAX_EXTRAPOLATION * passes)
+        beyond, beyond_before = (volume - column_area * wear.sum() for wear, _, volume in (self[:3], before))
+        for new, old in zip((self.wear, self.damage, beyond), (*before[:2], beyond_before), strict=True):
+            bound = np.abs(new) / (MAX_EXTRAPOLATION * passes)
             slopes.append(np.clip((new - old) / passes, -bound, bound))
+        slopes[2] += column_area * slopes[0].sum()
         return self._replace(slopes=tuple(slopes))
 
     def after(self, passes: float) -> tuple:
@@ -150,6 +156,11 @@ class LifeBody(NamedTuple):
         """Widths of the columns across, if there are rows, and along [m]."""
         across = float(self.y[1] - self.y[0]) if self.y.size > 1 else np.inf
         return *(across,) * bool(self.y.size), float(self.s[1] - self.s[0])
+
+    @property
+    def column_area(self) -> float:
+        """Area of a column, of a strip over its width [m]."""
+        return self.widths[-1] / max(self.y.size, 1)
 
     @property
     def largest_damage(self) -> float:

@@ -157,7 +157,7 @@ class Jumps:
         rates, max_passes = solved_round.rates(bodies), self.passes - done
         if before:
             rates = tuple(
-                rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before)
+                rate.continued((body.wear_rate, body.damage_rate, body.volume_rate), before, body.column_area)
                 for rate, body in zip(rates, bodies, strict=True)
             )
             max_passes = min(max_passes, int(MAX_EXTRAPOLATION * before))

@@ -84,9 +84,11 @@ def test_sum_below_the_amount_is_never_reached():
 
 def test_rates_are_extrapolated_without_change_of_sign():
     rates = Rates(np.array([3.0, 1.0, 1.0]), np.zeros((1, 3)), 2.0)
-    found = rates.continued((np.array([2.0, 0.9, 9.0]), np.zeros((1, 3)), 2.0), 10)
+    found = rates.continued((np.array([2.0, 0.9, 9.0]), np.zeros((1, 3)), 2.0), 10, column_area=0.1)
     assert found.slopes[0] == pytest.approx([0.1, 0.01, -1.0 / (MAX_EXTRAPOLATION * 10)])
-    assert found.after(20)[0] == pytest.approx([80.0, 22.0, 10.0]) and found.after(20)[2] == 40.0
+    assert found.after(20)[0] == pytest.approx([80.0, 22.0, 10.0])
+    beyond = 20 * 1.5 + 200 * (1.5 - 0.81) / 10  # the columns
+    assert found.after(20)[2] == pytest.approx(0.1 * 112.0 + beyond)
 
 
 def test_wear_and_damage_converge_at_second_order():

@@ -188,7 +188,8 @@ def _greatest_shear(points: np.ndarray, centre: np.ndarray, k: int, least: float
         inside = sqrt(d * d + t * t)  # the deviator is (u/3 + d, -2u/3, u/3 - d) and t
         return max(inside, (u + inside) / 2)
     u, d = points[0, k] - centre[0], (points[1, k] - centre[1]) / root
-    txz, txy, tyz = (points[2:, k] - centre[2:]) / root
+    txz, txy = (points[2, k] - centre[2]) / root, (points[3, k] - centre[3]) / root
+    tyz = (points[4, k] - centre[4]) / root  # without arrays, whose allocation would take longest
     x, y, z = u / 3 + d, -2 * u / 3, u / 3 - d
     second = (x * x + y * y + z * z) / 2 + txz * txz + txy * txy + tyz * tyz
     third = x * (y * z - tyz * tyz) - txy * (txy * z - tyz * txz) + txz * (txy * tyz - y * txz)
