@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid
     from ehlpetsc.discretisation.step_inputs import Oil
 
-AMBIENT = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
+OF_PRESSURE = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
 
 
 class NoOil:
@@ -152,7 +152,7 @@ class Reynolds(NoOil):
         for has_side, beyond, last in ((has_lower, 0, 1), (has_upper, -1, -2)):
             if has_side:
                 at[:, beyond] = at[:, last]
-                at[AMBIENT, beyond] = at[AMBIENT, last, n_x:]
+                at[OF_PRESSURE, beyond] = at[OF_PRESSURE, last, n_x:]
         return at.reshape(oil.rows, -1)
 
     def face_law(self, inputs: StepInputs, spacing: float) -> tuple:

@@ -113,7 +113,6 @@ class NewtonSolver:
 
     def _set_jacobian(self, snes: PETSc.SNES) -> None:
         snes.setJacobian(weakly(self._jacobian), self.system.operator, self.system.preconditioned)
-        self.system.matrices.attach(snes.ksp)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
         # the first residual is that of the guess, already evaluated unless SNESVI projects it onto the bounds

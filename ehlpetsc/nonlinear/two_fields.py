@@ -13,7 +13,7 @@ import weakref
 from collections.abc import Iterator
 from copy import copy
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -112,24 +112,25 @@ STEP_LIMIT = 0.3  # p0: largest change of pressure in one Newton step
 FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the expected film
 
 
-class Matrices(Protocol):
+class Matrices:
     """Jacobian and preconditioner of a kind of contact.
 
     `keeps_factors`: whether :meth:`keep` is of use.
     `linear_atol`: absolute tolerance of the linear residual over that of Newton's method.
     """
 
-    keeps_factors: bool
-    linear_atol: float
+    keeps_factors = False
+    linear_atol = 1e-2
+
+    def __init__(self, problem: EHLProblem, exchange: Any, ranks: MPI.Comm):
+        self.problem, self.exchange, self.ranks = problem, exchange, ranks
 
     def jacobian(self, ksp: PETSc.KSP) -> Jacobian:
         """Matrix-free Jacobian, context of a Python matrix, for a Krylov solver with its options."""
+        raise NotImplementedError
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> Any:
         """Matrix for preconditioners in place of the Jacobian itself; None: none."""
-
-    def attach(self, ksp: PETSc.KSP) -> None:
-        """Set up the preconditioner of a Krylov solver."""
 
     def begin_solve(self) -> None:
         """Called at the start of each nonlinear solve."""

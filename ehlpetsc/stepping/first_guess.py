@@ -19,7 +19,7 @@ from ehlpetsc.physics.grid import Grid
 
 SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep
 MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum
-AMBIENT = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
+AMBIENT_PRESSURE = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
 MAX_ITERATIONS = 1000  # of the projected gradient method
 STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
 BISECTIONS = 60  # of an interval, down to rounding
@@ -56,9 +56,9 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
     raised = problem.model.start_film(thick * film) - h.min()
     h += raised
     oil, w = problem.model.oil_start(p, h)
-    behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT)
+    behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT_PRESSURE)
     entrained = film + np.repeat(grid.rows(h).min(axis=1) - h.min(), len(grid.x))  # beside the contact more
-    q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
+    q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT_PRESSURE))
     return Unknowns(q, w, problem.balance.uniform(raised))
 
 
@@ -144,7 +144,7 @@ def bounded_start(problem: EHLProblem, film: float, inputs: StepInputs, smoothin
         p = smoothed_over(problem.grid, p, smoothing * film ** (2.0 / 3.0))
     depth[p < limit * (1.0 - 1e-9)] = 0.0
     h = np.maximum(problem.film(p, border, undeformed_gap(problem, inputs)) + depth, lowest)
-    behind = (rows(problem.x) > edge[:, None]).ravel() & (p < AMBIENT)
+    behind = (rows(problem.x) > edge[:, None]).ravel() & (p < AMBIENT_PRESSURE)
     oil, w = model.oil_start(p + depth / model.compliance, h)
-    q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(oil, AMBIENT))
+    q = np.where(behind, np.minimum(lowest / h - 1.0, 0.0), np.maximum(oil, AMBIENT_PRESSURE))
     return Unknowns(q, w, border)

@@ -22,7 +22,7 @@ from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
 from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 
-SPEED_ROUNDING = 1e-9  # of the scales' speed: a slower film is at rest
+REST_SPEED = 1e-9  # of the scales' speed: a slower film is at rest
 RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
 LAST_OF_RAMP = 0.15  # of it: what a mesh does itself that takes its state from a coarser one
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
@@ -145,7 +145,7 @@ class TimeStepping:
         At rest the inlet is where the film last came from.
         """
         direction = inputs.conditions.entrainment
-        if abs(direction) < SPEED_ROUNDING * self.scales.u and inputs.history is not None:
+        if abs(direction) < REST_SPEED * self.scales.u and inputs.history is not None:
             direction = inputs.history.moved
         if direction >= 0.0:
             unknowns, iterations = solve(inputs, guess)

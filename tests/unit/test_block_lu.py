@@ -8,9 +8,9 @@ from ehlpetsc.nonlinear.line.block_lu import (
     FROM_LEFT,
     FROM_RIGHT,
     LEFT,
-    LINE,
     RIGHT,
     SIZE,
+    STRIDE,
     WIDTH,
     BlockLU,
     backward_transposed,
@@ -19,14 +19,14 @@ from ehlpetsc.nonlinear.line.block_lu import (
 
 
 def by_columns(rows):
-    columns = np.zeros((len(rows), WIDTH, LINE))
+    columns = np.zeros((len(rows), WIDTH, STRIDE))
     columns[:, :, :SIZE] = rows.transpose(0, 2, 1)
     return columns
 
 
 def solved(lu, b, first=0):
     """Solution for `b` (groups, SIZE); what stands in the room behind them must not matter."""
-    room = np.full((len(b), LINE), 7.0)
+    room = np.full((len(b), STRIDE), 7.0)
     room[:first], room[:, :SIZE] = 0.0, b
     lu.solve(room.ravel(), first)
     return room[:, :SIZE]
@@ -47,7 +47,7 @@ def test_compiled_sizes_equal_group_sizes():
     assert LEFT == TERMS + GROUP + 2  # sums, pressures and, upwind, two films
     assert RIGHT == LEFT and FROM_RIGHT == SIZE - FROM_LEFT - RIGHT  # the same from the right end
     assert len(FILMS) == GROUP
-    assert LINE == 12 >= SIZE  # what take_off takes off
+    assert STRIDE == 12 >= SIZE  # what take_off takes off
 
 
 @pytest.mark.parametrize("groups", [1, 2, 30])
@@ -67,7 +67,7 @@ def test_block_lu_solves(groups, sparse):
         b[:first] = 0.0
         expected = np.linalg.solve(matrix, b.ravel())
         found = solved(lu, b, first)
-        solution, coefficients = np.zeros((2, groups, LINE))
+        solution, coefficients = np.zeros((2, groups, STRIDE))
         solution[:, :SIZE], coefficients[:, :SIZE] = b, rng.standard_normal(b.shape)
         forward(lu.factors, solution.ravel(), first)
         product = (coefficients[:, :SIZE] * found).sum()

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from ehlpetsc.base.compiled import inlined
 
-KINDS = PARABOLA, INSULATED, APART = 0, 1, 2  # in the order in which the oil gets colder
+EXCHANGE_KINDS = PARABOLA, INSULATED, APART = 0, 1, 2  # in the order in which the oil gets colder
 MAX_SPLIT = 30.0  # of d, walls thousands of kelvins apart: beyond, in first iterations, its sinh may overflow
 NO_FLUX = 1e-9  # K: difference of temperature whose heat flux is rounding
 

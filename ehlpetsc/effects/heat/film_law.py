@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.effects.heat.exchange import KINDS, Exchange, exchange_of, fluxes, holds, split
+from ehlpetsc.effects.heat.exchange import EXCHANGE_KINDS, Exchange, exchange_of, fluxes, holds, split
 from ehlpetsc.effects.heat.film_oil import FilmLaw, NodeOil, oil_at
 from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
 from ehlpetsc.physics.rheology import flow_stress
@@ -147,7 +147,7 @@ def film_temperature(
     oil = oil_at(p, h, left, spread, middle, reference, law)
     t, y = start
     found = FilmTemperature(t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t, y, t)
-    for kind in KINDS:
+    for kind in EXCHANGE_KINDS:
         exchange = exchange_of(kind, oil.r, walls)
         if oil.speed == 0.0:
             found = _unsheared(balance, oil, exchange)

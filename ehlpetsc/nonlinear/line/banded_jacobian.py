@@ -17,7 +17,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE
-from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, LINE, SIZE, WIDTH
+from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, SIZE, STRIDE, WIDTH
 from ehlpetsc.nonlinear.line.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
 
@@ -77,7 +77,7 @@ class BandedJacobian:
     `groups`, `size`: local groups, and the room that their unknowns take.
     `dofs`: numbers of the unknowns (q, h, q, h, ...) of the local nodes, shape (2 nodes,).
     `end_groups`: numbers of the unknowns of the first and of the last group, and of the room behind them,
-        shape (2, LINE).
+        shape (2, STRIDE).
     `entries`: of the state last filled in.
     `dense`: of the same state: deflection at both end nodes that the band lacks, and the load, shape (3,
         size).
@@ -89,11 +89,11 @@ class BandedJacobian:
         self.rates, self.weights = exponentials(problem.deflection.curvature, 1.0 / problem.dx)
         self.groups = -(-len(self.nodes) // GROUP)
         self.is_mirrored = problem.first > 0 and problem.last == problem.n
-        self.size = self.groups * LINE
+        self.size = self.groups * STRIDE
         self.dofs = np.stack([self._pressure(self.nodes), self._film(self.nodes)], axis=1).ravel()
-        self.end_groups = np.stack([np.arange(LINE), np.arange(self.size - LINE, self.size)])
+        self.end_groups = np.stack([np.arange(STRIDE), np.arange(self.size - STRIDE, self.size)])
         self.values = np.zeros(self.size * WIDTH + 1)  # the last one: entries that do not exist
-        self.columns = self.values[:-1].reshape(self.groups, WIDTH, LINE)
+        self.columns = self.values[:-1].reshape(self.groups, WIDTH, STRIDE)
         self._recurrences()
         self._padding()
         self._under_films()
@@ -112,7 +112,7 @@ class BandedJacobian:
         """Number of the k-th unknown of a group; from the right end of the mesh where mirrored."""
         if self.is_mirrored:
             group, k = self.groups - 1 - group, SIZE - 1 - k
-        return group * LINE + k
+        return group * STRIDE + k
 
     def _sums(self, group: np.ndarray) -> np.ndarray:
         """Numbers of the sums of groups, one row each."""
@@ -128,12 +128,12 @@ class BandedJacobian:
 
     def _index_of(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
         """Index of an entry in `values`; the last one where it does not exist."""
-        (group, r), (other, c) = np.divmod(row, LINE), np.divmod(column, LINE)
+        (group, r), (other, c) = np.divmod(row, STRIDE), np.divmod(column, STRIDE)
         coupled = np.abs(other - group) <= 1
         starts = np.choose(
             np.where(coupled, other - group + 1, 1), [-FROM_LEFT, LEFT, LEFT + SIZE - FROM_RIGHT]
         )
-        return np.where(coupled, (group * WIDTH + starts + c) * LINE + r, self.values.size - 1)
+        return np.where(coupled, (group * WIDTH + starts + c) * STRIDE + r, self.values.size - 1)
 
     def _recurrences(self) -> None:
         p, groups = self.problem, np.arange(self.groups)
@@ -228,7 +228,7 @@ class BandedJacobian:
 
         `inactive_nodes`: local nodes whose second unknown is not in the system.
 
-        Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, LINE).
+        Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, STRIDE).
         """
         self._fill_deflection(entries)
         put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)

@@ -7,7 +7,7 @@ Rows are exchanged within a block alone. L contains some of the unknowns of the 
 group behind. A solve is three products of small matrices with vectors in each group, a sixth of the time of
 LAPACK's substitution in a band; the factors take half as long as LAPACK's.
 
-All matrices are stored by columns, each with room for `LINE` numbers, three vectors of the processor. Numba
+All matrices are stored by columns, each with room for `STRIDE` numbers, three vectors of the processor. Numba
 vectorises a loop only where it can exclude that a written number is read again: :func:`subtract_product` and
 :func:`subtract_column` read four numbers before they write any. Loops count in unsigned numbers or to
 constants: indices that may be negative, and short loops of unknown length, take twice as long. Numba caches
@@ -22,7 +22,7 @@ from scipy.linalg.lapack import dgbtrf, dgbtrs
 from ehlpetsc.base.compiled import compiled, unsigned
 
 SIZE = 11  # unknowns of a group
-LINE = 12  # room for them
+STRIDE = 12  # room for them
 LEFT, FROM_LEFT = 9, 2  # unknowns of the group before that the rows contain, and the first of them
 RIGHT, FROM_RIGHT = 9, 0  # those of the group behind: one more than it has, for the mirrored order
 WIDTH, CUT = LEFT + SIZE + RIGHT, LEFT + RIGHT
@@ -34,14 +34,14 @@ ONE, TWO, THREE, FOUR = (unsigned(k) for k in (1, 2, 3, 4))
 class BlockLU:
     """Factors of one matrix, and room for them.
 
-    `inverses`: columns of the inverse of S, shape (groups, SIZE, LINE).
-    `upper`: columns of W, of the last group too, shape (groups, RIGHT, LINE).
+    `inverses`: columns of the inverse of S, shape (groups, SIZE, STRIDE).
+    `upper`: columns of W, of the last group too, shape (groups, RIGHT, STRIDE).
     `factors`: for :func:`forward` and :func:`backward`: the matrix, both of these and room, in one dimension.
     """
 
     def __init__(self, groups: int):
-        self.inverses, self.upper = np.zeros((groups, SIZE, LINE)), np.zeros((groups, RIGHT, LINE))
-        self._work, self._column = np.empty((SIZE + RIGHT) * LINE), np.empty(LINE)
+        self.inverses, self.upper = np.zeros((groups, SIZE, STRIDE)), np.zeros((groups, RIGHT, STRIDE))
+        self._work, self._column = np.empty((SIZE + RIGHT) * STRIDE), np.empty(STRIDE)
         self._free, self._pivots = np.empty(SIZE), np.empty(SIZE, dtype=unsigned)
 
     def factor(self, columns: np.ndarray) -> None:
@@ -49,14 +49,14 @@ class BlockLU:
 
         `columns`: what the rows of each group have of the group before, of their own and of the group behind,
             by columns; to be left as it is while solves follow. What the first group has of one before is not
-            looked at, and what the last one has of one behind enters W alone, shape (groups, WIDTH, LINE).
+            looked at, and what the last one has of one behind enters W alone, shape (groups, WIDTH, STRIDE).
         """
         room = self._work, self._column, self._free, self._pivots
         self.factors = columns.ravel(), self.inverses.ravel(), self.upper.ravel(), self._column
         factor(*self.factors[:3], *room)
 
     def solve(self, b: np.ndarray, first: int = 0) -> None:
-        """Solve in place for `b` (groups * LINE,), whose groups before `first` are zero."""
+        """Solve in place for `b` (groups * STRIDE,), whose groups before `first` are zero."""
         forward(self.factors, b, first)
         backward(self.factors, b)
 
@@ -65,7 +65,7 @@ class BlockLU:
 def subtract_product(
     y: np.ndarray, i: int, matrix: np.ndarray, j: int, x: np.ndarray, k: int, count: int
 ) -> None:
-    """Subtract the product of columns of a matrix with `x[k : k + count]` from `y[i : i + LINE]`.
+    """Subtract the product of columns of a matrix with `x[k : k + count]` from `y[i : i + STRIDE]`.
 
     The columns start at `matrix[j]`. Four sums at a time stay in a register of the processor.
     """
@@ -73,7 +73,7 @@ def subtract_product(
         here, column = i + chunk * FOUR, j + chunk * FOUR
         a, b, c, d = y[here], y[here + ONE], y[here + TWO], y[here + THREE]
         for n in range(unsigned(count)):
-            value, at = x[k + n], column + n * unsigned(LINE)
+            value, at = x[k + n], column + n * unsigned(STRIDE)
             a, b = a - value * matrix[at], b - value * matrix[at + ONE]
             c, d = c - value * matrix[at + TWO], d - value * matrix[at + THREE]
         y[here], y[here + ONE], y[here + TWO], y[here + THREE] = a, b, c, d
@@ -81,7 +81,7 @@ def subtract_product(
 
 @compiled(fastmath=FAST)
 def subtract_column(y: np.ndarray, i: int, column: np.ndarray, factor: float) -> None:
-    """Subtract a column times a factor from `y[i : i + LINE]`."""
+    """Subtract a column times a factor from `y[i : i + STRIDE]`."""
     for chunk in range(THREE):
         k = chunk * FOUR
         a, b = y[i + k] - factor * column[k], y[i + k + ONE] - factor * column[k + ONE]
@@ -100,11 +100,15 @@ def factor(
     pivots: np.ndarray,
 ) -> None:
     """Fill in the inverses of S and W; see :class:`BlockLU`."""
-    line, size, right = unsigned(LINE), unsigned(SIZE), unsigned(RIGHT)
-    for i in range(unsigned(len(inverses) // (SIZE * LINE))):
-        left = i * unsigned(WIDTH * LINE)
-        diagonal_block, inverse, upper_block = left + unsigned(LEFT * LINE), i * size * line, i * right * line
-        for j in range(unsigned((SIZE + RIGHT) * LINE)):
+    line, size, right = unsigned(STRIDE), unsigned(SIZE), unsigned(RIGHT)
+    for i in range(unsigned(len(inverses) // (SIZE * STRIDE))):
+        left = i * unsigned(WIDTH * STRIDE)
+        diagonal_block, inverse, upper_block = (
+            left + unsigned(LEFT * STRIDE),
+            i * size * line,
+            i * right * line,
+        )
+        for j in range(unsigned((SIZE + RIGHT) * STRIDE)):
             work[j] = columns[diagonal_block + j]
         if i > 0:
             before = upper_block - right * line
@@ -129,7 +133,7 @@ def eliminate(a: np.ndarray, column: np.ndarray, free: np.ndarray, pivots: np.nd
     A pivot that is zero is taken for one: a preconditioner may be off where the operator is singular, but
     must not be infinite.
     """
-    line, size = unsigned(LINE), unsigned(SIZE)
+    line, size = unsigned(STRIDE), unsigned(SIZE)
     free[:] = 1.0
     for k in range(size):
         here, pivot, largest = k * line, unsigned(0), -1.0
@@ -152,10 +156,10 @@ def eliminate(a: np.ndarray, column: np.ndarray, free: np.ndarray, pivots: np.nd
 
 @compiled(fastmath=FAST)
 def forward(factors: tuple, b: np.ndarray, first: int) -> None:
-    """Replace `b` (groups * LINE,), whose groups before `first` are zero, by y, in place."""
+    """Replace `b` (groups * STRIDE,), whose groups before `first` are zero, by y, in place."""
     columns, inverses, _, minus_b = factors
-    line = unsigned(LINE)
-    groups = unsigned(len(b) // LINE)
+    line = unsigned(STRIDE)
+    groups = unsigned(len(b) // STRIDE)
     for i in range(unsigned(first), groups):
         here = i * line
         if i > first:
@@ -169,8 +173,8 @@ def forward(factors: tuple, b: np.ndarray, first: int) -> None:
 @compiled(fastmath=FAST)
 def backward(factors: tuple, b: np.ndarray) -> None:
     """Replace y by x, in place: the last group is left as it is."""
-    upper, line = factors[2], unsigned(LINE)
-    groups = unsigned(len(b) // LINE)
+    upper, line = factors[2], unsigned(STRIDE)
+    groups = unsigned(len(b) // STRIDE)
     for done in range(ONE, groups):
         i = groups - ONE - done
         behind = (i + ONE) * line + unsigned(FROM_RIGHT)
@@ -179,9 +183,9 @@ def backward(factors: tuple, b: np.ndarray) -> None:
 
 @compiled(fastmath=FAST)
 def backward_transposed(upper: np.ndarray, b: np.ndarray) -> None:
-    """Replace the coefficients `b` of x (3, groups * LINE) by the equivalent ones of y, in place."""
-    line, (first, second, third) = unsigned(LINE), (b[0], b[1], b[2])
-    for i in range(unsigned(b.shape[1] // LINE) - ONE):
+    """Replace the coefficients `b` of x (3, groups * STRIDE) by the equivalent ones of y, in place."""
+    line, (first, second, third) = unsigned(STRIDE), (b[0], b[1], b[2])
+    for i in range(unsigned(b.shape[1] // STRIDE) - ONE):
         here, behind = i * line, (i + ONE) * line + unsigned(FROM_RIGHT)
         for c in range(unsigned(RIGHT)):
             column, k = (i * unsigned(RIGHT) + c) * line, behind + c

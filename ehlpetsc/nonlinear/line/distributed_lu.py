@@ -28,8 +28,8 @@ from ehlpetsc.nonlinear.line.block_lu import (
     CUT,
     FAST,
     LEFT,
-    LINE,
     SIZE,
+    STRIDE,
     BlockLU,
     ReducedSystem,
     backward,
@@ -106,10 +106,10 @@ class DistributedLU:
     def _columns_at_cuts(self, left: int, right: int) -> tuple:
         """G of an inner rank, W of the group at the cut of an outer one."""
         if self.ranks.size == 1:
-            return np.zeros((0, LINE))
+            return np.zeros((0, STRIDE))
         if self._is_outer:
             return np.ascontiguousarray(self._lu.upper[-1][self._in_mesh_order])
-        g = np.zeros((CUT, self.band.groups, LINE))
+        g = np.zeros((CUT, self.band.groups, STRIDE))
         g[:LEFT, 0], g[LEFT:, -1] = left, right
         g = g.reshape(CUT, -1)
         for k, column in enumerate(g):
@@ -199,9 +199,9 @@ def begin_coupling(
                 mine[k, CUT + row] += dense[row, size - width + i] * g[k, i]
     ends[:] = 0.0
     for k in range(2):
-        first = size // LINE
+        first = size // STRIDE
         if end_dofs[k] >= 0:
-            ends[k, end_dofs[k]], first = 1.0, end_dofs[k] // LINE
+            ends[k, end_dofs[k]], first = 1.0, end_dofs[k] // STRIDE
         begin(is_outer, lu, cuts[:2], ends[k], first, mine[CUT + k])
     exchange(collective, messages)
 

@@ -13,7 +13,7 @@ from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.preconditioner import Factors, FarFieldBand
 from ehlpetsc.nonlinear.ranks import LineExchange, first_nodes
-from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, TwoFields
+from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
@@ -33,18 +33,19 @@ def line_problem(
     return problem_of(case, scales, film_scale, share, deflection, bound_tolerance=bound_tolerance)
 
 
-class LineMatrices:
+class LineMatrices(Matrices):
     """Block tridiagonal factors with the far deflection, or an assembled matrix for PETSc's preconditioners.
+
+    A band is factored in less time than it takes to keep it.
 
     `near_field`: nodes of deflection on either side in the assembled matrix.
     """
 
-    keeps_factors = False  # a band is factored in less time than it takes to keep it
-    linear_atol = 1e-2
+    factors: Factors | None = None
 
     def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
-        self.problem, self.exchange, self.ranks, self.near_field = problem, exchange, ranks, near_field
-        self.factors: Factors | None = None
+        super().__init__(problem, exchange, ranks)
+        self.near_field = near_field
 
     def jacobian(self, ksp: PETSc.KSP) -> JacobianOperator:
         """See :class:`.two_fields.Matrices`."""
@@ -57,12 +58,6 @@ class LineMatrices:
             return None
         matrix = PETSc.Mat().createAIJ((sizes, sizes), comm=ksp.comm)
         return NearFieldMatrix(self.problem, self.near_field, matrix)
-
-    def attach(self, ksp: PETSc.KSP) -> None:
-        """See :class:`.two_fields.Matrices`; the options name the preconditioner."""
-
-    def keep(self, jacobian: JacobianOperator) -> None:
-        """See :class:`.two_fields.Matrices`."""
 
     def begin_solve(self) -> None:
         """See :class:`.two_fields.Matrices`."""

@@ -7,12 +7,11 @@ import ctypes
 from typing import TYPE_CHECKING
 
 import numpy as np
-from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.contact import film_scale_of
 from ehlpetsc.discretisation.contact.node_state import full_of_oil
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
+from ehlpetsc.discretisation.ehl_problem import problem_of
 from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.unknowns import pairs
@@ -21,13 +20,13 @@ from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, HeldFilms, settl
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination
 from ehlpetsc.nonlinear.ranks import all_ranks, global_max
-from ehlpetsc.nonlinear.two_fields import FILM_AFTER_RELEASE, ZERO_TOLERANCE, TwoFields
+from ehlpetsc.nonlinear.two_fields import FILM_AFTER_RELEASE, ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
 
-STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities half as many iterations again
+ELASTIC_STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities half as many iterations again
 MANY_CHANGED = 0.1  # of the nodes: too many to settle their pressures after an iteration
 OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more
 
@@ -36,26 +35,17 @@ OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more
 RETURNING = ((-3, 1 << 22), (-4, 1 << 16), (-1, 1 << 26))
 
 
-class PlaneMatrices:
+class PlaneMatrices(Matrices):
     """Matrix-free Jacobian; the preconditioner around that of the user's options."""
 
     keeps_factors = True
     linear_atol = 0.1  # an iteration costs a convolution
-
-    def __init__(self, problem: EHLProblem, exchange: PlaneExchange, ranks: MPI.Comm):
-        self.problem, self.exchange, self.ranks = problem, exchange, ranks
-        self.elimination: Elimination | None = None
+    elimination: Elimination | None = None
 
     def jacobian(self, ksp: PETSc.KSP) -> PlaneJacobian:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
         self.elimination = Elimination(self.problem, self.ranks, ksp.comm)
         return PlaneJacobian(self.problem, self.exchange, self.ranks, self.elimination, ksp.rtol)
-
-    def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; none."""
-
-    def attach(self, ksp: PETSc.KSP) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`; the options name the preconditioner."""
 
     def begin_solve(self) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
@@ -87,9 +77,9 @@ class PlaneFields(TwoFields):
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
         pressure, new = self.contact.pressure(*now.T), self.contact.pressure(*(now - step).T)
         highest = global_max(self.ranks, pressure.max())
-        excess = np.abs(new - pressure).max() / max(STEP_LIMIT, OF_HIGHEST * highest)
+        excess = np.abs(new - pressure).max() / max(ELASTIC_STEP_LIMIT, OF_HIGHEST * highest)
         if self.inputs.history is None and self.problem.fluid is not None:
-            excess = max(excess, np.abs(of_oil).max() / STEP_LIMIT)
+            excess = max(excess, np.abs(of_oil).max() / ELASTIC_STEP_LIMIT)
         excess = global_max(self.ranks, excess)
         given = pairs(y.array, self.local)
         if excess > 1.0:
