@@ -23,10 +23,8 @@ class Kind(NamedTuple):
 
     Parts, ``module:name``, each loaded where it is used, so that a kind loads no module of another one:
     `geometry`: a :class:`ehlpetsc.physics.geometry.Geometry`.
-    `surface`: rough surface of a case, its scales, the table of the surface and its passage.
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.scheme.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
-    `words`: of the summary, :class:`ehlpetsc.run.explain.Words`.
     `sweeps`: solver by the paper's sweeps; "": none.
     """
 
@@ -34,10 +32,8 @@ class Kind(NamedTuple):
     radii: str
     is_areal: bool
     geometry: str
-    surface: str
     system: str
     linear_solver: str
-    words: str
     sweeps: str = ""
 
     @property
@@ -57,27 +53,22 @@ KINDS = {
         radii=" in a line contact or a strip, of one radius",
         is_areal=False,
         geometry="physics.geometry:LINE",
-        surface="surfaces.roughness:moving_profile",
         system="nonlinear.line.system:line_system",
         linear_solver="nonlinear.options:line_solver",
-        words="run.explain:LINE",
         sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
     )
 }
 KINDS["strip"] = KINDS["line"]._replace(
     is_areal=True,
     geometry="physics.geometry:STRIP",
-    surface="surfaces.roughness:moving_map",
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
-    words="run.explain:STRIP",
     sweeps="",
 )
 KINDS["point"] = KINDS["strip"]._replace(
     is_whole=True,
     radii=" in a point contact, of two radii",
     geometry="physics.geometry:POINT",
-    words="run.explain:POINT",
 )
 """Kinds of contact by name, :attr:`Case.kind`."""
 

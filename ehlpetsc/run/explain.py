@@ -6,8 +6,7 @@ import argparse
 import math
 import sys
 import tomllib
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -53,51 +52,6 @@ GROUND_WAVE = 1.35  # shortest wave over the correlation length: 0.5 % of the po
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
-class Words(NamedTuple):
-    """What the summary says of a kind of contact."""
-
-    dry: Callable[[Scales, str], list[str]]  # of the load in words
-    film_formulas: str
-    load: tuple[float, str]  # of a table over time: factor and unit
-    across: Callable[[Scales], str]  # extent of the mesh, from the middle
-    lay: list[str]  # of rough surfaces
-
-
-def _dry_line(s: Scales, load: str) -> list[str]:
-    return [
-        f"Contact: radius {s.R:g} m, {load}",
-        f"Hertz: half-width a = {s.a * 1e3:.6f} mm, {_p0(s)}",
-    ]
-
-
-def _dry_strip(s: Scales, load: str) -> list[str]:
-    width = 1e3 * s.grid.breadth * s.a
-    return [*_dry_line(s, load), f"Strip: {width:.4g} mm of its length, periodic across"]
-
-
-def _dry_point(s: Scales, load: str) -> list[str]:
-    return [
-        f"Contact: a point, radii {s.R:g} m along, {s.R * s.radius_ratio:g} m across, {load}",
-        f"Hertz: half-widths a = {s.a * 1e3:.6f} mm along, b = {s.b * 1e3:.6f} mm across, {_p0(s)}",
-    ]
-
-
-def _p0(s: Scales) -> str:
-    return f"maximum pressure p0 = {s.p0 / 1e9:.6f} GPa"
-
-
-def _across(edge: float, unit: str) -> str:
-    return f" along, {-edge:g} to {edge:g} {unit} across"
-
-
-PER_LENGTH = 1e-3, "kN/m"
-LINE = Words(_dry_line, "Moes", PER_LENGTH, lambda s: "", [RIDGES])
-STRIP = Words(_dry_strip, "Moes", PER_LENGTH, lambda s: _across(0.5 * s.grid.breadth, "a"), [])
-POINT = Words(
-    _dry_point, POINT_FORMULAS, (1.0, "N"), lambda s: _across(s.grid.axes[0][-1] * s.a / s.b, "b"), []
-)
-
-
 def main(words: list[str]) -> int:
     """Run the command ``ehlpetsc explain``; returns its exit status."""
     parser = CommandParser("explain", "Summary of a case before its run: film, lambda ratio, run time.")
@@ -139,7 +93,7 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
         _film(case, scales, rough),
         _motion(case, scales),
         surface_lines(case, scales, rough),
-        KINDS[case.kind].part("words").lay * bool(rough),
+        [RIDGES] * bool(rough and not KINDS[case.kind].is_areal),
         _size(case, scales, rough),
         _waves(case, scales),
         [f"Warning: {line}" for line in warnings(case, scales, rough)],
@@ -190,7 +144,16 @@ def _dry(case: Case, s: Scales) -> list[str]:
     approach, load = case.contact.approach, f"load {s.load:g} {load_unit(case)}"
     if approach is not None:
         load = f"approach {1e6 * approach:g} um, dry {load}"
-    return KINDS[case.kind].part("words").dry(s, f"{load}, reduced modulus {s.E / 1e9:.4f} GPa")
+    load, pressure = f"{load}, reduced modulus {s.E / 1e9:.4f} GPa", f"p0 = {s.p0 / 1e9:.6f} GPa"
+    if KINDS[case.kind].is_whole:
+        widths = f"half-widths a = {s.a * 1e3:.6f} mm along, b = {s.b * 1e3:.6f} mm across"
+        shape = f"a point, radii {s.R:g} m along, {s.R * s.radius_ratio:g} m across"
+    else:
+        widths, shape = f"half-width a = {s.a * 1e3:.6f} mm", f"radius {s.R:g} m"
+    lines = [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}"]
+    if s.grid.periodic:
+        lines.append(f"Strip: {1e3 * s.grid.breadth * s.a:.4g} mm of its length, periodic across")
+    return lines
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:
@@ -217,7 +180,7 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
-    formulas = KINDS[case.kind].part("words").film_formulas
+    formulas = POINT_FORMULAS if KINDS[case.kind].is_whole else "Moes"
     oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
         *oil,
@@ -271,7 +234,7 @@ def _variable(case: Case, s: Scales) -> list[str]:
 
     repeats = f", {table.repeat} times" if table.repeat > 1 else ""
     moved = 1e3 * s.a * case.time.travel
-    factor, unit = KINDS[case.kind].part("words").load
+    factor, unit = (1.0, "N") if KINDS[case.kind].is_whole else (1e-3, "kN/m")
     return [
         f"Conditions of a {origin}{repeats}: load {range_of(factor * table.load, unit)}, "
         f"radius {range_of(1e3 * table.radius, 'mm')}; above, those of the widest contact",
@@ -288,7 +251,11 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     nodes, spacing = (
         " x ".join(f(v) for v in vs[::-1]) for f, vs in ((str, s.grid.shape), (_um, s.grid.spacings))
     )
-    extent = f"from {s.x[0]:g} to {s.x[-1]:g} a{KINDS[case.kind].part('words').across(s)}"
+    extent = f"from {s.x[0]:g} to {s.x[-1]:g} a"
+    if KINDS[case.kind].is_areal:
+        strip, point = (0.5 * s.grid.breadth, "a"), (s.grid.axes[0][-1] * s.a / s.b, "b")
+        edge, unit = strip if s.grid.periodic else point
+        extent += f" along, {-edge:g} to {edge:g} {unit} across"
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
         f"Expected run time on one rank: about {duration(seconds)}; "

@@ -113,7 +113,7 @@ class Roughness:
         sides, speeds = [], directed_speeds(case, scales)
         for k, spec in enumerate(specs):
             given = passage(case, scales, speeds[k], k, positions)
-            sides.append(spec and KINDS[case.kind].part("surface")(case, scales, spec, given))
+            sides.append(spec and rough_surface(case, scales, spec, given))
         return cls(*sides)
 
     def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
@@ -139,17 +139,13 @@ class Roughness:
         return float(np.linalg.norm([surface.rq for surface in self.sides.values()]))
 
 
-def moving_profile(case: Case, scales: Scales, spec: Values, given: Passage) -> RoughSurface:
-    """Profile of a line contact."""
-    from ehlpetsc.surfaces.samples import samples
+def rough_surface(case: Case, scales: Scales, spec: Values, given: Passage) -> RoughSurface:
+    """Surface of a body by its table: a profile in a line contact, else areal, on the rows of the mesh."""
+    from ehlpetsc.surfaces.samples import areal_samples, samples
 
-    return RoughSurface(samples(case.path.parent, spec), given)
-
-
-def moving_map(case: Case, scales: Scales, spec: Values, given: Passage) -> RoughSurface:
-    """Areal surface of a strip or a point contact."""
-    from ehlpetsc.surfaces.samples import areal_samples
-
-    y, dy, is_strip = scales.a * scales.grid.axes[0], scales.grid.spacings[0], scales.grid.periodic
-    surface = areal_samples(case.path.parent, spec, dy * len(y), is_strip)
+    folder, grid = case.path.parent, scales.grid
+    if not KINDS[case.kind].is_areal:
+        return RoughSurface(samples(folder, spec), given)
+    y, dy = scales.a * grid.axes[0], grid.spacings[0]
+    surface = areal_samples(folder, spec, dy * len(y), grid.periodic)
     return RoughSurface(surface, given, np.append(y - 0.5 * dy, y[-1] + 0.5 * dy))
