@@ -23,27 +23,28 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.body_field import MeshOnBodies
-    from ehlpetsc.surfaces.moving_surface import SurfacePositions
     from ehlpetsc.surfaces.roughness import Roughness
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Quantities that are fixed over a run, for effects."""
+    """Quantities that are fixed over a run, for effects.
+
+    `begin`: abscissas at which both profiles begin to enter at time 0 [m].
+    """
 
     case: Case
     scales: Scales
     operation: Operation
-    positions: SurfacePositions
+    begin: tuple[float, float]
 
     @classmethod
     def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: int) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
-        from ehlpetsc.surfaces.moving_surface import SurfacePositions
 
         offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
         shift = (number - 1) * case.time.pass_shift if case.time else 0.0
-        return cls(case, scales, operation, SurfacePositions((offset_1, offset_2 + shift)))
+        return cls(case, scales, operation, (offset_1, offset_2 + shift))
 
     @cached_property
     def roughness(self) -> Roughness | None:
@@ -52,7 +53,7 @@ class Scene:
             return None
         from ehlpetsc.surfaces.roughness import Roughness
 
-        return Roughness.of(self.case, self.scales, self.positions)
+        return Roughness.of(self.case, self.scales, self.begin)
 
     @property
     def rq(self) -> float:
@@ -65,8 +66,8 @@ class Scene:
         from ehlpetsc.surfaces.body_field import MeshOnBodies
         from ehlpetsc.surfaces.moving_surface import directed_speeds
 
-        speeds = directed_speeds(self.case, self.scales)
-        return MeshOnBodies(self.scales, self.positions.offsets(speeds))
+        pairs = zip(self.begin, directed_speeds(self.case, self.scales), strict=True)
+        return MeshOnBodies(self.scales, [-begin if speed > 0.0 else begin for begin, speed in pairs])
 
 
 def combined_rq(case: Case, roughness: Roughness | None) -> float:

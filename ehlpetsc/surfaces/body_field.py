@@ -116,7 +116,8 @@ class BodyFields(NamedTuple):
 class MeshOnBodies:
     """Cells of the mesh in the abscissas of both bodies.
 
-    `offsets`: signed shift of the points of both bodies [m], see :class:`.moving_surface.SurfacePositions`.
+    `offsets`: shift of the points of both bodies by the abscissas at which their profiles begin, negative for
+        speeds above 0 [m].
     """
 
     def __init__(self, scales: Scales, offsets: Sequence[float] = (0.0, 0.0)) -> None:

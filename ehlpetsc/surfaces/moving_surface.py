@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -90,23 +88,6 @@ class MovingSurface:
         return self._ends[0] + X if self._ends else np.sort(self._origin + self._sign * X)
 
 
-@dataclass(frozen=True)
-class SurfacePositions:
-    """Positions of both surfaces at time 0: abscissas at which their profiles begin to enter [m]."""
-
-    profile_offsets: tuple[float, float] = (0.0, 0.0)
-
-    def offsets(self, speeds: Sequence[float]) -> tuple[float, ...]:
-        """Signed shift of the body points by `profile_offsets` [m].
-
-        `speeds`: see :func:`directed_speeds`.
-        """
-        return tuple(
-            -begin if speed > 0.0 else begin
-            for begin, speed in zip(self.profile_offsets, speeds, strict=True)
-        )
-
-
 def directed_speeds(case: Case, scales: Scales) -> tuple[float, ...]:
     """Speeds of both surfaces [m/s] at which their profiles enter; 0 if a surface reverses."""
     speeds = scales.u1, scales.u2
@@ -118,8 +99,8 @@ def directed_speeds(case: Case, scales: Scales) -> tuple[float, ...]:
     )
 
 
-def passage(case: Case, scales: Scales, speed: float, side: int, positions: SurfacePositions) -> Passage:
-    """Passage of surface `side`, 0 or 1, through the domain; `speed`: see :func:`directed_speeds`."""
+def passage(case: Case, scales: Scales, speed: float, side: int, begin: float) -> Passage:
+    """Passage of surface `side`, 0 or 1, from an abscissa on; `speed`: see :func:`directed_speeds`."""
     inlet, outlet = scales.x[0] * scales.a, scales.x[-1] * scales.a
     swept_length, table, reach = 0.0, case.conditions, None
     if table is not None and table.varies:
@@ -135,7 +116,7 @@ def passage(case: Case, scales: Scales, speed: float, side: int, positions: Surf
         outlet,
         RAMP_LENGTH * scales.a,
         swept_length,
-        positions.profile_offsets[side],
+        begin,
         reach,
         table is not None and table.profile_offsets is not None,
         ahead=outlet - inlet + RAMP_LENGTH * scales.a if starts_rough else 0.0,

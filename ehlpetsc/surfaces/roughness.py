@@ -14,7 +14,6 @@ from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.moving_surface import (
     MovingSurface,
     Passage,
-    SurfacePositions,
     directed_speeds,
     passage,
 )
@@ -102,17 +101,17 @@ class Roughness:
         return self.sides.get(name)
 
     @classmethod
-    def of(cls, case: Case, scales: Scales, positions: SurfacePositions | None = None) -> Roughness | None:
+    def of(cls, case: Case, scales: Scales, begin: Sequence[float] = (0.0, 0.0)) -> Roughness | None:
         """Roughness of a case of any kind of contact; None if both surfaces are smooth.
 
-        `positions`: by default both surfaces begin to enter with their first point.
+        `begin`: abscissas at which both profiles begin to enter [m].
         """
-        specs, positions = [case.surface.side(side) for side in ("1", "2")], positions or SurfacePositions()
+        specs = [case.surface.side(side) for side in ("1", "2")]
         if not any(specs):
             return None
         sides, speeds = [], directed_speeds(case, scales)
         for k, spec in enumerate(specs):
-            given = passage(case, scales, speeds[k], k, positions)
+            given = passage(case, scales, speeds[k], k, begin[k])
             sides.append(spec and rough_surface(case, scales, spec, given))
         return cls(*sides)
 

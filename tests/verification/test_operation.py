@@ -73,7 +73,7 @@ def test_flank_profile_is_indexed_by_arc_length():
         assert middle[0] == pytest.approx(-sum(heights), abs=2e-11)
     shift = path.pair.hunting_shift
     second = Simulation(simulation.case, pass_number=2)
-    offsets = np.subtract(second.scene.positions.profile_offsets, simulation.scene.positions.profile_offsets)
+    offsets = np.subtract(second.scene.begin, simulation.scene.begin)
     assert offsets == pytest.approx((0.0, shift))
 
 
