@@ -41,7 +41,6 @@ class Scene:
     @classmethod
     def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: int) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
-
         offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
         shift = (number - 1) * case.time.pass_shift if case.time else 0.0
         return cls(case, scales, operation, (offset_1, offset_2 + shift))
