@@ -1,6 +1,6 @@
 """Friction of FZG gears of type C-mod over the speed beside measurements: tables and picture.
 
-``./run_mpi.sh python cases/paper/cmod.py [MODEL ...] [-o PICTURE]`` computes `cases/cmod.toml` by each of
+``ehlpetsc python cases/paper/cmod.py [MODEL ...] [-o PICTURE]`` computes `cases/cmod.toml` by each of
 `MODELS`, prints friction and the share of the solids beside `data/cmod.csv` on two meshes and, at 8.3 m/s,
 the effect of each of `CHANGES`, and draws friction and share over the speed. Results are files
 `cmod_MODEL_SPEED_POINTS*.h5`; those that exist are used.
@@ -8,7 +8,6 @@ the effect of each of `CHANGES`, and draws friction and share over the speed. Re
 
 from __future__ import annotations
 
-import argparse
 import re
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -30,7 +29,8 @@ SPEED_OF_CHANGES = 8.3  # m/s
 
 def waves(sq: float, border: float, seed: int) -> dict[str, Any]:
     """Isotropic roughness of a flank of Ra 0.2 um from `border` [m] on; waves from 2.5 um on have 0.25 um."""
-    spectrum = {"sq": sq, "hurst": 0.8, "roll_off": 80e-6, "short_cutoff": border}
+    roll_off = max(80e-6, 1.0001 * border)  # longer waves have one spectral density
+    spectrum = {"sq": sq, "hurst": 0.8, "roll_off": roll_off, "short_cutoff": border}
     return {"synthetic": {"kind": "self-affine", "seed": seed} | spectrum}
 
 
@@ -57,6 +57,8 @@ class Model(NamedTuple):
 
 LONG = 79e-6, 0.168e-6, 0.262e-6, 1.0  # border, Sq of a flank and rms of the layer [m], width
 SHORT = 40e-6, 0.226e-6, 0.151e-6, 0.5
+LONGEST = 158e-6, 0.0845e-6, 0.3328e-6, 1.0
+STIFF = {"contact.asperity_stiffness": 0.0261}  # by 80 um, as of the layer with all roughness
 MODELS = {
     "smooth": Model("smooth flanks", (20, 40), {}),
     "layer": Model(
@@ -79,8 +81,12 @@ CHANGES: dict[str, dict[str, Any]] = {
 CHANGES_OF_STRIPS = {
     "seeds 4, 5": strip(*LONG, (4, 5)),
     "seeds 6, 7": strip(*LONG, (6, 7)),
-    "border 40 um, a/16": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 16},
-    "border 40 um, a/32": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 32},
+    "border 40 um, a/32, 6.5 nodes a wave": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 32},
+    "border 158 um, a/10, 8 nodes a wave": strip(*LONGEST, (2, 3))
+    | STIFF
+    | {"mesh.points_per_half_width": 10},
+    "border 158 um, 16 nodes a wave": strip(*LONGEST, (2, 3)) | STIFF,
+    "border 158 um, softer layer": strip(*LONGEST, (2, 3)),
 }
 """What moves friction, with the changed keys, on the coarser mesh."""
 
@@ -172,11 +178,8 @@ def influences(model: str) -> None:
 
 def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = measured_data.parser(__doc__, "cmod_friction.png")
     parser.add_argument("models", nargs="*", choices=[*MODELS, []], metavar="MODEL", help=", ".join(MODELS))
-    parser.add_argument("-o", "--output", default="cmod_friction.png", help="picture [cmod_friction.png]")
     chosen = parser.parse_args(words)
     computed: dict[str, list[Found]] = {}
     for model in chosen.models or MODELS:

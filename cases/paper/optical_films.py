@@ -7,7 +7,6 @@ speed.
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import NamedTuple
 
@@ -127,10 +126,7 @@ def table(oil: Oil) -> np.ndarray:
 
 def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("-o", "--output", default="optical_films.png", help="picture [optical_films.png]")
+    parser = measured_data.parser(__doc__, "optical_films.png")
     chosen = parser.parse_args(words)
     meshes = ", ".join(f"on a/{points}" for points in MESHES)
     print(f"oil, speed [m/s]: film measured, {meshes}, Hamrock and Dowson [nm]")

@@ -39,15 +39,33 @@ def exponential(b: float, c: float) -> Callable[[np.ndarray], np.ndarray]:
     return lambda ratio: np.exp(-b * ratio**c)
 
 
+def doleschel(ratio: np.ndarray) -> np.ndarray:
+    r""":math:`(1-\lambda/2)^2` up to :math:`\lambda=2`, of the film over the mean of both Ra.
+
+    Here of two surfaces of equal, normally distributed heights: :math:`\lambda=\sqrt\pi\,\Lambda`.
+    """
+    return np.maximum(1.0 - 0.5 * np.sqrt(np.pi) * np.asarray(ratio), 0.0) ** 2
+
+
 LAWS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "Clarke: 1 - erf": lambda ratio: 1.0 - erf(ratio),
     "Zhou, Hoeprich, 0.10 µm": exponential(2.1, 0.85),
     "Zhou, Hoeprich, 0.16 µm": exponential(2.32, 0.97),
     "Zhou, Hoeprich, 0.24 µm": exponential(1.90, 0.99),
     "Aihara": exponential(1.8, 1.2),
+    "Doleschel": doleschel,
 }
-"""Clarke's is a fit to electric resistances of discs, Zhou and Hoeprich's to three surfaces of given rms
-height, Aihara's follows Patir and Cheng. Each author has his own Lambda."""
+"""Each author has his own Lambda.
+
+- Clarke: chosen by Arana et al. (Proc. IMechE J 233 (2019) 303, equation 14) to meet the limits, 1 at 0 and
+  0 at 2, of electric resistances of axially ground discs by Clarke, Weeks, Evans et al. (Tribol. Int. 93
+  (2016) 709);
+- Zhou, Hoeprich (J. Tribol. 113 (1991) 590, equation 29): computed dry contact of measured ground profiles
+  after running in, longitudinal, elastic and ideally plastic; of three rms heights;
+- Aihara (J. Tribol. 109 (1987) 471, equation 13): computed with the flow model of Patir and Cheng (1978),
+  below 0.4 GPa, longitudinal roughness, central film;
+- Doleschel, by Arana et al., table 1: of gears, tested by friction alone.
+"""
 
 
 def compute() -> None:

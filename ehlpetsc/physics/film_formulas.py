@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 MAX_FILM_ITERATIONS = 200
 FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half-widths in place of infinity in Grubin's integral; its points
+OIL_REACH, ROLLING_ANGLES = 1.0 / 3.0, 64  # radii along x to which oil reaches before a point contact
 
 
 def load_outside(scales: Scales, film: float, inlet: float, half_width: float) -> float:
@@ -150,6 +151,41 @@ def rolling_left_by_inlet(film: float, inlet: float) -> float:
     before the contact and ambient viscosity; far out it falls as 1/x. Parameters: :func:`film_left_by_inlet`.
     """
     return _inlet_integral(film, inlet, 2) / _inlet_integral(film, FAR_INLET, 2)
+
+
+def point_rolling_friction(scales: Scales) -> float:
+    r"""Rolling friction of a surface of a flooded point contact [N] (Biboulet and Houpert 2010, part 2).
+
+    .. math:: E'R_x^2\,\frac{2b}{R_x}U^{3/4}\left(\frac{0.77\kappa^{0.12}U^{-1/12}-1.8}{1+M/6.6}+1.8\right),
+       \qquad U=\frac{2\eta_0u}{E'R_x},\quad M=\kappa\frac{F}{E'R_x^2}U^{-3/4},\quad\kappa=\frac ab\le1.
+    """
+    kappa = min(scales.a / scales.b, 1.0)
+    U = 2.0 * scales.eta0 * abs(scales.u) / (scales.E * scales.R)
+    M = kappa * scales.load / (scales.E * scales.R**2) * U**-0.75
+    factor = (0.77 * kappa**0.12 * U ** (-1.0 / 12.0) - 1.8) / (1.0 + M / 6.6) + 1.8
+    return scales.E * scales.R * 2.0 * scales.b * U**0.75 * factor
+
+
+def rolling_outside(scales: Scales, inlet: float, half_width: float) -> float:
+    r"""Rolling friction of a surface of a point contact before and beside its mesh [N].
+
+    .. math:: \frac1{2R_x}\int(-x)\,p\,dA
+
+    of the pressure of :func:`load_outside` without its central film, as far as an ellipse of half-width
+    `OIL_REACH` :math:`R_x` along x. It grows with the logarithm of that reach and so has no flooded limit.
+
+    Parameters
+    ----------
+    inlet, half_width
+        Distances of the first node and of the edges from the middle [m].
+    """
+    side_leakage, load = rigid_factors(scales.radius_ratio)
+    angle = np.pi * ((np.arange(ROLLING_ANGLES) + 0.5) / ROLLING_ANGLES - 0.5)
+    stretch = math.sqrt(scales.radius_ratio)
+    mesh = np.minimum(inlet / np.cos(angle), half_width / stretch / np.abs(np.sin(angle)))
+    reach = np.log(np.maximum(OIL_REACH * scales.R / mesh, 1.0))
+    integral = float((np.cos(angle) ** 2 * reach).mean()) * np.pi
+    return 16.0 / np.pi * scales.eta0 * abs(scales.u) * side_leakage * load * scales.R * stretch * integral
 
 
 def _inlet_integral(film: float, inlet: float, power: int) -> float:

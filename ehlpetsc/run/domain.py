@@ -12,8 +12,10 @@ from ehlpetsc.physics.film_formulas import (
     film_left_by_inlet,
     film_on_mesh,
     inlet_opening,
+    point_rolling_friction,
     points_for_opening,
     rolling_left_by_inlet,
+    rolling_outside,
 )
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
 MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
-MIN_ROLLING_FRICTION = 0.9  # over that of a flooded contact
+MIN_ROLLING_FRICTION, PROPOSED_ROLLING_FRICTION = 0.95, 0.97  # over that of a flooded contact
 PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
 MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
@@ -138,13 +140,35 @@ NEAR_EDGES: dict[str, Callable[[Case, Scales], list[str]]] = {
 
 
 def rolling_warnings(case: Case, scales: Scales) -> list[str]:
-    """Rolling friction that the oil before the mesh would add, where no sliding hides it."""
+    """Rolling friction that the oil before and beside the mesh would add, where no sliding hides it."""
     if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
         return []
-    left = rolling_left_by_inlet(expected_film(case, scales), -case.mesh.inlet)
-    missing = f"up to {100.0 * (1.0 - left):.0f} % of the rolling friction"
-    note = f"mesh.inlet = {case.mesh.inlet:g}: {missing} arise before it and are not computed"
-    return [note] if left < MIN_ROLLING_FRICTION else []
+    return _point_rolling(case, scales) if case.kind == "point" else _line_rolling(case, scales)
+
+
+def _line_rolling(case: Case, scales: Scales) -> list[str]:
+    film, inlet = expected_film(case, scales), -case.mesh.inlet
+    left = rolling_left_by_inlet(film, inlet)
+    if left >= MIN_ROLLING_FRICTION:
+        return []
+    while inlet < MAX_INLET and rolling_left_by_inlet(film, inlet) < PROPOSED_ROLLING_FRICTION:
+        inlet *= 1.05
+    return [
+        f"mesh.inlet = {case.mesh.inlet:g}: up to {100.0 * (1.0 - left):.0f} % of the rolling friction arise "
+        f"before it and are not computed; mesh.inlet = {-math.ceil(inlet)} computes all but "
+        f"{100.0 * (1.0 - PROPOSED_ROLLING_FRICTION):.0f} %"
+    ]
+
+
+def _point_rolling(case: Case, scales: Scales) -> list[str]:
+    inlet, half_width = -scales.a * case.mesh.inlet, scales.a * scales.grid.axes[0][-1]
+    outside, total = rolling_outside(scales, inlet, half_width), point_rolling_friction(scales)
+    if outside < (1.0 - MIN_ROLLING_FRICTION) * total:
+        return []
+    return [
+        f"mesh.inlet = {case.mesh.inlet:g} and mesh.width: the oil outside them, as far as a third of the "
+        f"radius, would add {outside:.2g} N to the rolling friction of each surface, of about {total:.2g} N"
+    ]
 
 
 def strip_warnings(case: Case, scales: Scales) -> Iterator[str]:

@@ -15,6 +15,7 @@ from ehlpetsc.physics.film_formulas import (
     load_outside,
     points_for_opening,
     rolling_left_by_inlet,
+    rolling_outside,
     smooth_films,
 )
 from ehlpetsc.physics.geometry import brewe_rigid_film
@@ -104,19 +105,33 @@ def test_film_of_a_near_inlet_equals_the_solver_result(inlet):
 
 
 def test_rolling_friction_before_the_mesh_is_that_of_a_farther_inlet():
-    """Of a light Newtonian contact: an inlet of 3 a and one of 16 a, and the warning of the near one."""
-    light = {"contact.load": 60e3, "motion.slide_roll_ratio": 0.0}
+    """Of a light Newtonian contact: an inlet of 3 a and the one that the warning of it asks for."""
+    light = {"contact.load": 60e3, "motion.slide_roll_ratio": 0.0, "mesh.inlet": -3.0}
     light |= {"fluid.eyring_stress": None, "mesh.outlet": 2.0, "mesh.points_per_half_width": 40}
-    near, far = (load(SMOOTH, light | {"mesh.inlet": -inlet}) for inlet in (3.0, 16.0))
-    film = expected_film(near, Scales.of(near))
-    expected = rolling_left_by_inlet(film, 3.0) / rolling_left_by_inlet(film, 16.0)
-    friction = [ehlpetsc.solve(case).steps.friction[0] for case in (near, far)]
-    assert (
-        0.8 < (1.0 - friction[0] / friction[1]) / (1.0 - expected) < 1.0
-    )  # pressure thickens the oil near by
-    (line,) = (line for line in warnings(near, Scales.of(near)) if "rolling" in line)
+    (line,) = (line for line in of(light, about=warnings) if "rolling" in line)
     assert line.startswith("mesh.inlet = -3: up to 44 % of the rolling friction ")
+    asked = float(line.split("mesh.inlet = ")[2].split()[0])
+    assert asked < -16.0
+    near, far = (load(SMOOTH, light | {"mesh.inlet": inlet}) for inlet in (-3.0, asked))
     assert not any("rolling" in line for line in warnings(far, Scales.of(far)))
+    film = expected_film(near, Scales.of(near))
+    expected = rolling_left_by_inlet(film, 3.0) / rolling_left_by_inlet(film, -asked)
+    friction = [ehlpetsc.solve(case).steps.friction[0] for case in (near, far)]
+    # pressure thickens the oil near by
+    assert 0.8 < (1.0 - friction[0] / friction[1]) / (1.0 - expected) < 1.0
+
+
+def test_rolling_friction_outside_the_mesh_of_a_ball_is_that_of_a_larger_mesh():
+    """It grows with the logarithm of the mesh: each of two doublings adds the same, as the warning says."""
+    frictions, outside = [], []
+    for size in (8.0, 16.0, 32.0):
+        case = light_ball(size, contact__load=2.0)
+        scales = Scales.of(case)
+        outside.append(rolling_outside(scales, size * scales.a, size * scales.b))
+        frictions.append(abs(ehlpetsc.solve(case).steps.friction[0]))
+    np.testing.assert_allclose(np.diff(frictions), -np.diff(outside), rtol=0.25)
+    note = f"would add {outside[0]:.2g} N"
+    assert any(note in line for line in of({}, light_ball(8.0, contact__load=2.0)._tables, warnings))
 
 
 def light_ball(size, **keys):

@@ -36,20 +36,18 @@ FIRST_OF_PAO = [4, 0]  # measured 0.0062
 
 @pytest.mark.parametrize("number, curve", enumerate(discs.MEASURED))
 def test_friction_of_discs_on_two_meshes(number, curve):
-    """On a/60 the published values, on a/30 within 0.5 %."""
-    fine, coarse = (
-        [discs.friction(curve.oil, curve.speed, ratio, keys) for ratio in curve.ratios]
-        for keys in ({}, discs.CHANGES["a/30"])
-    )
-    np.testing.assert_allclose(fine, PUBLISHED[number], atol=6e-5)
-    np.testing.assert_allclose(coarse, fine, rtol=5e-3)
+    """The published values: all on a/30 within 0.5 %, one on a/60 to their last digit."""
+    coarse = [discs.friction(curve.oil, curve.speed, ratio, discs.CHANGES["a/30"]) for ratio in curve.ratios]
+    np.testing.assert_allclose(coarse, PUBLISHED[number], rtol=5e-3, atol=6e-5)
+    fine = discs.friction(curve.oil, curve.speed, curve.ratios[-1])
+    assert fine == pytest.approx(PUBLISHED[number][-1], abs=6e-5)
 
 
 @pytest.mark.parametrize("number, curve", enumerate(discs.MEASURED[:3]))
 def test_friction_of_discs_with_the_second_oil(number, curve):
-    """FVA 3 by the constants of m100: the published values."""
-    found = [discs.friction(discs.SECOND_OIL, curve.speed, ratio) for ratio in curve.ratios]
-    np.testing.assert_allclose(found, SECOND_OIL[number], atol=6e-5)
+    """FVA 3 by the constants of m100: the published values at the least and the most sliding."""
+    found = [discs.friction(discs.SECOND_OIL, curve.speed, curve.ratios[end]) for end in (0, -1)]
+    np.testing.assert_allclose(found, [SECOND_OIL[number][end] for end in (0, -1)], atol=6e-5)
 
 
 @pytest.mark.parametrize("values, far", [((*SECOND_OIL, *PUBLISHED[3:]), []), (PUBLISHED, [[0, 0]])])
@@ -73,12 +71,12 @@ def test_measured_values_have_source_error_and_conditions(file):
 
 
 def test_oil_fitted_to_computed_traction(monkeypatch):
-    """Constants 10 to 20 % off the first guess come back within 1 %, of nine points without heat."""
+    """Constants 10 to 20 % off the first guess come back within 1 %, of six points without heat."""
     monkeypatch.setattr(fit_oil, "POINTS", 12)
     rows = {
-        "entrainment_speed": np.repeat([0.5, 2.0, 8.0], 3),
-        "slide_roll_ratio": np.tile([0.002, 0.02, 0.2], 3),
-        "friction": np.zeros(9),
+        "entrainment_speed": np.repeat([0.5, 8.0], 3),
+        "slide_roll_ratio": np.tile([0.002, 0.02, 0.2], 2),
+        "friction": np.zeros(6),
     }
     case = tomllib.loads(fit_oil.CASE.read_text())
     del case["heat"], case["series"]
@@ -100,11 +98,12 @@ def test_torque_of_a_bearing(rotation, published):
 
 @pytest.mark.parametrize("number", [6, 13, 20])
 def test_optical_films_on_two_meshes(number):
-    """0.06, 0.21 and 0.76 m/s: on a/32 the published films, on a/16 within 6 %."""
-    oil = optical_films.FVA3
-    coarse, fine = (optical_films.film(oil, oil.speeds[number], points) for points in optical_films.MESHES)
-    assert fine == pytest.approx(FILMS[number], rel=2e-3)
-    assert coarse == pytest.approx(fine, rel=0.06)
+    """0.06, 0.21 and 0.76 m/s: the published films, on a/16 within 6 %, one on a/32 within 0.2 %."""
+    oil, (coarse, fine) = optical_films.FVA3, optical_films.MESHES
+    film = optical_films.film(oil, oil.speeds[number], coarse)
+    assert film == pytest.approx(FILMS[number], rel=0.06)
+    if number == 13:
+        assert optical_films.film(oil, oil.speeds[number], fine) == pytest.approx(FILMS[number], rel=2e-3)
 
 
 def test_mean_of_optical_films():
