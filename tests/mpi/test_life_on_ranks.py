@@ -10,6 +10,7 @@ from support.work_shares import shared_out
 from ehlpetsc.base.errors import Stopped
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import run_life
+from ehlpetsc.life.ensemble import read_lives, run_lives
 
 CASE = COARSE_LIFE
 SHORT = {
@@ -51,6 +52,33 @@ def test_life_is_independent_of_the_number_of_ranks(name, alone, tmp_path):
     for (profile, damage), (profile_alone, damage_alone) in zip(bodies, alone[name][2], strict=True):
         assert profile == pytest.approx(profile_alone, rel=1e-9)
         assert damage == pytest.approx(damage_alone, rel=1e-9)
+
+
+def test_lives_of_a_series_are_those_of_one_rank(tmp_path):
+    """Each is computed by one of the ranks, and listed; a second call computes none again."""
+    from mpi4py import MPI
+
+    world, shown = MPI.COMM_WORLD, []
+    keys = SHORT | {
+        "life.max_solved": 1,
+        "series.key": "wear.coefficient",
+        "series.values": [1e-18, 1e-17],
+    }
+    case, folder = load(CASE, keys), Path(world.bcast(str(tmp_path)))
+    options = {"unresolved": True, "show": shown.append}
+    index = run_lives(case, folder / "together.life.h5", world, **options)
+    assert sum(world.allgather(len(shown))) == 2 and min(world.allgather(len(shown))) < 3
+    together, written = (
+        read_lives(index),
+        [path.stat().st_mtime_ns for path in sorted(folder.glob("*.life.h5"))],
+    )
+    run_lives(case, folder / "together.life.h5", world, **options)
+    assert written == [path.stat().st_mtime_ns for path in sorted(folder.glob("together*.life.h5"))]
+    alone = read_lives(run_lives(case, folder / f"alone{world.rank}.life.h5", MPI.COMM_SELF, unresolved=True))
+    assert len(together) == 2 and together.keys() == alone.keys()
+    for (one,), (other,) in zip(together.values(), alone.values(), strict=True):
+        assert one("damage_1") == pytest.approx(other("damage_1"), rel=1e-12)
+        assert one("wear_volume_2") == pytest.approx(other("wear_volume_2"), rel=1e-12)
 
 
 def test_stop_in_one_position_ends_the_life_on_every_rank(tmp_path):
