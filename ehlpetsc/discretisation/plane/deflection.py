@@ -31,7 +31,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
@@ -124,41 +124,27 @@ def _distant_periods(x: np.ndarray, y: np.ndarray, period: float) -> np.ndarray:
     return total
 
 
-class Transposition(Protocol):
-    """Exchange between rows along x and wave numbers along x, each in contiguous shares of the ranks."""
+class Transposition:
+    """Exchange between rows and wave numbers along x, in contiguous shares of the ranks; here of one."""
 
     def wave_numbers(self, count: int) -> slice:
         """Wave numbers of this rank, of `count`."""
-
-    def to_waves(self, rows: np.ndarray, count: int) -> np.ndarray:
-        """All rows of the wave numbers of this rank, from the own rows of all wave numbers."""
-
-    def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
-        """Inverse of `to_waves`."""
-
-    def local(self, nodes: int) -> slice:
-        """Nodes of this rank, of all `nodes`."""
-
-    def gathered(self, local: np.ndarray) -> np.ndarray:
-        """Values of all nodes from those of each rank."""
-
-
-class OneRank:
-    """Transposition of one rank, which has everything."""
-
-    def wave_numbers(self, count: int) -> slice:
         return slice(0, count)
 
     def to_waves(self, rows: np.ndarray, count: int) -> np.ndarray:
+        """All rows of the wave numbers of this rank, from the own rows of all wave numbers."""
         return rows
 
     def to_rows(self, waves: np.ndarray, count: int) -> np.ndarray:
+        """Inverse of `to_waves`."""
         return waves
 
     def local(self, nodes: int) -> slice:
+        """Nodes of this rank, of all `nodes`."""
         return slice(0, nodes)
 
     def gathered(self, local: np.ndarray) -> np.ndarray:
+        """Values of all nodes from those of each rank."""
         return local
 
 
@@ -237,7 +223,7 @@ class Deflection:
         self.row_scale = np.sqrt(self.cell) / film_scale
         kernel = stiffness * (periodic_kernel if periodic else free_kernel)(n_x, n_y, dx, dy)
         self.kernel = kernel
-        self.convolution = Convolution(kernel, periodic, ranks or OneRank())
+        self.convolution = Convolution(kernel, periodic, ranks or Transposition())
 
     def residual(self, separation: np.ndarray, of_border: Any, sums: PressureSums) -> np.ndarray:
         """Local rows, from the separation at the nodes of the window and the gap of the border."""

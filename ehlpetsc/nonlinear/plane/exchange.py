@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.plane.deflection import PressureSums
+from ehlpetsc.discretisation.plane.deflection import PressureSums, Transposition
 from ehlpetsc.discretisation.unknowns import Share, Unknowns, border_of, n_dofs
 from ehlpetsc.nonlinear.ranks import global_sum
 
@@ -36,7 +36,7 @@ def share_of(shape: Sequence[int], rows: Sequence[int], periodic: bool) -> tuple
     return Share(begin * n_x, end * n_x, nodes, slice(start, start + (end - begin) * n_x)), has_sides
 
 
-class RankTransposition:
+class RankTransposition(Transposition):
     """Transposition between rows and wave numbers along x by all ranks (`Alltoallv`).
 
     `cuts`: first rows of all ranks, and the number of rows.
