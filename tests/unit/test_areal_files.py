@@ -385,12 +385,7 @@ def test_a_faulty_matrix_in_the_case_is_refused(keys, message):
 POINT = {
     "title": "a map in a contact",
     "contact": {"radius": [0.01, 0.01], "load": 12.0, "youngs_modulus": 206e9, "poisson_ratio": 0.3},
-    "fluid": {
-        "viscosity": 0.02,
-        "law": "roelands",
-        "pressure_viscosity": 18e-9,
-        "density": "incompressible",
-    },
+    "fluid": {"viscosity": 0.02, "law": "roelands", "pressure_viscosity": 18e-9, "density": "incompressible"},
     "motion": {"entrainment_speed": 1.0},
     "mesh": {"inlet": -2.0, "outlet": 1.5, "width": 3.0, "points_per_half_width": 8},
 }

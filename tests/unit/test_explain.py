@@ -10,14 +10,7 @@ from ehlpetsc.api import solve
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run import forecast
-from ehlpetsc.run.explain import (
-    DAMAGE_ERRORS,
-    FRICTION_ERRORS,
-    PRESSURE_ERRORS,
-    SHARE_RATIOS,
-    explain,
-    main,
-)
+from ehlpetsc.run.explain import DAMAGE_ERRORS, FRICTION_ERRORS, PRESSURE_ERRORS, SHARE_RATIOS, explain, main
 from ehlpetsc.run.forecast import file_size
 from ehlpetsc.run.validity import warnings
 from ehlpetsc.surfaces.roughness import Roughness
@@ -93,11 +86,7 @@ def test_rough_start_is_named():
 
 
 @pytest.mark.parametrize(
-    "overrides",
-    [
-        ["time.travel=0.75"],
-        ["time.travel=3.0", "output.precision='float32'"],
-    ],
+    "overrides", [["time.travel=0.75"], ["time.travel=3.0", "output.precision='float32'"]]
 )
 def test_predicted_result_size_within_a_quarter(tmp_path, overrides):
     c = case.load(CASES / "table1_rough.toml", ["mesh.points_per_half_width=50", *overrides])

@@ -55,10 +55,7 @@ READABLE = {
     "Fortran": (lines("{:.7e} {:.9e}\n").replace("e", "D"), {}),
     "column of words": ("n;x;z\n" + lines("peak;{};{}\n"), {}),
     "columns counted with the words": ("x,quality,z\n" + lines("{},OK,{}\n"), {"columns": (1, 3)}),
-    "angstrom": (
-        "x [um],z [A\u030a]\n" + lines("{},{}\n", 1e6, 1e10),
-        {"x_unit": "um", "unit": "angstrom"},
-    ),
+    "angstrom": ("x [um],z [A\u030a]\n" + lines("{},{}\n", 1e6, 1e10), {"x_unit": "um", "unit": "angstrom"}),
     "inches": (lines("{},{}\n", 1 / 0.0254, 1e6 / 0.0254), {"x_unit": "inch", "unit": "microinch"}),
     "mils": (lines("{},{}\n", 1e3 / 0.0254, 1e3 / 0.0254), {"unit": "mil"}),
     "heading that begins with a number": ("7,points\n" + lines("{:e},{:e}\n"), {}),

@@ -54,16 +54,10 @@ MAPS = {
     "numbers from 0": (matrix("0", NUMBERS_X - 1, NUMBERS_Y - 1), BOTH),
     "numbers of the rows": (matrix(None, None, NUMBERS_Y), BOTH),
     "names of the rows": (matrix(None, None, [f"row{k}" for k in NUMBERS_Y], ";"), BOTH),
-    "falling positions": (
-        matrix("0", UM * X[::-1], UM * Y[::-1], z=Z[::-1, ::-1]),
-        {"unit": "um"},
-    ),
+    "falling positions": (matrix("0", UM * X[::-1], UM * Y[::-1], z=Z[::-1, ::-1]), {"unit": "um"}),
     "positions of three decimals": (matrix("y", np.round(MM * X, 3), MM * Y), BOTH | {"x_unit": "mm"}),
     "list": (points(), {"unit": "um"}),
-    "list, columns first": (
-        points(UM * Y, UM * X, UM * Z.T, "{1:.4f},{0:.4f},{2:.5f}\n"),
-        {"unit": "um"},
-    ),
+    "list, columns first": (points(UM * Y, UM * X, UM * Z.T, "{1:.4f},{0:.4f},{2:.5f}\n"), {"unit": "um"}),
     "list, falling": (points(order=-1), {"unit": "um"}),
     "list, units": ("X[mm] Y[mm] Z[um]\n" + points(MM * X, MM * Y, form="{:.6f} {:.6f} {:.5f}\n"), {}),
     "list, empty lines between scans": (
