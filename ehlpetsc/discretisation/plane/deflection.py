@@ -160,7 +160,7 @@ class PressureSums(NamedTuple):
 
 
 class Convolution:
-    """Product with a kernel symmetric along and across, by FFT.
+    """Product with a kernel symmetric along and across, by FFT, in the precision of its argument.
 
     `kernel`: at distances 0 .. n - 1 nodes, shape (n_y, n_x); over a period across if `periodic`.
     """
@@ -173,13 +173,14 @@ class Convolution:
         self.waves_here = ranks.wave_numbers(self.waves)
         along = rfft(_even(kernel, self.length_x, axis=1), axis=1).real[:, self.waves_here]
         across = along if periodic else _even(along, self.length_y, axis=0)
-        self.spectrum = np.ascontiguousarray(fft(across, axis=0).real)
+        spectrum = np.ascontiguousarray(fft(across, axis=0).real)
+        self.spectra = {spectrum.dtype: spectrum, np.dtype(np.float32): spectrum.astype(np.float32)}
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Product with values at the local nodes, shape (local rows n_x,)."""
         rows = rfft(values.reshape(-1, self.n_x), self.length_x, axis=1)
         waves = fft(self.ranks.to_waves(rows, self.waves), self.length_y, axis=0, overwrite_x=True)
-        waves *= self.spectrum
+        waves *= self.spectra[values.dtype]
         waves = ifft(waves, axis=0, overwrite_x=True)[: self.n_y]
         rows = self.ranks.to_rows(waves, self.waves)
         return np.ascontiguousarray(irfft(rows, self.length_x, axis=1)[:, : self.n_x]).ravel()

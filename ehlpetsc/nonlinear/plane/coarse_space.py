@@ -15,8 +15,12 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
+from mpi4py import MPI
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csr_matrix, diags, kron
+
+from ehlpetsc.discretisation.unknowns import Share
+from ehlpetsc.nonlinear.ranks import global_sum
 
 # Between coarse nodes along the longer side of a mesh of up to OF_NODES; on finer ones they grow as the root
 # of the nodes: more waves are too long for the incomplete factorisation, and each iteration costs more.
@@ -56,12 +60,11 @@ class CoarseSpace:
         """Whether a coarse node is in a mask of nodes."""
         return bool(mask.reshape(self.shape)[:: self.spacing, :: self.spacing].any())
 
-    def matrix(self, stencils: np.ndarray) -> csr_matrix:
-        """Matrix of rows of coefficients of the nodes i-2 .. i+1, below and above, (nodes, 6)."""
-        n, n_x = len(stencils), self.shape[1]
-        i = np.arange(n)
-        near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % n
-        return csr_matrix((stencils.ravel(), near.ravel(), 6 * np.arange(n + 1)), (n, n))
+    def matrix(self, stencils: np.ndarray, local: slice) -> csr_matrix:
+        """Matrix of rows of coefficients of the nodes i-2 .. i+1, below and above, (local nodes, 6)."""
+        (n_y, n_x), i = self.shape, np.arange(local.start, local.stop)
+        near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % (n_y * n_x)
+        return csr_matrix((stencils.ravel(), near.ravel(), 6 * np.arange(len(i) + 1)), (len(i), n_y * n_x))
 
     def _deflections(self, kernel: np.ndarray) -> np.ndarray:
         """Deflection by a function at distances of coarse nodes, shape of the coarse nodes."""
@@ -86,23 +89,28 @@ class CoarseSpace:
 
 
 class CoarseCorrection:
-    """Correction of Reynolds rows at the nodes of a mask.
+    """Correction of Reynolds rows at the nodes of a mask; each rank restricts its own rows. Collective.
 
-    `derivatives`: of the rows by pressure and separation of the nodes i-2 .. i+1, below and above, shape
-        (nodes, 12).
+    `derivatives`: of the local rows by pressure and separation of the nodes i-2 .. i+1, below and above,
+        shape (local nodes, 12).
+    `share`: of the rank.
     """
 
-    def __init__(self, space: CoarseSpace, derivatives: np.ndarray, mask: np.ndarray):
-        self.functions, self.deflections = space.chosen(mask)
+    def __init__(
+        self, space: CoarseSpace, derivatives: np.ndarray, mask: np.ndarray, share: Share, ranks: MPI.Comm
+    ):
+        functions, self.deflections = space.chosen(mask)
+        self.ranks, self.restriction = ranks, functions[share.local].T.tocsr()
+        self.functions = functions[share.window]
         by_pressure, by_separation = (
-            self.functions.T @ space.matrix(derivatives[:, k::2]) @ self.functions for k in (0, 1)
+            self.restriction @ space.matrix(derivatives[:, k::2], share.local) @ functions for k in (0, 1)
         )
-        matrix = by_pressure.toarray() + by_separation @ self.deflections
+        matrix = global_sum(ranks, by_pressure.toarray() + by_separation @ self.deflections)
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved
             warnings.simplefilter("ignore", LinAlgWarning)
             self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
 
-    def __call__(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressures that reduce Reynolds rows, and the separations by them."""
-        coarse = lu_solve(self.lu, self.functions.T @ rows, check_finite=False)
-        return self.functions @ coarse, self.functions @ (self.deflections @ coarse)
+    def __call__(self, rows: np.ndarray) -> np.ndarray:
+        """Pressures that reduce local Reynolds rows, and the separations by them, shape (window, 2)."""
+        coarse = lu_solve(self.lu, global_sum(self.ranks, self.restriction @ rows), check_finite=False)
+        return self.functions @ np.stack([coarse, self.deflections @ coarse], axis=1)

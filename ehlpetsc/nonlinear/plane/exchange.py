@@ -58,7 +58,7 @@ class RankTransposition(Transposition):
         cuts = self._cuts(count)
         mine, waves = len(rows), int(np.diff(cuts)[self.ranks.rank])
         sent = np.concatenate([rows[:, cuts[k] : cuts[k + 1]].ravel() for k in range(self.ranks.size)])
-        received = np.empty((int(self.rows.sum()), waves), dtype=complex)
+        received = np.empty((int(self.rows.sum()), waves), dtype=rows.dtype)
         self._all_to_all(sent, mine * np.diff(cuts), received, self.rows * waves)
         return received
 
@@ -66,7 +66,7 @@ class RankTransposition(Transposition):
         """See :class:`.deflection.Transposition`."""
         cuts = self._cuts(count)
         mine, number = int(self.rows[self.ranks.rank]), waves.shape[1]
-        received = np.empty(mine * count, dtype=complex)
+        received = np.empty(mine * count, dtype=waves.dtype)
         self._all_to_all(np.ascontiguousarray(waves), self.rows * number, received, mine * np.diff(cuts))
         parts = np.split(received, (mine * cuts[1:-1]).astype(int))
         return np.hstack([part.reshape(mine, -1) for part in parts])
@@ -83,7 +83,7 @@ class RankTransposition(Transposition):
     def _all_to_all(
         self, sent: np.ndarray, counts: np.ndarray, received: np.ndarray, back: np.ndarray
     ) -> None:
-        kind = MPI.DOUBLE_COMPLEX
+        kind = MPI.DOUBLE_COMPLEX if sent.dtype == complex else MPI.COMPLEX
         self.ranks.Alltoallv([sent, counts.astype(np.int32), kind], [received, back.astype(np.int32), kind])
 
 
@@ -129,9 +129,10 @@ class PlaneExchange:
         border = border_of(vector, self.problem.local)
         return border if self.ranks.size == 1 else self.ranks.bcast(border, root=self.ranks.size - 1)
 
-    def sums(self, pressure: np.ndarray) -> PressureSums:
-        """`PressureSums` of the pressures of all ranks."""
-        return PressureSums(self.problem.deflection.convolution(pressure), self.forces(pressure))
+    def sums(self, pressure: np.ndarray, precision: type = np.float64) -> PressureSums:
+        """`PressureSums` of the pressures of all ranks; the deflection in a lower precision, if given."""
+        deflection = self.problem.deflection.convolution(pressure.astype(precision, copy=False))
+        return PressureSums(deflection.astype(np.float64, copy=False), self.forces(pressure))
 
     def forces(self, pressure: np.ndarray) -> np.ndarray:
         """Forces of the border by the pressures of all ranks."""

@@ -34,15 +34,15 @@ from ehlpetsc.nonlinear.plane.reduction import (
     BOUND,
     CONTACT,
     PRESSURE,
-    STIFF,
-    VOID,
     Reduction,
     reduction_of,
+    unknowns_of,
 )
-from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, R, V, fill, fitted_term, pattern
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, R, fill, fitted_term, pattern, put, taken
 from ehlpetsc.nonlinear.two_fields import owned
 
 PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
+MIN_SINGLE = 1e-5  # relative tolerance of GMRES from which on its deflections are of single precision, 1e-7
 MAX_KEPT = 16  # iterations of GMRES up to which factors are kept
 
 
@@ -72,6 +72,7 @@ class SparseForm:
     `term`: of the deflection, see :func:`.screened_poisson.fitted_term`.
 
     `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
+    `no_pressure`, `no_reynolds`: masks of the nodes of the window not `PRESSURE`, of the local nodes `BOUND`.
     `by`: derivatives of the local Reynolds rows by v and separation, as `EHLProblem.reynolds` multiplies by
         them, shape (local nodes, 12).
     """
@@ -111,11 +112,7 @@ class SparseForm:
         self.matrix.stateIncrease()
         self.pc.setUp()
         self.kind, self.p_s = whole[0][p.first : p.last], whole[5][p.first : p.last]
-        kind, nodes = self.kind, self.block * np.arange(p.local)
-        self.reynolds_rows = nodes + np.where(kind == CONTACT, R, V)
-        self.has_reynolds, self.has_pressure = kind != BOUND, (kind != VOID) & (kind != STIFF)
-        self.touching = np.flatnonzero((kind == CONTACT) | (kind == BOUND))
-        self.deflection_rows = nodes[self.touching] + V
+        self.no_pressure, self.no_reynolds = whole[0][p.window] != PRESSURE, self.kind == BOUND
 
     def _parts(self) -> list[np.ndarray]:
         """PETSc's own arrays of the blocks, in the order of the columns: on one rank all; else own, others.
@@ -148,15 +145,11 @@ class SparseForm:
         separation
             Change of the separation besides the deflection.
         """
-        block, deflection, b = self.block, self.problem.deflection, self.b.array
-        b[:] = 0.0
-        b[::block] = deflection.cell * self.p_s * separation
-        b[self.reynolds_rows[self.has_reynolds]] = reynolds[self.has_reynolds]
-        b[self.deflection_rows] = deflection.row_scale * separation[self.touching]
+        deflection, nodes = self.problem.deflection, (self.problem.local, self.block)
+        scales, rows = (deflection.cell, deflection.row_scale), (reynolds, separation)
+        put(self.kind, self.p_s, scales, rows, self.b.array.reshape(nodes))
         self.pc.apply(self.b, self.u)
-        u = self.u.array_r
-        of_asperities = self.p_s * (separation + self.term[0] * u[::block])
-        return np.where(self.has_pressure, u[V::block], of_asperities), u[self.reynolds_rows]
+        return taken(self.kind, self.p_s, self.term[0], separation, self.u.array_r.reshape(nodes))
 
 
 class Factors(NamedTuple):
@@ -229,7 +222,7 @@ class Elimination:
         mask = whole[0] == PRESSURE
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
-            coarse = CoarseCorrection(self.coarse_space, self._gathered(sparse.by), mask)
+            coarse = CoarseCorrection(self.coarse_space, sparse.by, mask, p.share, self.ranks)
         self.factors = Factors(sparse, coarse)
         gaps = (np.full(p.local, p.balance.gap(unit, p.share.local)) for unit in np.eye(p.balance.unknowns))
         of_border = [self._pressures(operator, np.zeros(p.local), gap) for gap in gaps]
@@ -255,11 +248,11 @@ class Elimination:
     def _coarsely(self, reynolds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        pressure, separation = coarse(self._gathered(np.where(sparse.has_reynolds, reynolds, 0.0)))
-        pressure = np.where(self._gathered(sparse.kind == PRESSURE), pressure, 0.0)
-        changes = pressure[p.window], separation[p.window]
-        left = reynolds - p.reynolds.product(sparse.by, *changes, p.owned.start)
-        return pressure[p.share.local], separation[p.share.local], left
+        reynolds[sparse.no_reynolds] = 0.0
+        pressure, separation = np.ascontiguousarray(coarse(reynolds).T)
+        pressure[sparse.no_pressure] = 0.0
+        left = reynolds - p.reynolds.product(sparse.by, pressure, separation, p.owned.start)
+        return pressure[p.owned], separation[p.owned], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""
@@ -272,16 +265,10 @@ class Elimination:
         border = p.balance.change(exchange.border(full), forces, by_unit)
         for change, (by_pressure, by_r, _) in zip(border, of_border, strict=True):
             pressure, r = pressure + change * by_pressure, r + change * by_r
-        sums = exchange.sums(pressure)
+        sums = exchange.sums(pressure, np.float32 if operator.linear_rtol >= MIN_SINGLE else np.float64)
         separation = sums.deflection + p.balance.gap(border, p.share.local) + b_g
-        kind, back = sparse.kind, self.reduction.back[:, p.owned]
-        first, second = (
-            np.where(kind == VOID, r, pressure),
-            np.where((kind == STIFF) | (kind == CONTACT), r, separation),
-        )
-        out = np.empty(operator.size)
-        out[0:local:2] = back[0] * first + back[1] * second
-        out[1:local:2] = back[2] * first + back[3] * second
+        out, back = np.empty(operator.size), self.reduction.back[:, p.owned]
+        out[:local] = unknowns_of(sparse.kind, back, pressure, r, separation).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
         if p.owns_border:
             border_of(out, p.local)[:] = border

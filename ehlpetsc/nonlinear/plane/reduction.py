@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState
 
 PRESSURE, VOID, STIFF, CONTACT, BOUND = range(5)
@@ -68,6 +69,20 @@ def reduction_of(state: NodeState, inactive: np.ndarray) -> Reduction:
     stiff = kind == STIFF
     p_s = np.where(stiff, p_w / np.where(stiff, s_w, 1.0), 0.0)
     return Reduction(kind, r_p, r_s, h_p, h_s, p_s, back)
+
+
+@compiled
+def unknowns_of(
+    kind: np.ndarray, back: np.ndarray, pressure: np.ndarray, r: np.ndarray, separation: np.ndarray
+) -> np.ndarray:
+    """Both unknowns of some nodes, shape (nodes, 2); `kind` and `back` as of :class:`Reduction`."""
+    out = np.empty((len(kind), 2))
+    for i in range(len(kind)):
+        first = r[i] if kind[i] == VOID else pressure[i]
+        second = r[i] if kind[i] == STIFF or kind[i] == CONTACT else separation[i]
+        out[i, 0] = back[0, i] * first + back[1, i] * second
+        out[i, 1] = back[2, i] * first + back[3, i] * second
+    return out
 
 
 def inverse(first: tuple, second: tuple, nodes: np.ndarray) -> np.ndarray:

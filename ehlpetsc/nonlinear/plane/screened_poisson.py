@@ -37,6 +37,36 @@ def fitted_term(stiffness: float, spacings: Sequence[float]) -> tuple[float, flo
 
 
 @compiled
+def put(
+    kind: np.ndarray, p_s: np.ndarray, scales: tuple, rows: tuple[np.ndarray, np.ndarray], b: np.ndarray
+) -> None:
+    """Fill in the right-hand side, shape (nodes, unknowns of a node).
+
+    `scales`: dx dy; of the deflection rows. `rows`: Reynolds rows, separation besides the deflection.
+    """
+    (cell, row_scale), (reynolds, separation) = scales, rows
+    for i in range(len(kind)):
+        b[i, :] = 0.0
+        b[i, 0] = cell * p_s[i] * separation[i]
+        b[i, V] = row_scale * separation[i] if kind[i] == CONTACT or kind[i] == BOUND else reynolds[i]
+        if kind[i] == CONTACT:
+            b[i, R] = reynolds[i]
+
+
+@compiled
+def taken(
+    kind: np.ndarray, p_s: np.ndarray, c: float, separation: np.ndarray, u: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pressures and Reynolds unknowns of a solution of the right-hand side by :func:`put`."""
+    pressure, r = np.empty(len(kind)), np.empty(len(kind))
+    for i in range(len(kind)):
+        is_void = kind[i] == VOID or kind[i] == STIFF
+        pressure[i] = p_s[i] * (separation[i] + c * u[i, 0]) if is_void else u[i, V]
+        r[i] = u[i, R] if kind[i] == CONTACT else u[i, V]
+    return pressure, r
+
+
+@compiled
 def neighbour(i: int, k: int, mesh: tuple) -> int:
     """Node k of the stencil of node i; -1: beyond the mesh. `mesh`: n_x, nodes, whether periodic."""
     n_x, n, periodic = mesh
