@@ -43,6 +43,10 @@ class Load:
         """Load of a step over the load of the scales."""
         return inputs.load_share * (inputs.conditions.load / self.scales.load)
 
+    def load(self, inputs: StepInputs) -> float:
+        """Integral of the pressure that balances the load of a step."""
+        return self.scales.grid.load * self.share(inputs)
+
     def uniform(self, gap: float) -> np.ndarray:
         """Unknowns that add the same gap at every node."""
         return np.array([gap])
@@ -61,7 +65,7 @@ class Load:
 
     def residual(self, border: np.ndarray, forces: np.ndarray, inputs: StepInputs) -> np.ndarray:
         """Rows of the equations; `forces`: of all nodes."""
-        return forces - self.scales.grid.load * self.share(inputs)
+        return forces - self.load(inputs)
 
     def product(self, border: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """Derivatives of the rows times changes of the unknowns and of the forces."""

@@ -40,26 +40,26 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
 
     Without entrainment the solids carry the load, in oil at ambient pressure: no flow fills a cavity.
     """
-    grid, load = problem.grid, problem.balance.share(inputs)
-    width_2 = (load * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
+    grid, balance = problem.grid, problem.balance
+    width_2 = (balance.share(inputs) * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
     p = np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0))
     oil_carries = problem.fluid is not None and not inputs.rests
     if oil_carries:
         p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
-    p *= grid.load * load / (grid.cell * p.sum())
-    h = problem.film(p, problem.balance.uniform(0.0), undeformed_gap(problem, inputs))
+    p *= balance.load(inputs) / (grid.cell * p.sum())
+    h = problem.film(p, balance.uniform(0.0), undeformed_gap(problem, inputs))
     if not oil_carries:
         lowest = 0.0 if problem.fluid is None else problem.model.minimum_film
         gap = lowest + np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
         q, w = problem.model.dry_start(p, gap)
-        return Unknowns(q, w, problem.balance.uniform(lowest - h[np.argmax(p)]))
+        return Unknowns(q, w, balance.uniform(lowest - h[np.argmax(p)]))
     raised = problem.model.start_film(thick * film) - h.min()
     h += raised
     oil, w = problem.model.oil_start(p, h)
     behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT_PRESSURE)
     entrained = film + np.repeat(grid.rows(h).min(axis=1) - h.min(), len(grid.x))  # beside the contact more
     q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT_PRESSURE))
-    return Unknowns(q, w, problem.balance.uniform(raised))
+    return Unknowns(q, w, balance.uniform(raised))
 
 
 def smoothed_over(grid: Grid, p: np.ndarray, width: float) -> np.ndarray:
@@ -96,11 +96,11 @@ def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unkno
 
 def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
     """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
-    limit, load, grid = problem.model.yield_pressure, problem.balance.share(inputs), problem.grid
-    total, phi = grid.load * load / grid.cell, undeformed_gap(problem, inputs)
-    border = problem.balance.uniform(0.0)
+    limit, balance, grid = problem.model.yield_pressure, problem.balance, problem.grid
+    total, phi = balance.load(inputs) / grid.cell, undeformed_gap(problem, inputs)
+    border, width_2 = balance.uniform(0.0), balance.share(inputs) ** grid.growth
     rate = 1.0 / problem.deflection.largest_eigenvalue
-    p = ahead = project(np.sqrt(np.maximum(load**grid.growth - grid.distance**2, 0.0)), limit, total)
+    p = ahead = project(np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0)), limit, total)
     momentum = 1.0
     for _ in range(MAX_ITERATIONS):
         new = project(ahead - rate * problem.film(ahead, border, phi), limit, total)
