@@ -91,6 +91,9 @@ def test_growing_field_of_sliding_bodies_conserves_volume(kind):
         for now, then, depth in zip(mesh.means(fields, travelled), before, depths, strict=True):
             sums = [part.reshape(-1, 26).sum(axis=1) for part in (now - then, depth)]
             np.testing.assert_allclose(*sums, rtol=1e-12)  # a row keeps to itself
+    ends = A * np.append(X - 0.5 * DX, X[-1] + 0.5 * DX)
+    for faces, distance, offset in zip(mesh.faces(travelled), travelled, offsets, strict=True):
+        np.testing.assert_allclose(faces, ends - distance + offset, rtol=0.0, atol=1e-12 * A)
     assert all(field.depth.min() >= 0.0 for field in fields)
     for field in fields:  # within the mesh and what has passed, no more than two cells on either side
         assert field.cells <= CELLS_PER_MESH_CELL * (16 + 1.45 * 39 + 2) + 4
