@@ -161,5 +161,6 @@ def limit_rise(now: np.ndarray, step: np.ndarray, law: tuple) -> None:
     for i in range(len(now)):
         h = now[i, 1]
         step[i, 0] = limit_cavitation(now[i, 0], step[i, 0])
-        highest = max(2.0 * asperity_pressure(h, *law)[0], FREE_RISE)
-        step[i, 1] = min(step[i, 1], h - asperity_separation(highest, *law))
+        if step[i, 1] > 0.0:  # asperities carry more
+            highest = max(2.0 * asperity_pressure(h, *law)[0], FREE_RISE)
+            step[i, 1] = min(step[i, 1], h - asperity_separation(highest, *law))

@@ -91,6 +91,8 @@ class CoarseSpace:
 class CoarseCorrection:
     """Correction of Reynolds rows at the nodes of a mask; each rank restricts its own rows. Collective.
 
+    In single precision: on fine meshes the dense matrices take longer than the sparse form.
+
     `derivatives`: of the local rows by pressure and separation of the nodes i-2 .. i+1, below and above,
         shape (local nodes, 12).
     `share`: of the rank.
@@ -99,18 +101,20 @@ class CoarseCorrection:
     def __init__(
         self, space: CoarseSpace, derivatives: np.ndarray, mask: np.ndarray, share: Share, ranks: MPI.Comm
     ):
-        functions, self.deflections = space.chosen(mask)
+        functions, deflections = space.chosen(mask)
         self.ranks, self.restriction = ranks, functions[share.local].T.tocsr()
         self.functions = functions[share.window]
         by_pressure, by_separation = (
             self.restriction @ space.matrix(derivatives[:, k::2], share.local) @ functions for k in (0, 1)
         )
-        matrix = global_sum(ranks, by_pressure.toarray() + by_separation @ self.deflections)
+        matrix = global_sum(ranks, by_pressure.toarray() + by_separation @ deflections)
+        self.deflections = deflections.astype(np.float32)
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved
             warnings.simplefilter("ignore", LinAlgWarning)
-            self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
+            self.lu = lu_factor(matrix.astype(np.float32), overwrite_a=True, check_finite=False)
 
     def __call__(self, rows: np.ndarray) -> np.ndarray:
         """Pressures that reduce local Reynolds rows, and the separations by them, shape (window, 2)."""
-        coarse = lu_solve(self.lu, global_sum(self.ranks, self.restriction @ rows), check_finite=False)
+        restricted = global_sum(self.ranks, self.restriction @ rows).astype(np.float32)
+        coarse = lu_solve(self.lu, restricted, check_finite=False)
         return self.functions @ np.stack([coarse, self.deflections @ coarse], axis=1)

@@ -48,27 +48,52 @@ class Reduction(NamedTuple):
 
 def reduction_of(state: NodeState, inactive: np.ndarray) -> Reduction:
     """Reduction of the nodes of a state; `inactive`: mask of those whose w is not in the system."""
-    (p_q, p_w), (r_q, r_w), (_, h_w), (s_q, s_w) = state.derivatives()
-    kind, r_w = np.full(len(p_q), PRESSURE, dtype=np.uint8), r_w.copy()
-    determinant = p_q * s_w - p_w * s_q
-    fixed = np.abs(determinant) < 1e-12
-    kind[fixed] = VOID
-    kind[fixed & (s_w != 0.0) & (np.abs(p_w) > STIFF_SLOPE)] = STIFF
-    kind[fixed & (s_w == 0.0) & (p_w != 0.0)] = CONTACT
-    kind[inactive] = BOUND
-    of_p_and_s, of_r_and_s = kind == PRESSURE, (kind == VOID) | (kind == STIFF)
-    of_p_and_r, bound = (kind == STIFF) | (kind == CONTACT), kind == BOUND
-    r_w[of_r_and_s & (r_q == 0.0)] = np.minimum(r_w[of_r_and_s & (r_q == 0.0)], -MIN_SLOPE)
-    by_p_s, by_r_s = inverse((p_q, p_w), (s_q, s_w), of_p_and_s), inverse((r_q, r_w), (s_q, s_w), of_r_and_s)
-    back = by_p_s + inverse((p_q, p_w), (r_q, r_w), of_p_and_r)
-    back += np.where(kind == VOID, by_r_s, 0.0)
-    back[0, bound] = 1.0
-    r_p, r_s = r_q * by_p_s[0] + r_w * by_p_s[2], r_q * by_p_s[1] + r_w * by_p_s[3]
-    h_p, h_s = h_w * (by_p_s[2] + by_r_s[2]), h_w * (by_p_s[3] + by_r_s[3])
-    r_p[bound] = r_q[bound]
-    stiff = kind == STIFF
-    p_s = np.where(stiff, p_w / np.where(stiff, s_w, 1.0), 0.0)
-    return Reduction(kind, r_p, r_s, h_p, h_s, p_s, back)
+    kind, changes = np.empty(len(inactive), dtype=np.uint8), np.zeros((5, len(inactive)))
+    back = np.zeros((4, len(inactive)))
+    reduce_nodes(state.derivatives(), inactive, kind, changes, back)
+    return Reduction._make((kind, *changes, back))
+
+
+@compiled
+def reduce_nodes(
+    derivatives: np.ndarray, inactive: np.ndarray, kind: np.ndarray, changes: np.ndarray, back: np.ndarray
+) -> None:
+    """Fill in the fields of a :class:`Reduction`; `changes`: r_p .. p_s, zeros, and `back`, zeros."""
+    for i in range(len(kind)):
+        of_node = derivatives[:, :, i]
+        pressure, r, film, separation = of_node[0], of_node[1], of_node[2], of_node[3]
+        kind[i] = kind_of(pressure, separation, inactive[i])
+        if kind[i] == BOUND:
+            changes[0, i], back[0, i] = r[0], 1.0
+            continue
+        p_q, p_w, r_q, r_w, s_q, s_w = pressure[0], pressure[1], r[0], r[1], separation[0], separation[1]
+        if kind[i] == PRESSURE:
+            by = inverse(p_q, p_w, s_q, s_w)
+            changes[0, i], changes[1, i] = r_q * by[0] + r_w * by[2], r_q * by[1] + r_w * by[3]
+        elif kind[i] == CONTACT:
+            by = inverse(p_q, p_w, r_q, r_w)
+            back[0, i], back[1, i], back[2, i], back[3, i] = by
+            continue
+        else:
+            if r_q == 0.0:
+                r_w = min(r_w, -MIN_SLOPE)
+            by = inverse(r_q, r_w, s_q, s_w)
+        changes[2, i], changes[3, i] = film[1] * by[2], film[1] * by[3]
+        if kind[i] == STIFF:
+            changes[4, i], by = p_w / s_w, inverse(p_q, p_w, r_q, r_w)
+        back[0, i], back[1, i], back[2, i], back[3, i] = by
+
+
+@compiled
+def kind_of(pressure: np.ndarray, separation: np.ndarray, is_inactive: bool) -> int:
+    """Kind of a node by the derivatives of pressure and separation by q and w."""
+    if is_inactive:
+        return BOUND
+    if abs(pressure[0] * separation[1] - pressure[1] * separation[0]) >= 1e-12:
+        return PRESSURE
+    if separation[1] != 0.0:
+        return STIFF if abs(pressure[1]) > STIFF_SLOPE else VOID
+    return CONTACT if pressure[1] != 0.0 else VOID
 
 
 @compiled
@@ -85,8 +110,8 @@ def unknowns_of(
     return out
 
 
-def inverse(first: tuple, second: tuple, nodes: np.ndarray) -> np.ndarray:
-    """Derivatives of q and w by two quantities from theirs by q and w, zero but at `nodes`; (4, nodes)."""
-    (a, b), (c, d) = first, second
-    by = nodes / np.where(nodes, a * d - b * c, 1.0)
-    return np.stack([d * by, -b * by, -c * by, a * by])
+@compiled
+def inverse(a: float, b: float, c: float, d: float) -> tuple[float, float, float, float]:
+    """Derivatives of q and w by two quantities from theirs, (a, b) and (c, d)."""
+    by = 1.0 / (a * d - b * c)
+    return d * by, -b * by, -c * by, a * by
