@@ -8,7 +8,9 @@ from support.convergence import observed_order
 from ehlpetsc.discretisation.line.deflection import deflection_kernel
 from ehlpetsc.discretisation.plane.deflection import (
     NEAR,
+    Convolution,
     Deflection,
+    Transposition,
     cell_potential,
     differences_of_primitive,
     free_kernel,
@@ -60,3 +62,14 @@ def test_film_of_hertz_pressure_is_flat_to_second_order():
         approaches.append(inside.mean() - 1.0)
     assert spreads[-1] < 6e-5 and abs(approaches[-1]) < 4e-4
     assert observed_order(spreads) > 1.8
+
+
+@pytest.mark.parametrize("periodic", (False, True))
+def test_convolution_has_the_precision_of_its_argument(periodic):
+    product = Convolution(
+        (periodic_kernel if periodic else free_kernel)(33, 24, DX, DY), periodic, Transposition()
+    )
+    pressure = np.random.default_rng(5).random(24 * 33)
+    exact, single = product(pressure), product(pressure.astype(np.float32))
+    assert single.dtype == np.float32
+    assert 1e-9 < np.abs(single - exact).max() / np.abs(exact).max() < 1e-6
