@@ -191,7 +191,8 @@ def draw(ensembles: Ensembles) -> Figure:
             passes = PASSES if name == SCENE else SCENES[name].passes
             labels.append(SCENE_LABELS[title[0]] if name == SCENE else SCENES[name].label)
             values.append(shares(lives, passes))
-        bars(axes, labels, values)
+        if values:
+            bars(axes, labels, values)
         axes.set_title(title, fontsize="medium")
     panels.flat[0].legend(fontsize="x-small", loc="lower right")
     ends = f"{PASSES:,.0f} passes (4: {RING_PASSES:,.0f})"
