@@ -194,7 +194,7 @@ def draw(ensembles: Ensembles) -> Figure:
         if values:
             bars(axes, labels, values)
         axes.set_title(title, fontsize="medium")
-    panels.flat[0].legend(fontsize="x-small", loc="lower right")
+    figure.legend(*panels.flat[0].get_legend_handles_labels(), loc="lower right")
     ends = f"{PASSES:,.0f} passes (4: {RING_PASSES:,.0f})"
     style.set_title(figure, f"Surface with D above {DAMAGED:g} to 20 µm deep after {ends}; bounds of 90 %")
     over_depth(panels.flat[5], ensembles["first"])

@@ -152,8 +152,6 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
 
     `known`: places of faults that have been found already.
     """
-    from ehlpetsc.surfaces.samples import measured_samples
-
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
         return []
@@ -167,6 +165,8 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
     tables = [table for table in surface.values() if "short_cutoff" in table]
     if not tables:
         return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
+    from ehlpetsc.surfaces.samples import measured_samples
+
     try:
         profiles = [values_of(PROFILE, table) for table in tables]
         before = [measured_samples(folder, profile.copy({"short_cutoff": None})).z for profile in profiles]

@@ -166,7 +166,8 @@ def _checked(
     if case:
         case = with_layer_stiffness(case.copy({"_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
-        faults += [Fault("mesh", line) for line in reversed_flow] + contact_faults(cast(Case, case), data)
+        faults += [Fault("mesh", line) for line in reversed_flow]
+        faults += contact_faults(cast(Case, case), data) if case.contact and case.mesh else []
     return (case if case and not faults else None), faults + found
 
 
@@ -225,6 +226,7 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
     Without a case, as other tables have faults, they are read alone, as profiles or maps.
     """
     case, faults = _checked(folder, data, known)
+    whole = case if case and case.contact and case.mesh else None  # its kind is known
     surface = data.get("surface")
     tables = {side: surface.get(side) if isinstance(surface, dict) else None for side in SIDES}
     specs = {side: check(PROFILE, t)[0] if isinstance(t, dict) else None for side, t in tables.items()}
@@ -232,10 +234,10 @@ def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> t
         if spec is None:  # smooth, or its faults are reported with its keys
             continue
         try:
-            _check_surface(folder, spec, case)
+            _check_surface(folder, spec, whole)
         except ProfileError as error:
             key = "z" if "z" in tables[side] else "file"
-            of_map = case and KINDS[case.kind].is_areal  # of several keys
+            of_map = whole and KINDS[whole.kind].is_areal  # of several keys
             given = "" if of_map else f".{key} = {show(tables[side][key])}"
             faults.append(Fault("", f"surface.{side}{given}: {error}"))
     return case, faults

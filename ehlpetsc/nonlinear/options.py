@@ -43,6 +43,8 @@ PLANE = {
     "pc_type": "python",
     "pc_python_type": "ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm",
 }
+# of a dry one: an error of a stiff layer's separation is one of its pressure a thousand times as large
+DRY_PLANE = {"ksp_rtol": "1e-6"}
 INNER_PREFIX = "pressure_"
 INNER = {  # of incomplete LU, on several ranks in slabs of rows with a few of their neighbours'
     "pc_factor_levels": "1",
@@ -86,8 +88,10 @@ class RunOptions:
         of_case: dict | None = None,
         given: dict | None = None,
         kind: str = "line",
+        is_dry: bool = False,
     ) -> None:
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
+        self._of_scene = DRY_PLANE if is_dry and KINDS[kind].is_areal else {}
         self._linear_solver = KINDS[kind].part("linear_solver")
         self._of_case, self._of_call, self._depth = dict(of_case or {}), dict(given or {}), 0
         self._entered: list = []
@@ -158,7 +162,7 @@ class RunOptions:
         in_table = table.getAll()
         self.given = wanted = self._of_case | in_table | self._of_call
         check_options(wanted)
-        wanted = self._defaults | self._linear_solver(wanted)
+        wanted = self._defaults | self._linear_solver(self._of_scene | wanted)
         self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
         self._entered = [
             name for name, value in wanted.items() if name not in in_table or in_table[name] != value

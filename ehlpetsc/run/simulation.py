@@ -140,7 +140,8 @@ class Simulation:
             one_by_one = "solve its members one by one, ehlpetsc.members(case)"
             raise CaseError([f"{case.path}: a [series]: {one_by_one}"])
         self.comm = comm or MPI.COMM_SELF
-        self.options = RunOptions(case.contact.law, case.petsc, _option_texts(options or {}), case.kind)
+        given = case.petsc, _option_texts(options or {})
+        self.options = RunOptions(case.contact.law, *given, case.kind, is_dry=case.fluid is None)
         self._options = options
         on_root(self.comm, check_unchanged, case)
         self.scales = Scales.of(case)

@@ -247,5 +247,5 @@ def test_too_fine_a_random_map_is_refused():
     ],
 )
 def test_keys_of_maps_are_refused_in_a_line_contact(keys):
-    with pytest.raises(case.CaseError, match=r"surface\.1\.\S*(_across|direction|z): of maps, "):
+    with pytest.raises(case.CaseError, match=r"surface\.1\.\S*(_across|direction|z): of strip and point "):
         case.load(CASES / "table1_rough.toml", [keys])
