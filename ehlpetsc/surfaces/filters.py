@@ -119,11 +119,11 @@ SIGMA_OF_MAD = 1.4826  # standard deviation of Gaussian heights over their media
 
 
 def no_data_value(z: np.ndarray) -> float | None:
-    """Value that is repeated in heights far from all neighbours, as 9999 or 0 for no data; None: none.
+    """Placeholder for missing heights, far from all its neighbours, as 9999 or 0; None if there is none.
 
-    Candidates are the minimum, the maximum, 0 and the most frequent value. Each of them that occurs at least
-    `MIN_REPEATS` times, and in no more than half of the points, as a plateau does, is compared with the
-    neighbours of its runs; nan in `z` is no neighbour.
+    Candidates are the minimum, the maximum, 0 and the most frequent value, if they occur at least
+    `MIN_REPEATS` times. A value of more than half of the points is a plateau and is kept. Any other candidate
+    is compared with the neighbours of its runs; nan in `z` does not count as a neighbour.
     """
     finite = z[np.isfinite(z)]
     values, counts = np.unique(finite, return_counts=True)
