@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from ehlpetsc.case.tables import Case
     from ehlpetsc.effects.effect import Effect
-    from ehlpetsc.physics.law import Law
+    from ehlpetsc.physics.oil.law import Law
 
 __all__ = ["Result", "read_result", "solve"]
 
@@ -51,7 +51,7 @@ class Result(reader.Result):
         path
             Picture that is also written, replaced if it exists: ``"film.png"``, ``.svg``, ``.pdf`` ...
         step, time
-            By default the frame of :func:`ehlpetsc.pictures.frames.frame_to_show`.
+            By default the frame of :func:`ehlpetsc.pictures.frames.choice.frame_to_show`.
         window
             Limits of x/a.
         field
@@ -69,7 +69,8 @@ class Result(reader.Result):
         >>> [axes.get_ylabel() for axes in figure.axes]
         ['pressure [GPa]', 'gap [µm]']
         """
-        from ehlpetsc.pictures import frames, style
+        from ehlpetsc.pictures import style
+        from ehlpetsc.pictures.frames import choice as frames
 
         if path is not None:
             if not isinstance(path, str | PathLike):

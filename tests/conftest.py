@@ -44,8 +44,8 @@ def signals_as_before():
 @pytest.fixture(scope="module")
 def coarse_pictures():
     """Pictures of post-processing of few dots and in one format, but where a test asks for both."""
-    from ehlpetsc.pictures import damage as gallery
     from ehlpetsc.pictures import style
+    from ehlpetsc.pictures.damage import maps as gallery
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "DPI", 20)
@@ -60,7 +60,7 @@ def uncompiled(monkeypatch):
     The branches of the switch over the laws have no Python form: the switch is compiled.
     """
     from ehlpetsc.effects.heat import film_shear
-    from ehlpetsc.physics import rheology
+    from ehlpetsc.physics.oil import rheology
 
     for module in (film_shear, rheology):
         for name, function in list(vars(module).items()):

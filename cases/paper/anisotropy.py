@@ -27,11 +27,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.api import Result, solve
-from ehlpetsc.physics.asperities import GAMMA, asperity_separation, flow_factor
+from ehlpetsc.physics.contact.asperities import GAMMA, asperity_separation, flow_factor
 from ehlpetsc.results.means import filled_weights, mean
-from ehlpetsc.surfaces.areal_files import read_map
+from ehlpetsc.surfaces.files.areal import read_map
+from ehlpetsc.surfaces.files.profiles import Layout
 from ehlpetsc.surfaces.filters import without_form
-from ehlpetsc.surfaces.profile_files import Layout
 from ehlpetsc.surfaces.synthetic import Spectrum, random_heights
 
 HALF_WIDTH, MODULUS = 150e-6, 227.4725e9  # m, E' of steel [Pa]

@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.physics.viscosity_laws import KELVIN, walther, walther_constants
+from ehlpetsc.physics.oil.viscosity_laws import KELVIN, walther, walther_constants
 from ehlpetsc.pictures import style
 from ehlpetsc.run.simulation import Simulation
 

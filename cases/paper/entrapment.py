@@ -14,8 +14,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.api import Result, read_result
-from ehlpetsc.pictures import line, style
-from ehlpetsc.pictures.frame_data import PRESSURE
+from ehlpetsc.pictures import style
+from ehlpetsc.pictures.frames import line
+from ehlpetsc.pictures.frames.data import PRESSURE
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
 MAX_GAP = 0.05  # half-widths between the contacts

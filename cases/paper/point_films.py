@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.geometry import hamrock_dowson_films, nijenbanning_central_film
+from ehlpetsc.physics.contact.geometry import hamrock_dowson_films, nijenbanning_central_film
 from ehlpetsc.run.simulation import Simulation
 
 GROUPS = ((20.0, 10.0), (50.0, 5.0), (100.0, 10.0), (200.0, 5.0), (200.0, 10.0))  # M, L

@@ -22,7 +22,7 @@ class Kind(NamedTuple):
     `is_areal`: whether surfaces are maps; of a line they are profiles.
 
     Parts, ``module:name``, each loaded where it is used, so that a kind loads no module of another one:
-    `geometry`: a :class:`ehlpetsc.physics.geometry.Geometry`.
+    `geometry`: a :class:`ehlpetsc.physics.contact.geometry.Geometry`.
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.scheme.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
     `sweeps`: solver by the paper's sweeps; "": none.
@@ -52,7 +52,7 @@ KINDS = {
         is_whole=False,
         radii=" in a line contact or a strip, of one radius",
         is_areal=False,
-        geometry="physics.geometry:LINE",
+        geometry="physics.contact.geometry:LINE",
         system="nonlinear.line.system:line_system",
         linear_solver="nonlinear.options:line_solver",
         sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
@@ -60,7 +60,7 @@ KINDS = {
 }
 KINDS["strip"] = KINDS["line"]._replace(
     is_areal=True,
-    geometry="physics.geometry:STRIP",
+    geometry="physics.contact.geometry:STRIP",
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
     sweeps="",
@@ -68,7 +68,7 @@ KINDS["strip"] = KINDS["line"]._replace(
 KINDS["point"] = KINDS["strip"]._replace(
     is_whole=True,
     radii=" in a point contact, of two radii",
-    geometry="physics.geometry:POINT",
+    geometry="physics.contact.geometry:POINT",
 )
 """Kinds of contact by name, :attr:`Case.kind`."""
 

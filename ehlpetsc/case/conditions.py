@@ -21,7 +21,7 @@ from ehlpetsc.case.checking import check, in_contact, is_point
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
 from ehlpetsc.case.values import is_number, shortened
-from ehlpetsc.physics.geometry import LINE, POINT
+from ehlpetsc.physics.contact.geometry import LINE, POINT
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 def read_table(path: Path, units: Mapping[str, str], names: Columns) -> dict[str, list[float]]:
     """Columns of a text file in SI units, `units` by key; raises `ProfileError`."""
-    from ehlpetsc.surfaces.text_files import text_columns
+    from ehlpetsc.surfaces.files.text import text_columns
 
     try:
         columns, header = text_columns(path)

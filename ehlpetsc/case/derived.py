@@ -17,18 +17,18 @@ from ehlpetsc.case.checking import Fault, check, is_point, unsound_tables, value
 from ehlpetsc.case.tables.contact import CONTACT, GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.case.values import is_allowed, is_number
-from ehlpetsc.physics.hertz import hertz_load
-from ehlpetsc.physics.law import STANDARD_TEMPERATURE
-from ehlpetsc.physics.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
-from ehlpetsc.physics.oils import OIL_SHEAR, OILS
-from ehlpetsc.physics.rheology import SHEAR_LAWS
-from ehlpetsc.physics.scales import reduced_modulus
-from ehlpetsc.physics.viscosity_laws import (
+from ehlpetsc.physics.contact.hertz import hertz_load
+from ehlpetsc.physics.oil.law import STANDARD_TEMPERATURE
+from ehlpetsc.physics.oil.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
+from ehlpetsc.physics.oil.oils import OIL_SHEAR, OILS
+from ehlpetsc.physics.oil.rheology import SHEAR_LAWS
+from ehlpetsc.physics.oil.viscosity_laws import (
     gold_pressure_viscosity,
     roelands_slope_of_secant,
     walther,
     walther_constants,
 )
+from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -183,7 +183,7 @@ def with_layer_stiffness(case: Case) -> Case:
     contact = case.contact
     if contact is None or contact.law != "compliant" or contact.asperity_stiffness is not None:
         return case
-    from ehlpetsc.physics.asperities import asperity_stiffness
+    from ehlpetsc.physics.contact.asperities import asperity_stiffness
     from ehlpetsc.physics.scales import Scales
 
     surfaces = [case.surface.side(side) for side in ("1", "2")]
@@ -208,7 +208,7 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     from ehlpetsc.gears.path import path_of_contact
     from ehlpetsc.gears.standards import Rating
     from ehlpetsc.physics.flash_temperature import STEEL, Solid
-    from ehlpetsc.physics.laws import reference_temperature, viscosity
+    from ehlpetsc.physics.oil.laws import reference_temperature, viscosity
     from ehlpetsc.surfaces.samples import measured_samples
 
     if case.gears is None or case.fluid is None:
@@ -247,9 +247,9 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
 def _film_friction(case: Values, path: ContactPath) -> np.ndarray:
     """Coefficient of friction of the smooth isothermal film along a path of contact, 0 without load."""
     from ehlpetsc.gears.path import hertz
+    from ehlpetsc.physics.contact.geometry import LINE
     from ehlpetsc.physics.film_formulas import contact_films
     from ehlpetsc.physics.flash_temperature import expected_friction
-    from ehlpetsc.physics.geometry import LINE
     from ehlpetsc.physics.operation import Conditions
 
     modulus, found = modulus_of(case), np.zeros(len(path.rho))

@@ -29,7 +29,7 @@ from ehlpetsc.case.tables.surface import PROFILE, SIDES, file_digests
 from ehlpetsc.case.values import is_number, shortened, show
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.law import Law
+from ehlpetsc.physics.oil.law import Law
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
@@ -262,7 +262,7 @@ def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:
 
 
 def _check_plausible(given: Topography, case: Case) -> None:
-    from ehlpetsc.surfaces.profile_checks import absurd
+    from ehlpetsc.surfaces.motion.profile_checks import absurd
 
     scales = Scales.of(case)
     across = scales.b if math.isfinite(scales.b) else scales.grid.spacings[0] * scales.grid.shape[0]

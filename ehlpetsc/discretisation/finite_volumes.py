@@ -21,10 +21,10 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
-from ehlpetsc.physics.asperities import flow_factor
-from ehlpetsc.physics.laws import relative_density
-from ehlpetsc.physics.rheology import mobilities
-from ehlpetsc.physics.tabulated_flow import tabulated_mobilities
+from ehlpetsc.physics.contact.asperities import flow_factor
+from ehlpetsc.physics.oil.laws import relative_density
+from ehlpetsc.physics.oil.rheology import mobilities
+from ehlpetsc.physics.oil.tabulated_flow import tabulated_mobilities
 
 ONE = unsigned(1)
 # Coefficients of a row, of q and h of each node: i-2, i-1, i, i+1 along x; in the plane i below and above.
@@ -189,7 +189,7 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
     behind
         Node upstream of `left`; `left` itself where there is none.
     table
-        Of :func:`ehlpetsc.physics.tabulated_flow.flow_table`.
+        Of :func:`ehlpetsc.physics.oil.tabulated_flow.flow_table`.
     law
         p0 over the spacing [Pa/m]; a^2/R [m]; stress of the shear law without pressure, infinite: Newtonian,
         its rise over p0 [Pa]; |u1 - u2| [m/s]; entrainment speed over that of the scales; rms height of the

@@ -41,8 +41,8 @@ from ehlpetsc.discretisation.finite_volumes import (
 )
 from ehlpetsc.discretisation.step_inputs import StepInputs, inlet, shear_constants
 from ehlpetsc.discretisation.unknowns import Share, n_dofs
-from ehlpetsc.physics.grid import Grid
-from ehlpetsc.physics.laws import density
+from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.oil.laws import density
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:

@@ -14,11 +14,11 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, extrapolated, fill_mass
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.physics.laws import density_law, ln_viscosity, viscosity_law
+from ehlpetsc.physics.oil.laws import density_law, ln_viscosity, viscosity_law
+from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
+from ehlpetsc.physics.oil.tabulated_flow import flow_table
 from ehlpetsc.physics.operation import Conditions
-from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.tabulated_flow import flow_table
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid
@@ -95,7 +95,7 @@ def nodal(
     ----------
     q, h : shape (nodes,)
     viscosity, density
-        :class:`ehlpetsc.physics.laws.OilLaw` of both, as tuples, which numba looks up faster.
+        :class:`ehlpetsc.physics.oil.laws.OilLaw` of both, as tuples, which numba looks up faster.
     units
         Scales of pressure p0 [Pa] and film [m]; 1/(u film) [s/m^2]; 1/eta0 [1/(Pa s)].
     at : shape (10, columns)

@@ -11,13 +11,13 @@ import numpy as np
 from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
 from ehlpetsc.base.quantities import AtEnd, Count
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.surfaces.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
     from ehlpetsc.effects.effect import Scene, Step
-    from ehlpetsc.surfaces.moving_surface import MovingSurface
+    from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
+    from ehlpetsc.surfaces.motion.moving_surface import MovingSurface
 
 
 class DepthRecord(Protocol):
@@ -58,7 +58,7 @@ class BodyDepth(Effect[D]):
             return self.record(depth=zero, hidden=zero, **entries)
         roughness, faces = self.scene.roughness, self.scene.mesh_on_bodies.faces((0.0, 0.0))
         profiles = (roughness.surface_1, roughness.surface_2) if roughness else (None, None)
-        return before._replace(hidden=BodyFields(*map(_ahead, before.depth, profiles, faces)))
+        return before._replace(hidden=type(before.depth)(*map(_ahead, before.depth, profiles, faces)))
 
     def inputs(self, record: D, inputs: StepInputs, step: Step) -> StepInputs:
         """Add both depths to the gap."""
@@ -80,7 +80,7 @@ class BodyDepth(Effect[D]):
 def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -> BodyField:
     """Depth ahead of a profile, in excess of that of its row, the minimum in the mesh at the start."""
     if profile is None or not profile.is_moving or not profile.body_offset or not field.cells:
-        return BodyField(field.spacing, 0, field.depth[..., :0])
+        return field._replace(first=0, depth=field.depth[..., :0])
     centres = 0.5 * (field.edges[1:] + field.edges[:-1]) - profile.body_offset
     excess = np.maximum(field.depth - field.means(faces).min(axis=-1, keepdims=True), 0.0)
     return field._replace(depth=(1.0 - profile.entered(centres)) * excess)

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from ehlpetsc.physics import Operation
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.body_field import MeshOnBodies
-    from ehlpetsc.surfaces.roughness import Roughness
+    from ehlpetsc.surfaces.motion.body_field import MeshOnBodies
+    from ehlpetsc.surfaces.motion.roughness import Roughness
 
 
 @dataclass(frozen=True)
@@ -47,10 +47,10 @@ class Scene:
 
     @cached_property
     def roughness(self) -> Roughness | None:
-        """Profiles of both surfaces, `surfaces.roughness.Roughness`; None where both are smooth."""
+        """Profiles of both surfaces, `surfaces.motion.roughness.Roughness`; None where both are smooth."""
         if not (self.case.surface.body_1 or self.case.surface.body_2):
             return None
-        from ehlpetsc.surfaces.roughness import Roughness
+        from ehlpetsc.surfaces.motion.roughness import Roughness
 
         return Roughness.of(self.case, self.scales, self.begin)
 
@@ -61,9 +61,9 @@ class Scene:
 
     @cached_property
     def mesh_on_bodies(self) -> MeshOnBodies:
-        """Cells of the mesh in both bodies, `surfaces.body_field.MeshOnBodies`."""
-        from ehlpetsc.surfaces.body_field import MeshOnBodies
-        from ehlpetsc.surfaces.moving_surface import directed_speeds
+        """Cells of the mesh in both bodies, `surfaces.motion.body_field.MeshOnBodies`."""
+        from ehlpetsc.surfaces.motion.body_field import MeshOnBodies
+        from ehlpetsc.surfaces.motion.moving_surface import directed_speeds
 
         pairs = zip(self.begin, directed_speeds(self.case, self.scales), strict=True)
         return MeshOnBodies(self.scales, [-begin if speed > 0.0 else begin for begin, speed in pairs])

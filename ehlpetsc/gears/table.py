@@ -15,7 +15,7 @@ from ehlpetsc.base.units import converted
 from ehlpetsc.gears.load_sharing import edge_contact
 from ehlpetsc.gears.path import Path, describe, gear_loss_factor, hertz, path_of_contact
 from ehlpetsc.gears.standards import STANDARDS, Rating, loss_factor, values_of
-from ehlpetsc.physics.hertz import hertz_ellipse, hertz_line
+from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case

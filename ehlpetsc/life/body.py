@@ -9,8 +9,8 @@ import numpy as np
 
 from ehlpetsc.life import laws
 from ehlpetsc.results.post_result import DAMAGED
-from ehlpetsc.surfaces.body_field import BodyField
 from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line, periodic_mean
+from ehlpetsc.surfaces.motion.body_field import BodyField
 
 if TYPE_CHECKING:
     from ehlpetsc.life.one_pass import OfBody

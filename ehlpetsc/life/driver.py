@@ -22,10 +22,10 @@ from ehlpetsc.life.positions import Positions, number_of_positions
 from ehlpetsc.life.rounds import Jumps, Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
-from ehlpetsc.run.forecast import work_time
+from ehlpetsc.run.forecast.cost import work_time
 from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.surfaces.profile_checks import mesh_warnings
+from ehlpetsc.surfaces.motion.profile_checks import mesh_warnings
 
 MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
 NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")

@@ -17,7 +17,7 @@ from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.recorder import Output, Recorder
 from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import solve as solve_run
-from ehlpetsc.surfaces.body_field import BodyField
+from ehlpetsc.surfaces.motion.body_field import BodyField
 
 if TYPE_CHECKING:
     from ehlpetsc.run.ranks import StopRequest

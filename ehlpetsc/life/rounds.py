@@ -13,7 +13,7 @@ from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.life.body import MAX_EXTRAPOLATION, LifeBody, Rates
 from ehlpetsc.life.one_pass import Pass
 from ehlpetsc.run.ranks import WorkQueue
-from ehlpetsc.surfaces.body_field import BodyField, BodyFields
+from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values

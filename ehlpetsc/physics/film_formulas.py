@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.physics.geometry import rigid_factors
+from ehlpetsc.physics.contact.geometry import rigid_factors
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case, Fluid
-    from ehlpetsc.physics.geometry import Geometry
+    from ehlpetsc.physics.contact.geometry import Geometry
     from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
 
@@ -89,7 +89,7 @@ def contact_films(
     geometry: Geometry, modulus: float, radius_ratio: float, fluid: Fluid, conditions: Conditions
 ) -> tuple[float, float]:
     """Films of :func:`smooth_films` of a kind of contact; E' [Pa] and the ratio of its radii."""
-    from ehlpetsc.physics.laws import density
+    from ehlpetsc.physics.oil.laws import density
 
     load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)
     if speed == 0.0:

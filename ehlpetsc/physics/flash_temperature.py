@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.physics.traction import wall_shear
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.physics.geometry import Geometry
-from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.contact.geometry import Geometry
+from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.operation import Conditions
 
 if TYPE_CHECKING:

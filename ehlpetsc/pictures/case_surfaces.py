@@ -16,8 +16,8 @@ from ehlpetsc.case.loading import Case, load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.surface import MAX_PIXELS, draw_heights
-from ehlpetsc.surfaces.profile_checks import entry_times
-from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
+from ehlpetsc.surfaces.motion.profile_checks import entry_times
+from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
 
 PROFILE_SIZE = (9.0, 3.3)  # inches, for each profile
 WIDTH, MAP_WIDTH, MARGIN = 7.0, 5.3, 1.1  # inches: of the figure, of a map, above and below a map

@@ -21,11 +21,12 @@ from pathlib import Path
 
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.pictures import frames, style
+from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case
-from ehlpetsc.pictures.frame_data import described
+from ehlpetsc.pictures.frames import choice as frames
+from ehlpetsc.pictures.frames.data import described
+from ehlpetsc.pictures.frames.over_time import draw_courses, draw_map, draw_temperatures
 from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
-from ehlpetsc.pictures.over_time import draw_courses, draw_map, draw_temperatures
 from ehlpetsc.pictures.report import save_report
 from ehlpetsc.pictures.running_in import draw_running_in
 from ehlpetsc.results.index import in_order, open_all
@@ -138,7 +139,7 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
 def _function(kind: str | None) -> Callable:
     """Function of the results and the options that draws a kind of picture."""
     if kind in MAPS:
-        from ehlpetsc.pictures import plane  # which no line contact needs
+        from ehlpetsc.pictures.frames import plane  # which no line contact needs
 
         return plane.draw_fringes if kind == "fringes" else plane.draw_contacts
     return FIGURES[kind][0] if kind else frames.draw_instant

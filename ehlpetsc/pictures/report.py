@@ -17,8 +17,8 @@ from ehlpetsc.base.environment import has
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frame_data import MOSTLY, SHOWN_UNITS, Frame, aspect, common, contact_word, in_view
-from ehlpetsc.pictures.frames import Choice, frame_to_show, travel_of, view
+from ehlpetsc.pictures.frames.choice import Choice, frame_to_show, travel_of, view
+from ehlpetsc.pictures.frames.data import MOSTLY, SHOWN_UNITS, Frame, aspect, common, contact_word, in_view
 from ehlpetsc.results.means import means
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import damage_beside

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frames import frame_to_show
+from ehlpetsc.pictures.frames.choice import frame_to_show
 from ehlpetsc.results.means import heights, pass_summary
 from ehlpetsc.results.post_result import PostResult, damage_beside
 from ehlpetsc.results.reader import Result

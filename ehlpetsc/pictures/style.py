@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.physics.geometry import Dry
+from ehlpetsc.physics.contact.geometry import Dry
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.output_guard import replacing

@@ -26,7 +26,8 @@ from ehlpetsc.case.combinations import parsed, put
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
-from ehlpetsc.surfaces.exports import WRITERS, GridField
+from ehlpetsc.surfaces.files.exports import WRITERS, GridField
+from ehlpetsc.surfaces.motion.profile_checks import doubts
 from ehlpetsc.surfaces.parameters import (
     CORRELATION_THRESHOLD,
     MIN_POINTS,
@@ -37,7 +38,6 @@ from ehlpetsc.surfaces.parameters import (
     power_spectrum,
     profile_parameters,
 )
-from ehlpetsc.surfaces.profile_checks import doubts
 from ehlpetsc.surfaces.samples import measured_samples
 from ehlpetsc.surfaces.topography import Topography, difference
 

@@ -14,7 +14,6 @@ import numpy as np
 
 import ehlpetsc.effects  # noqa: F401 - which adds its quantities to the table of all
 from ehlpetsc.base.quantities import MEANS, OTHERS, REDUCTIONS, STEP_SCALARS
-from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import StepScalar
@@ -96,6 +95,7 @@ def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
 
 def _filled_by(result: Result, side: str) -> float:
     """Time [s] from which the roughness of one surface fills the contact."""
+    from ehlpetsc.surfaces.motion.moving_surface import RAMP_LENGTH
     from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
 
     profile, speed = result.profile(side), result.attrs[f"u{side}"]

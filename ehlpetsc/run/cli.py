@@ -143,7 +143,7 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
     from ehlpetsc.case.loading import load
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.results.output_guard import file_path
-    from ehlpetsc.run.domain import has_passes, refusals
+    from ehlpetsc.run.forecast.domain import has_passes, refusals
     from ehlpetsc.run.ranks import on_root
     from ehlpetsc.run.simulation import Simulation
 
@@ -176,8 +176,8 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
 
 
 def _print_heading(simulation: Simulation) -> None:
-    from ehlpetsc.run.forecast import banner
-    from ehlpetsc.run.validity import warnings
+    from ehlpetsc.run.forecast.cost import banner
+    from ehlpetsc.run.forecast.validity import warnings
 
     case, scales = simulation.case, simulation.scales
     print(*banner(case, scales, simulation.roughness, simulation.comm.size), sep="\n")

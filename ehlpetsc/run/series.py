@@ -25,12 +25,12 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.index import Index
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import is_done, read_result
-from ehlpetsc.run.forecast import steps
+from ehlpetsc.run.forecast.cost import steps
+from ehlpetsc.run.forecast.validity import warnings
 from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
 from ehlpetsc.run.recorder import Output, summary_line
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
-from ehlpetsc.run.validity import warnings
 
 if TYPE_CHECKING:
     from mpi4py import MPI

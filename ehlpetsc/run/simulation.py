@@ -26,7 +26,7 @@ from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.domain import domain_faults
+from ehlpetsc.run.forecast.domain import domain_faults
 from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics

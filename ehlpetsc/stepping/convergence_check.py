@@ -23,7 +23,7 @@ from ehlpetsc.base.errors import NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
-from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.contact.grid import Grid
 
 SUM_ROUNDING = 1.0 + 1e-6  # factor on tolerances: sums in another order differ by rounding
 VOID_TOLERANCE = 1e-9  # excess of a void fraction over 1 that is rounding

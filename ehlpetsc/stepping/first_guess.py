@@ -15,7 +15,7 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.line.deflection import fast_length
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.contact.grid import Grid
 
 SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep
 MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum

@@ -28,7 +28,7 @@ from dataclasses import replace
 from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
+from ehlpetsc.physics.oil.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces import areal_files, profile_files, synthetic
-from ehlpetsc.surfaces.areal_files import Map, is_map, read_map
+from ehlpetsc.surfaces import synthetic
+from ehlpetsc.surfaces.files import areal, profiles
+from ehlpetsc.surfaces.files.areal import Map, is_map, read_map
+from ehlpetsc.surfaces.files.profiles import KEYS, UNITS, Layout, read_profile
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations, levelled, smoothed, without_form
-from ehlpetsc.surfaces.profile_files import KEYS, UNITS, Layout, read_profile
 from ehlpetsc.surfaces.synthetic import POINTS_PER_WAVE
 from ehlpetsc.surfaces.topography import Topography
 
@@ -33,7 +34,7 @@ def samples(folder: Path, spec: Values) -> Topography:
     if spec.z is not None:
         unit, x_unit = spec.unit or "m", spec.x_unit or spec.unit or "m"
         steps = spec.spacing * np.arange(len(spec.z)) if spec.x is None else UNITS[x_unit] * np.array(spec.x)
-        X, given, notes = profile_files.checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
+        X, given, notes = profiles.checked(steps, UNITS[unit] * np.array(spec.z), layout_of(spec))
     else:
         X, given, notes = read_profile(folder / spec.file, layout_of(spec))
     z, notes = centred(*_filtered((X,), given, notes, spec), given)
@@ -129,9 +130,7 @@ def _map(folder: Path, spec: Values) -> Map:
         return read_map(folder / spec.file, layout_of(spec))
     dx = spec.spacing or _step(spec.x, "x", spec)
     dy = spec.spacing_across or spec.spacing or _step(spec.y, "y", spec)
-    return areal_files.checked(
-        Map(UNITS[spec.unit or "m"] * np.array(spec.z, float), dx, dy), layout_of(spec)
-    )
+    return areal.checked(Map(UNITS[spec.unit or "m"] * np.array(spec.z, float), dx, dy), layout_of(spec))
 
 
 def _step(values: list[float], key: str, spec: Values) -> float:

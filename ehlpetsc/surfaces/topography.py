@@ -11,7 +11,7 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.continued_spline import Continuation, ContinuedSpline
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE
-from ehlpetsc.surfaces.moving_surface import WAVE_NODES
+from ehlpetsc.surfaces.motion.moving_surface import WAVE_NODES
 from ehlpetsc.surfaces.parameters import areal_parameters, moments, rms_gradient
 
 RIDGE_ROWS = 4  # of a map of ridges, for its parameters

@@ -32,8 +32,8 @@ from scipy.stats import qmc
 
 from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.case.loading import Case, load
+from ehlpetsc.physics.contact.hertz import hertz_ellipse
 from ehlpetsc.physics.film_formulas import expected_film, points_for_opening
-from ehlpetsc.physics.hertz import hertz_ellipse
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.effects.heat import film_shear
-from ehlpetsc.physics.rheology import FlowLaw
+from ehlpetsc.physics.oil.rheology import FlowLaw
 
 
 class FilmStress(NamedTuple):

@@ -25,10 +25,10 @@ HEAVY = """
 scipy.fft scipy.interpolate scipy.linalg scipy.ndimage ehlpetsc.__main__ ehlpetsc.case.loading
 ehlpetsc.discretisation.ehl_problem ehlpetsc.effects.heat.step ehlpetsc.results.output_guard
 ehlpetsc.results.reader ehlpetsc.run.checkpoint ehlpetsc.results.means ehlpetsc.results.writer
-ehlpetsc.run.cli ehlpetsc.run.validity
-ehlpetsc.run.forecast ehlpetsc.run.explain ehlpetsc.run.checkpoint ehlpetsc.stepping.observables
+ehlpetsc.run.cli ehlpetsc.run.forecast.validity
+ehlpetsc.run.forecast.cost ehlpetsc.run.forecast.explain ehlpetsc.run.checkpoint ehlpetsc.stepping.observables
 ehlpetsc.stepping.state ehlpetsc.stepping.steady_start
-ehlpetsc.surfaces.body_field ehlpetsc.surfaces.roughness
+ehlpetsc.surfaces.motion.body_field ehlpetsc.surfaces.motion.roughness
 """.split()
 
 

@@ -9,8 +9,8 @@ from support.points import R, point
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.hertz import hertz_ellipse, hertz_load
-from ehlpetsc.run.explain import explain
+from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_load
+from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 

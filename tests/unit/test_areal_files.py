@@ -14,9 +14,9 @@ from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.surfaces.areal_files import gap_width, read_map
+from ehlpetsc.surfaces.files.areal import gap_width, read_map
+from ehlpetsc.surfaces.files.profiles import Layout
 from ehlpetsc.surfaces.filters import levelled, smoothed, without_form
-from ehlpetsc.surfaces.profile_files import Layout
 from ehlpetsc.surfaces.samples import areal_samples, inscribed, turned
 
 DX, DY = 2e-6, 3e-6

@@ -9,7 +9,7 @@ from ehlpetsc.effects.depths import PlasticDeformation, PlasticRecord, Wear, Wea
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.body_field import BodyField, BodyFields
+from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 PASS, SHIFT = 4, 50e-6  # m
 ROUNDING = 1e-17  # m

@@ -14,7 +14,7 @@ from ehlpetsc.base.quantities import STORED
 from ehlpetsc.base.toml_file import toml_text
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
-from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.oil.laws import viscosity
 
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
 

@@ -18,8 +18,8 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables import CASE
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.explain import explain
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.forecast.explain import explain
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 DRAWS, PROFILE_DRAWS, KEY_DRAWS = draws(400), draws(300) // 2, draws(320) // 12
 LARGE = 5000  # nodes of a mesh beyond which nothing is worked out on it

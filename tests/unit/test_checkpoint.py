@@ -16,7 +16,7 @@ from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run import checkpoint, coarse_start
 from ehlpetsc.stepping.state import State, TimeLevel
-from ehlpetsc.surfaces.body_field import BodyField, BodyFields
+from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
 MESH = ["mesh.points_per_half_width=20"]

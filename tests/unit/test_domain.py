@@ -7,6 +7,8 @@ from support import CASES
 import ehlpetsc
 from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
+from ehlpetsc.physics.contact.geometry import brewe_rigid_film
+from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.film_formulas import (
     expected_film,
     film_left_by_inlet,
@@ -18,13 +20,11 @@ from ehlpetsc.physics.film_formulas import (
     rolling_outside,
     smooth_films,
 )
-from ehlpetsc.physics.geometry import brewe_rigid_film
-from ehlpetsc.physics.grid import Grid
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.domain import domain_faults, domain_warnings, strip_warnings
-from ehlpetsc.run.validity import warnings
+from ehlpetsc.run.forecast.domain import domain_faults, domain_warnings, strip_warnings
+from ehlpetsc.run.forecast.validity import warnings
 from ehlpetsc.stepping.convergence_check import check_ends
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 SMOOTH = CASES / "table1_smooth.toml"
 SLOW = {"contact.load": 2.1e6, "motion.entrainment_speed": 0.005}

@@ -102,7 +102,7 @@ for stress in (1e12, 5e6):
     films.append(abs(result.film_thickness / newton.film_thickness - 1.0).max())
 k = numpy.argmin(abs(result.x))
 p, h = result.pressure[0, k], result.film_thickness[0, k]
-eta = case.fluid.viscosity * numpy.exp(ehlpetsc.physics.laws.viscosity(p, case.fluid)[0])
+eta = case.fluid.viscosity * numpy.exp(ehlpetsc.physics.oil.laws.viscosity(p, case.fluid)[0])
 rate = eta * 0.5 * case.motion.entrainment_speed / h
 mean = 0.5 * (result.shear_stress_1 - result.shear_stress_2)[0, k]
 print(*films, abs(mean) / (rate / (1.0 + (rate / 5e6) ** 0.9)))

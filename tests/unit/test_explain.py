@@ -10,11 +10,18 @@ from support import CASES, ROOT, is_line_with
 from ehlpetsc.api import solve
 from ehlpetsc.case import loading as case
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run import forecast
-from ehlpetsc.run.explain import DAMAGE_ERRORS, FRICTION_ERRORS, PRESSURE_ERRORS, SHARE_RATIOS, explain, main
-from ehlpetsc.run.forecast import file_size
-from ehlpetsc.run.validity import warnings
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.forecast import cost as forecast
+from ehlpetsc.run.forecast.cost import file_size
+from ehlpetsc.run.forecast.explain import (
+    DAMAGE_ERRORS,
+    FRICTION_ERRORS,
+    PRESSURE_ERRORS,
+    SHARE_RATIOS,
+    explain,
+    main,
+)
+from ehlpetsc.run.forecast.validity import warnings
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
 

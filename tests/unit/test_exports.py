@@ -13,7 +13,7 @@ import pytest
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures.surface import main
 from ehlpetsc.results.reader import Result
-from ehlpetsc.surfaces.areal_files import read_map
+from ehlpetsc.surfaces.files.areal import read_map
 
 DX, DY = 2e-6, 3e-6
 Z = 1e-7 * np.random.default_rng(1).standard_normal((40, 60))

@@ -21,10 +21,10 @@ from ehlpetsc.gears.faults import faults, notes
 from ehlpetsc.gears.load_sharing import corner_gap, edge_contact, pair_loads, share, single_stiffness
 from ehlpetsc.gears.path import describe, gear_loss_factor, hertz, loss, mean_friction
 from ehlpetsc.gears.standards import bulk_temperatures, loss_factor, values_of
+from ehlpetsc.physics.contact.geometry import LINE
+from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.film_formulas import contact_films
-from ehlpetsc.physics.geometry import LINE
-from ehlpetsc.physics.hertz import hertz_line
-from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.pictures.gears import draw_damage

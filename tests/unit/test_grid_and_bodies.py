@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from ehlpetsc.physics.grid import Grid
-from ehlpetsc.surfaces.body_field import CELLS_PER_MESH_CELL, BodyField, MeshOnBodies
+from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.surfaces.motion.body_field import CELLS_PER_MESH_CELL, BodyField, MeshOnBodies
 
 A = 2e-4  # half-width [m]
 X, Y = np.linspace(-1.5, 1.0, 26), np.linspace(-0.6, 0.6, 7)

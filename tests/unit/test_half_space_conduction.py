@@ -5,8 +5,8 @@ import pytest
 from support.exact_solutions import moving_band
 
 from ehlpetsc.effects.heat.half_spaces import Body, StepWeights, diffuse, exponentials
+from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
-from ehlpetsc.physics.grid import Grid
 
 STEEL = Solid(46.0, 7850.0, 470.0)
 FLUX = 1e9  # W/m^2

@@ -17,10 +17,10 @@ from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
 from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
-from ehlpetsc.physics.laws import ln_viscosity, padded
-from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
+from ehlpetsc.physics.oil.laws import ln_viscosity, padded
+from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, NEWTON, FlowLaw
+from ehlpetsc.physics.oil.viscosity_laws import EXPONENTIAL, ROELANDS
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.viscosity_laws import EXPONENTIAL, ROELANDS
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
 

@@ -13,8 +13,8 @@ from ehlpetsc.__main__ import main
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.keys import EXAMPLES, keys, template
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.laws import density
-from ehlpetsc.run.explain import explain
+from ehlpetsc.physics.oil.laws import density
+from ehlpetsc.run.forecast.explain import explain
 
 sys.path.append(str(ROOT / ".github" / "site"))
 import key_page

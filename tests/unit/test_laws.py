@@ -13,11 +13,11 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables import FLUID
-from ehlpetsc.physics import laws, oils, rheology, viscosity_laws
-from ehlpetsc.physics.law import n_constants
+from ehlpetsc.physics.oil import laws, oils, rheology, viscosity_laws
+from ehlpetsc.physics.oil.law import n_constants
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast.validity import warnings
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.run.validity import warnings
 
 STEP = 1e-20
 CASE = CASES / "table1_smooth.toml"

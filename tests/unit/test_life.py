@@ -18,8 +18,8 @@ from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.life.positions import number_of_positions
 from ehlpetsc.life.rounds import MAX_EXTRAPOLATION, Jumps, Round
-from ehlpetsc.pictures import lives
-from ehlpetsc.surfaces.body_field import BodyField
+from ehlpetsc.pictures.damage import lives
+from ehlpetsc.surfaces.motion.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])
 

@@ -5,8 +5,8 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.validity import heat_warnings, limits
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.forecast.validity import heat_warnings, limits
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 WITHIN = {"p_max": 1.2e9, "oil_pressure": 1.2e9, "mass_error": 1e-7, "nodes_below_1nm": 0}
 

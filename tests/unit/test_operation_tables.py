@@ -11,7 +11,7 @@ import pytest
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.geometry import line_half_width
+from ehlpetsc.physics.contact.geometry import line_half_width
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.variable_operation import ConditionsTable, VariableOperation
 

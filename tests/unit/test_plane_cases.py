@@ -14,10 +14,10 @@ from ehlpetsc.case.keys import keys, template
 from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.explain import explain
-from ehlpetsc.run.forecast import file_size, work_time
-from ehlpetsc.run.validity import heat_warnings, limits, warnings
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.forecast.cost import file_size, work_time
+from ehlpetsc.run.forecast.explain import explain
+from ehlpetsc.run.forecast.validity import heat_warnings, limits, warnings
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 POINT, STRIP = (tomllib.loads(template(kind)) for kind in ("point", "strip"))
 del POINT["contact"]["asperity_height"]  # a full film over waves that the mesh hardly resolves

@@ -19,8 +19,10 @@ from support.made_results import P0, A, change_case, make_plane, make_result
 
 from ehlpetsc import read_result
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures import frames, over_time, plane, report, style
+from ehlpetsc.pictures import report, style
 from ehlpetsc.pictures.case_surfaces import draw_case
+from ehlpetsc.pictures.frames import choice as frames
+from ehlpetsc.pictures.frames import over_time, plane
 
 OPTIONS = plot.arguments().parse_args(["x"])
 CASE = """title = "rough ball"
@@ -291,7 +293,7 @@ def test_lines_load_no_module_of_planes(tmp_path):
     code = "import sys; from ehlpetsc.pictures.command import main; main(sys.argv[1:]); print(*sys.modules)"
     words = [sys.executable, "-c", code, str(tmp_path / "line.h5")]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
-    assert "ehlpetsc.pictures.frames" in loaded
+    assert "ehlpetsc.pictures.frames.choice" in loaded
     assert not [name for name in loaded if re.search(r"pictures\.plane", name)]
 
 

@@ -9,7 +9,7 @@ import pytest
 import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
-from ehlpetsc.pictures import over_time
+from ehlpetsc.pictures.frames import over_time
 from ehlpetsc.results.xdmf import write_xdmf
 from ehlpetsc.run.recorder import Recorder
 

@@ -13,16 +13,17 @@ from support.made_results import A, change_case, make_result, with_solids
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales, reduced_modulus
 from ehlpetsc.pictures import command as plot
-from ehlpetsc.pictures import frames as drawing
-from ehlpetsc.pictures import line, over_time, style
+from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case, passing
-from ehlpetsc.pictures.frame_data import Frame, common
+from ehlpetsc.pictures.frames import choice as drawing
+from ehlpetsc.pictures.frames import line, over_time
+from ehlpetsc.pictures.frames.data import Frame, common
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 FRAME = ["pressure [GPa]", "film thickness [µm]"]
 MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours

@@ -8,7 +8,7 @@ from support.made_loads import LOAD, Scene, write
 from ehlpetsc.base.errors import PostError
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.loads import DEPTHS, Loads, prepare
 from ehlpetsc.post.run import Job, run

@@ -6,7 +6,7 @@ import pytest
 from support.made_loads import A, Scene, write
 from support.made_planes import FRICTION, sphere, write_plane
 
-from ehlpetsc.pictures import damage as gallery
+from ehlpetsc.pictures.damage import maps as gallery
 from ehlpetsc.post import damage, dang_van, stress_plane
 from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.accumulate import count_damage

@@ -8,7 +8,7 @@ from support import CASES
 
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case import loading as case
-from ehlpetsc.surfaces.profile_files import Layout, checked, read_profile
+from ehlpetsc.surfaces.files.profiles import Layout, checked, read_profile
 
 X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])
 

@@ -12,9 +12,9 @@ from ehlpetsc.base.environment import missing
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.surface import main as surface
-from ehlpetsc.run.forecast import banner
-from ehlpetsc.surfaces.profile_files import KEYS, TEXT
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.forecast.cost import banner
+from ehlpetsc.surfaces.files.profiles import KEYS, TEXT
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))
 MAIN = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -90,7 +90,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
 
 
 def plot_first(result):
-    from ehlpetsc.pictures.frames import frame_to_show
+    from ehlpetsc.pictures.frames.choice import frame_to_show
 
     return frame_to_show(result)
 

@@ -16,7 +16,7 @@ from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import reynolds_columns
-from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"

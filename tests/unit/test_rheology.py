@@ -8,7 +8,8 @@ from scipy.optimize import brentq
 
 from ehlpetsc.base.compiled import address_of
 from ehlpetsc.discretisation.plane.cross_flow import cross_mobility
-from ehlpetsc.physics import rheology, tabulated_flow, traction
+from ehlpetsc.physics import traction
+from ehlpetsc.physics.oil import rheology, tabulated_flow
 
 STEP = 1e-30
 OIL = SimpleNamespace(viscosity=0.005, eyring_stress=10e6)

@@ -13,11 +13,11 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
+from ehlpetsc.surfaces.files.profiles import read_profile
 from ehlpetsc.surfaces.filters import levelled, mean_line
-from ehlpetsc.surfaces.moving_surface import RAMP_LENGTH, Passage, directed_speeds
-from ehlpetsc.surfaces.profile_checks import entry_times, mesh_warnings
-from ehlpetsc.surfaces.profile_files import read_profile
-from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
+from ehlpetsc.surfaces.motion.moving_surface import RAMP_LENGTH, Passage, directed_speeds
+from ehlpetsc.surfaces.motion.profile_checks import entry_times, mesh_warnings
+from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
 from ehlpetsc.surfaces.samples import samples
 from ehlpetsc.surfaces.topography import Topography
 

@@ -11,9 +11,10 @@ from support.exact_solutions import hertz_gap
 from support.published_values import Film
 
 from ehlpetsc.case import loading as case
-from ehlpetsc.physics import film_formulas, geometry
-from ehlpetsc.physics.geometry import line_groups
-from ehlpetsc.physics.hertz import hertz_line, hertz_pressure
+from ehlpetsc.physics import film_formulas
+from ehlpetsc.physics.contact import geometry
+from ehlpetsc.physics.contact.geometry import line_groups
+from ehlpetsc.physics.contact.hertz import hertz_line, hertz_pressure
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.physics.scales import Scales, reduced_modulus
 

@@ -21,7 +21,7 @@ from ehlpetsc.discretisation.contact.yielding import (
 )
 from ehlpetsc.discretisation.unknowns import q_columns, w_columns
 from ehlpetsc.nonlinear.line.node_pairs import node_pairs
-from ehlpetsc.physics.asperities import LayerLaw
+from ehlpetsc.physics.contact.asperities import LayerLaw
 
 
 def pairs(*values):

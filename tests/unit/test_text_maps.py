@@ -5,9 +5,9 @@ import pytest
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.pictures.surface import main
-from ehlpetsc.surfaces.areal_files import is_map, read_map
-from ehlpetsc.surfaces.profile_files import Layout, read_profile
-from ehlpetsc.surfaces.text_files import text_columns
+from ehlpetsc.surfaces.files.areal import is_map, read_map
+from ehlpetsc.surfaces.files.profiles import Layout, read_profile
+from ehlpetsc.surfaces.files.text import text_columns
 
 DX, DY = 2.5e-6, 4e-6
 X, Y = DX * np.arange(24), DY * np.arange(16)

@@ -8,7 +8,7 @@ from support.points import point
 
 import ehlpetsc
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.hertz import hertz_ellipse
+from ehlpetsc.physics.contact.hertz import hertz_ellipse
 from ehlpetsc.run.simulation import Simulation
 
 RY = 0.05

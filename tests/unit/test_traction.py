@@ -11,7 +11,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Scene
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import benedict_kelley, hoehn_michaelis, shear_stresses, xu_kahraman
 from ehlpetsc.stepping.observables import diagnostics, mean_film

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.special import erf
 
-from ehlpetsc.physics.asperities import (
+from ehlpetsc.physics.contact.asperities import (
     EXPONENTIAL,
     FULL_CONTACT,
     GAMMA,

@@ -12,7 +12,7 @@ from support.convergence import order_and_limit as order
 import ehlpetsc
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
-from ehlpetsc.physics.asperities import GAMMA, LayerLaw, asperity_pressures, asperity_stiffness
+from ehlpetsc.physics.contact.asperities import GAMMA, LayerLaw, asperity_pressures, asperity_stiffness
 from ehlpetsc.surfaces.samples import samples
 
 SIGMA = 20e-9

@@ -14,7 +14,7 @@ from support.convergence import observed_order
 from support.driving import Scene
 from support.exact_solutions import hertz_gap
 
-from ehlpetsc.physics.hertz import hertz_pressure
+from ehlpetsc.physics.contact.hertz import hertz_pressure
 from ehlpetsc.physics.scales import Scales
 
 WAVES = 10  # to a half-width

@@ -9,7 +9,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 tamaas = pytest.importorskip("tamaas")
 

@@ -9,7 +9,7 @@ from support.exact_solutions import band_kernel
 from support.film_stress import FilmStress, film_stress, other_heat
 
 from ehlpetsc.effects.heat import film_shear
-from ehlpetsc.physics.rheology import CARREAU, EYRING, NEWTON, FlowLaw
+from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, NEWTON, FlowLaw
 
 N = 80
 BETA, CONDUCTIVITY, FILM = 0.04, 0.14, 0.3e-6

@@ -16,7 +16,7 @@ from ehlpetsc.discretisation.step_inputs import IsothermalOil
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.effects.heat.step import HeatStep, Temperatures
 from ehlpetsc.effects.heat.transport import Film
-from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.run.simulation import Simulation
 
 MESH = {"mesh.inlet": -1.4, "mesh.outlet": 1.3, "mesh.points_per_half_width": 50}

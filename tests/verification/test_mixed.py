@@ -6,7 +6,7 @@ from support import CASES
 from support.driving import Scene
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.laws import density, viscosity
+from ehlpetsc.physics.oil.laws import density, viscosity
 from ehlpetsc.run.simulation import Simulation
 
 MIXED = "contact.model=mixed"

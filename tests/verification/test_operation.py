@@ -12,7 +12,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.gears import path_of_contact
 from ehlpetsc.gears.command import main as gears
-from ehlpetsc.physics.hertz import hertz_line
+from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation

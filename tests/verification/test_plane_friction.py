@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.case.loading import load, members
-from ehlpetsc.physics.laws import viscosity
+from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.run.simulation import Simulation
 
 EYRING, FRICTION, LOAD = 6e6, 0.1, 20.0

@@ -7,7 +7,7 @@ from support.convergence import observed_order
 from support.points import R, point
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics.hertz import hertz_ellipse
+from ehlpetsc.physics.contact.hertz import hertz_ellipse
 from ehlpetsc.run.simulation import Simulation
 
 TIGHT = {"snes_atol": 1e-11}

@@ -10,8 +10,8 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.finite_volumes import flux_through
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.step_inputs import shear_constants
-from ehlpetsc.physics.hertz import hertz_ellipse
-from ehlpetsc.physics.rheology import flow_law
+from ehlpetsc.physics.contact.hertz import hertz_ellipse
+from ehlpetsc.physics.oil.rheology import flow_law
 from ehlpetsc.run.simulation import Simulation
 
 DRY_MESH = {"inlet": -1.25, "outlet": 1.25, "width": 2.5}
@@ -22,7 +22,7 @@ CONTACTS = {
 
 
 def radius_ratio(ellipticity):
-    """R_y/R_x of b/a, see `ehlpetsc.physics.hertz.hertz_ellipse`."""
+    """R_y/R_x of b/a, see `ehlpetsc.physics.contact.hertz.hertz_ellipse`."""
     if ellipticity == 1.0:
         return 1.0
     k = min(ellipticity, 1.0 / ellipticity)

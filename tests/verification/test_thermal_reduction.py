@@ -23,7 +23,7 @@ from scipy.optimize import brentq
 from support import CASES
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.physics import laws
+from ehlpetsc.physics.oil import laws
 from ehlpetsc.run.simulation import Simulation
 
 sys.path.append(str(CASES / "paper"))

@@ -22,8 +22,8 @@ from ehlpetsc.case.tables.outputs import LIFE, OUTPUT, POST, SERIES
 from ehlpetsc.case.tables.surface import SURFACE
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.physics.law import Law
-from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, SHEAR_LAWS
+from ehlpetsc.physics.oil.law import Law
+from ehlpetsc.physics.oil.laws import DENSITY_LAWS, LAWS, SHEAR_LAWS
 
 CONDITIONS = (CONTACT, FLUID, MOTION, MESH, SURFACE, TIME, OPERATION, GEARS)
 TABLES = (*CONDITIONS, *(effect.table for effect in EFFECTS if effect.table), OUTPUT, POST, LIFE, SERIES)

@@ -8,8 +8,8 @@ from typing import Any
 from ehlpetsc.base.case import Contact, Fluid
 from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.materials import GRADES, STEELS
-from ehlpetsc.physics.laws import DENSITY_LAWS, LAWS, TABLES, completed
-from ehlpetsc.physics.oils import OILS
+from ehlpetsc.physics.oil.laws import DENSITY_LAWS, LAWS, TABLES, completed
+from ehlpetsc.physics.oil.oils import OILS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
 ASPERITY_SLOPE = 0.1  # ground and superfinished steel

@@ -2,9 +2,9 @@ r"""Mixed contact through a compliant layer: roughness finer than the mesh carri
 
 .. math:: p=\max(q,0)+p_c(h),
 
-the law :math:`p_c(h)` of :mod:`ehlpetsc.physics.asperities`. The unknowns are (q, h): nothing is bounded or
-semismooth but cavitation, and the Reynolds equation holds at every node with the film h, its pressure flow
-reduced by the layer (:func:`ehlpetsc.physics.asperities.flow_factor`).
+the law :math:`p_c(h)` of :mod:`ehlpetsc.physics.contact.asperities`. The unknowns are (q, h): nothing is
+bounded or semismooth but cavitation, and the Reynolds equation holds at every node with the film h, its
+pressure flow reduced by the layer (:func:`ehlpetsc.physics.contact.asperities.flow_factor`).
 
 A Newton step may at most double p_c at a node, from `FREE_RISE` p0 on: the linearised law does not contain
 the rise of an exponential.
@@ -26,7 +26,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     full_of_oil,
     limit_cavitation,
 )
-from ehlpetsc.physics.asperities import (
+from ehlpetsc.physics.contact.asperities import (
     CONTACT_PRESSURE,
     LayerLaw,
     asperity_pressure,
@@ -50,7 +50,7 @@ DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry fir
 class Layer:
     """Constants of the law in p0 and a^2/R.
 
-    `law`: see :class:`ehlpetsc.physics.asperities.LayerLaw`.
+    `law`: see :class:`ehlpetsc.physics.contact.asperities.LayerLaw`.
     `slope_modulus`, `hardness`: E* h'_rms; infinite for elastic asperities.
     `contact_pressure`: from which on asperities count as in contact.
     """

@@ -34,7 +34,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     PlasticState,
     limit_cavitation,
 )
-from ehlpetsc.physics.asperities import asperity_pressure, asperity_separation
+from ehlpetsc.physics.contact.asperities import asperity_pressure, asperity_separation
 
 MIN_CARRYING_PRESSURE = 0.1  # of the yield pressure: nodes above it carry
 ELASTIC_NODES = 1  # that carry without yielding: with fewer, Newton's method loses the load

@@ -37,9 +37,9 @@ from ehlpetsc.discretisation.finite_volumes import (
     face_mean,
     fluidities,
 )
-from ehlpetsc.physics.asperities import flow_factor
-from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_stress, mobilities
-from ehlpetsc.physics.tabulated_flow import tabulated_mobilities
+from ehlpetsc.physics.contact.asperities import flow_factor
+from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_stress, mobilities
+from ehlpetsc.physics.oil.tabulated_flow import tabulated_mobilities
 
 
 @compiled

@@ -35,10 +35,10 @@ from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.effects.heat.record import in_rows
-from ehlpetsc.physics.laws import ln_viscosities, ln_viscosity
-from ehlpetsc.physics.rheology import FlowLaw
+from ehlpetsc.physics.oil.laws import ln_viscosities, ln_viscosity
+from ehlpetsc.physics.oil.rheology import FlowLaw
+from ehlpetsc.physics.oil.tabulated_flow import MIN_RATE, stress_spread
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.tabulated_flow import MIN_RATE, stress_spread
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid

@@ -31,8 +31,8 @@ from ehlpetsc.base.compiled import inlined
 from ehlpetsc.effects.heat.exchange import EXCHANGE_KINDS, Exchange, exchange_of, fluxes, holds, split
 from ehlpetsc.effects.heat.film_oil import FilmLaw, NodeOil, oil_at
 from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
-from ehlpetsc.physics.rheology import flow_stress
-from ehlpetsc.physics.viscosity_laws import ROELANDS_ZERO
+from ehlpetsc.physics.oil.rheology import flow_stress
+from ehlpetsc.physics.oil.viscosity_laws import ROELANDS_ZERO
 
 ITERATIONS = 30  # of Newton's method, before bisection
 BISECTIONS = 200

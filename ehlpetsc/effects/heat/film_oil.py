@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.physics.law import SLOTS
-from ehlpetsc.physics.laws import (
+from ehlpetsc.physics.oil.law import SLOTS
+from ehlpetsc.physics.oil.laws import (
     conductivity,
     is_linear_in_temperature,
     ln_viscosities,
     ln_viscosity,
     viscosity_law,
 )
-from ehlpetsc.physics.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
+from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid
@@ -33,13 +33,13 @@ class FilmLaw(NamedTuple):
     Attributes
     ----------
     viscosity
-        :class:`ehlpetsc.physics.laws.OilLaw` as a tuple.
+        :class:`ehlpetsc.physics.oil.laws.OilLaw` as a tuple.
     is_linear
         Whether the logarithm of the viscosity is linear in temperature.
     eta0
         Viscosity at ambient pressure and reference temperature [Pa s].
     flow
-        :class:`ehlpetsc.physics.rheology.FlowLaw` as a tuple.
+        :class:`ehlpetsc.physics.oil.rheology.FlowLaw` as a tuple.
     limit
         Limiting shear stress over pressure; infinite: none.
     conductivity, conductivity_pressure, conductivity_saturation

@@ -38,7 +38,7 @@ wall costs 4 % at 30 K, 16 % at 70 K and 30 % at 120 K.
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.physics.rheology import FlowLaw, flow_stress
+from ehlpetsc.physics.oil.rheology import FlowLaw, flow_stress
 
 MIN_HEATING = 1e-280
 SERIES_LIMIT = 0.2  # y below which the series of :func:`across` are exact to 1e-12

@@ -22,8 +22,8 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.effects.heat.record import Across, BodyHeat
+from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.flash_temperature import Solid
-from ehlpetsc.physics.grid import Grid
 
 STEP = 1.2  # of the trapezoidal rule in y: its relative error is 2 |Gamma(1/2 + 2 pi i/STEP)|/sqrt(pi) = 8e-4
 FASTEST = 30.0  # rate of the fastest term times the time step

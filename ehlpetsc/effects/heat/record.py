@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.grid import Grid
+from ehlpetsc.physics.contact.grid import Grid
 
 GROWTH = 1.5  # of the widths of rows beyond the sides of the mesh
 

@@ -23,7 +23,7 @@ from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, neighbour
-from ehlpetsc.physics.rheology import FlowLaw
+from ehlpetsc.physics.oil.rheology import FlowLaw
 
 HIGHEST = 0.1  # p0: pressures above it follow from the film; settled ones to .15 cost half an iteration more
 MOVED = 0.02  # p0: change of a pressure to be settled; .01 brings an iteration more than none

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
-from ehlpetsc.physics.law import STANDARD_TEMPERATURE
-from ehlpetsc.physics.laws import LAWS
-from ehlpetsc.physics.viscosity_laws import KELVIN
+from ehlpetsc.physics.oil.law import STANDARD_TEMPERATURE
+from ehlpetsc.physics.oil.laws import LAWS
+from ehlpetsc.physics.oil.viscosity_laws import KELVIN
 
 MINERAL, NAPHTHENIC, PAO = 0.047, 0.053, 0.035  # limiting shear stress over pressure
 CONDUCTIVITY = {  # W/(m K), 1/Pa, 1/Pa: at ambient pressure, rise with pressure and saturation

@@ -13,16 +13,16 @@ import numpy as np
 from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM, STEP_SCALARS, unit_in
 from ehlpetsc.case.checking import attribute
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.laws import TABLES, names_in_use, reference_temperature, viscosity
-from ehlpetsc.physics.oils import OIL_SHEAR, OILS
-from ehlpetsc.physics.rheology import shear_law
-from ehlpetsc.run.domain import domain_warnings, rolling_warnings, strip_warnings
+from ehlpetsc.physics.oil.laws import TABLES, names_in_use, reference_temperature, viscosity
+from ehlpetsc.physics.oil.oils import OIL_SHEAR, OILS
+from ehlpetsc.physics.oil.rheology import shear_law
+from ehlpetsc.run.forecast.domain import domain_warnings, rolling_warnings, strip_warnings
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.case.tables.contact import Contact
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.roughness import Roughness
+    from ehlpetsc.surfaces.motion.roughness import Roughness
 
 LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
 MAX_EHL_FILM = 0.1  # half-widths: films of EHL contacts are at most a hundredth of a half-width
@@ -44,8 +44,8 @@ def warnings(case: Case, scales: Scales, rough: Roughness | None = None) -> list
     """Warnings before a run, one message each; `rough`: surfaces of the case, None: read here."""
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case), *domain_warnings(case, scales)]
     if case.surface.body_1 or case.surface.body_2:
-        from ehlpetsc.surfaces.profile_checks import entry_warnings, mesh_warnings
-        from ehlpetsc.surfaces.roughness import Roughness
+        from ehlpetsc.surfaces.motion.profile_checks import entry_warnings, mesh_warnings
+        from ehlpetsc.surfaces.motion.roughness import Roughness
 
         profiles = rough or Roughness.of(case, scales)
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
@@ -162,7 +162,7 @@ def limits(
     heat = (f"heat: {note}" for note in isothermal(case, scales, totals.get("friction_coefficient")))
     mesh = []
     if rough:
-        from ehlpetsc.surfaces.profile_checks import mesh_warnings
+        from ehlpetsc.surfaces.motion.profile_checks import mesh_warnings
 
         mesh = [f"mesh: {note}" for note in mesh_warnings(rough, scales)]
     return [

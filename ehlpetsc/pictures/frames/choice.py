@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frame_data import Frame, common
+from ehlpetsc.pictures.frames.data import Frame, common
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result
@@ -48,7 +48,7 @@ class Choice(NamedTuple):
     @property
     def module(self) -> ModuleType:
         """Module that draws the frames: of lines or, of a point contact or strip, of planes."""
-        return import_module(f"ehlpetsc.pictures.{'line' if self.results[0].y is None else 'plane'}")
+        return import_module(f"ehlpetsc.pictures.frames.{'line' if self.results[0].y is None else 'plane'}")
 
     @property
     def title(self) -> list[str]:

@@ -2,7 +2,7 @@ r"""Shear laws of the oil: stress by rate, mobility of the pressure flow.
 
 A law is an entry of `SHEAR_LAWS`: a function of :math:`x=\ln(\eta\dot\gamma/\tau_s)` and of its constants,
 the first of which is its stress :math:`\tau_s`, a factor of the result. The pressure flow of Newton's and of
-Eyring's law has a closed form; that of any other is a table, see :mod:`ehlpetsc.physics.tabulated_flow`.
+Eyring's law has a closed form; that of any other is a table, see :mod:`ehlpetsc.physics.oil.tabulated_flow`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import address_of, call_at, compiled, inlined
 from ehlpetsc.base.declarations import Key, Refused
-from ehlpetsc.physics.law import Derivatives, FluidValues, Law, n_constants, switched
+from ehlpetsc.physics.oil.law import Derivatives, FluidValues, Law, n_constants, switched
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid

@@ -2,7 +2,7 @@ r"""Viscosity of the oil by pressure and temperature: laws as pure functions, an
 
 A law is a function of p [Pa] and T [K], numbers or arrays, complex ones too, and of its constants. It
 returns :math:`\ln(\eta/\eta_0)` and the derivatives by p and T. Its keys of `[fluid]` are beside it. The
-table of laws is in :mod:`ehlpetsc.physics.laws`.
+table of laws is in :mod:`ehlpetsc.physics.oil.laws`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.declarations import Key
-from ehlpetsc.physics.law import STANDARD_TEMPERATURE, Derivatives, Numbers
+from ehlpetsc.physics.oil.law import STANDARD_TEMPERATURE, Derivatives, Numbers
 
 KELVIN = 273.15  # K at 0 degrees Celsius
 GLASSY = -0.5  # x/(C2 + x) of Yasutomi's law below which the logarithm continues linearly, towards a solid

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.surfaces.moving_surface import WAVE_NODES
+from ehlpetsc.surfaces.motion.moving_surface import WAVE_NODES
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
+    from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
     from ehlpetsc.surfaces.topography import Topography
 
 MAX_SPACING = 0.25  # half-widths between two points: wider than asperities

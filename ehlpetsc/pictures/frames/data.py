@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.physics.hertz import hertz_pressure
+from ehlpetsc.physics.contact.hertz import hertz_pressure
 from ehlpetsc.pictures import style
 from ehlpetsc.results.reader import Result
 

@@ -38,7 +38,7 @@ class Law:
     ----------
     function
         Value and derivatives of the state and of the constants: (p, T) of a viscosity law, (p,) of a density
-        law, (x,) of a shear law, see :func:`ehlpetsc.physics.rheology.flow_stress`.
+        law, (x,) of a shear law, see :func:`ehlpetsc.physics.oil.rheology.flow_stress`.
     constants
         Of the function, from the tables `[fluid]` and `[heat]` of a case (None: isothermal); the first one
         of a viscosity law is a factor of the logarithm, that of a shear law of the stress.

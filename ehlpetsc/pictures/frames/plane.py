@@ -15,7 +15,8 @@ from matplotlib.lines import Line2D
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frame_data import (
+from ehlpetsc.pictures.frames.choice import Choice, view
+from ehlpetsc.pictures.frames.data import (
     COLOUR_PERCENTILE,
     PRESSURE,
     Frame,
@@ -25,8 +26,7 @@ from ehlpetsc.pictures.frame_data import (
     has_layer,
     in_view,
 )
-from ehlpetsc.pictures.frames import Choice, view
-from ehlpetsc.pictures.line import draw_curves, draw_hertz
+from ehlpetsc.pictures.frames.line import draw_curves, draw_hertz
 from ehlpetsc.results.reader import Result
 
 WIDTH, SECTION_HEIGHT, MARGIN = 7.0, 1.6, 2.0  # inches: of the figure, of a row of sections, around the maps

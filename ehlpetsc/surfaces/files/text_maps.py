@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.text_files import NUMBER, UNIT_OF_NAME, UNITS, Layout, units_in
+from ehlpetsc.surfaces.files.text import NUMBER, UNIT_OF_NAME, UNITS, Layout, units_in
 
 MIN_POINTS = 4  # along either side
 MIN_MATRIX_COLUMNS = 8  # of heights alike, where no spacing is stated

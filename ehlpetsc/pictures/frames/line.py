@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ehlpetsc.physics.hertz import hertz_pressure
+from ehlpetsc.physics.contact.hertz import hertz_pressure
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.frame_data import MOSTLY, PRESSURE, Frame, Limits, common, contact_word
-from ehlpetsc.pictures.frames import Choice
+from ehlpetsc.pictures.frames.choice import Choice
+from ehlpetsc.pictures.frames.data import MOSTLY, PRESSURE, Frame, Limits, common, contact_word
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.reader import Result
 

@@ -11,9 +11,9 @@ from typing import TypeVar
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.surfaces.files.text import UNITS, Layout, read_softgauge, text_columns, units_in
+from ehlpetsc.surfaces.files.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 from ehlpetsc.surfaces.filters import groups, held, spikes, without_no_data
-from ehlpetsc.surfaces.text_files import UNITS, Layout, read_softgauge, text_columns, units_in
-from ehlpetsc.surfaces.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 
 TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
@@ -74,7 +74,7 @@ def read_profile(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray, tu
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
     header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. SMD, PRF and
-    ASCII SDF, see :mod:`.text_files`. Any other format through the package SurfaceTopography if it is
+    ASCII SDF, see :mod:`.files.text`. Any other format through the package SurfaceTopography if it is
     installed.
 
     Returns X and z [m], X increasing, heights positive out of the metal, shape (n,), and notes on the

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.lib.format import MAGIC_PREFIX, read_array
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
-from ehlpetsc.surfaces.profile_files import (
+from ehlpetsc.surfaces.files.profiles import (
     KEYS_OF_TEXT,
     MAX_ABSCISSA,
     TEXT,
@@ -22,8 +21,9 @@ from ehlpetsc.surfaces.profile_files import (
     by_package,
     read_once,
 )
-from ehlpetsc.surfaces.text_files import text_columns
-from ehlpetsc.surfaces.text_maps import MIN_POINTS, in_metres, is_matrix, listed, with_axes
+from ehlpetsc.surfaces.files.text import text_columns
+from ehlpetsc.surfaces.files.text_maps import MIN_POINTS, in_metres, is_matrix, listed, with_axes
+from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
 
 MIN_PRESENT = 0.5  # of the heights of a map
 OF_PROFILES = {".smd"}  # besides text

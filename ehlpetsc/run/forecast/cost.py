@@ -15,7 +15,7 @@ from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.physics.scales import Scales
-    from ehlpetsc.surfaces.roughness import Roughness, RoughSurface
+    from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
 
 START_SECONDS = 1.6  # wall clock time of a run's start on one core of a server
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
@@ -77,7 +77,7 @@ def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Fraction of the steps after the first profile has reached the contact."""
     if not rough or case.time is None:
         return 0.0
-    from ehlpetsc.surfaces.profile_checks import entry_times
+    from ehlpetsc.surfaces.motion.profile_checks import entry_times
 
     entries = [entry_times(profile, s) for profile in (rough.surface_1, rough.surface_2) if profile]
     first = min(times[0] if times else 0.0 for times in entries)
@@ -123,7 +123,7 @@ def lambda_line(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
 
 def _profile(case: Case, s: Scales, profile: RoughSurface) -> list[str]:
     """Size, roughness and travel of one surface, a line each."""
-    from ehlpetsc.surfaces.profile_checks import entry_times
+    from ehlpetsc.surfaces.motion.profile_checks import entry_times
 
     samples, times = profile.given, entry_times(profile, s)
     (mean, ra), (rms, rq), (skewness, rsk) = profile.statistics.items()  # Ra, Rq, Rsk or Sa, Sq, Ssk

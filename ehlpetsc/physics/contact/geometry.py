@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.grid import Grid
-from ehlpetsc.physics.hertz import hertz_ellipse, hertz_line
+from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values

@@ -1,7 +1,7 @@
 r"""Laws of the oil in tables: viscosity of pressure and temperature, density and conductivity of pressure.
 
-A law is added by an entry in one of the tables, :class:`ehlpetsc.physics.law.Law`. Shear laws are in
-:mod:`ehlpetsc.physics.rheology`.
+A law is added by an entry in one of the tables, :class:`ehlpetsc.physics.oil.law.Law`. Shear laws are in
+:mod:`ehlpetsc.physics.oil.rheology`.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import address_of, call_at, inlined
 from ehlpetsc.base.declarations import Key, Refused
-from ehlpetsc.physics.law import (
+from ehlpetsc.physics.oil.law import (
     STANDARD_TEMPERATURE,
     Derivatives,
     FluidValues,
@@ -26,8 +26,8 @@ from ehlpetsc.physics.law import (
     padded,
     switched,
 )
-from ehlpetsc.physics.rheology import SHEAR_LAWS, shear_law
-from ehlpetsc.physics.viscosity_laws import (
+from ehlpetsc.physics.oil.rheology import SHEAR_LAWS, shear_law
+from ehlpetsc.physics.oil.viscosity_laws import (
     DOOLITTLE,
     EXPONENTIAL,
     ISOTHERMAL,

@@ -16,12 +16,11 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.combinations import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
-from ehlpetsc.physics.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
+from ehlpetsc.physics.contact.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
 from ehlpetsc.physics.film_formulas import smooth_films
-from ehlpetsc.physics.oils import OILS
+from ehlpetsc.physics.oil.oils import OILS
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.domain import refusals
-from ehlpetsc.run.forecast import (
+from ehlpetsc.run.forecast.cost import (
     START_SECONDS,
     file_size,
     lambda_line,
@@ -30,8 +29,9 @@ from ehlpetsc.run.forecast import (
     surface_lines,
     work_time,
 )
-from ehlpetsc.run.validity import load_unit, warnings
-from ehlpetsc.surfaces.roughness import Roughness
+from ehlpetsc.run.forecast.domain import refusals
+from ehlpetsc.run.forecast.validity import load_unit, warnings
+from ehlpetsc.surfaces.motion.roughness import Roughness
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined, unsigned
-from ehlpetsc.physics.rheology import CARREAU, EYRING, SERIES_LIMIT, FlowLaw, flow_stress
+from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, SERIES_LIMIT, FlowLaw, flow_stress
 
 MIN_RATE = 1e-30  # shear rate and stress difference of a film at rest, over those of its law
 NO_FLOW = 0.0, 0.0, 0.0, 0.0

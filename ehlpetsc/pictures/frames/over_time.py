@@ -11,8 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.pictures import frames, line, style
-from ehlpetsc.pictures.frame_data import COLOUR_PERCENTILE, MOSTLY, contact_share, contact_word, described
+from ehlpetsc.pictures import style
+from ehlpetsc.pictures.frames import choice as frames
+from ehlpetsc.pictures.frames import line
+from ehlpetsc.pictures.frames.data import COLOUR_PERCENTILE, MOSTLY, contact_share, contact_word, described
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import Result

@@ -11,7 +11,7 @@ import numpy as np
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
-from ehlpetsc.surfaces.moving_surface import (
+from ehlpetsc.surfaces.motion.moving_surface import (
     MovingSurface,
     Passage,
     directed_speeds,

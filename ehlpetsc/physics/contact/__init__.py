@@ -1,0 +1,1 @@
+"""Dry contact: geometry and nodes of each kind, Hertz, contact of roughness."""

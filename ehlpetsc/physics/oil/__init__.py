@@ -1,0 +1,1 @@
+"""Laws of the oil and measured oils."""

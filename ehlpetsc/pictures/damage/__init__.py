@@ -1,0 +1,1 @@
+"""Pictures of damage and lives."""

@@ -1,0 +1,1 @@
+"""Surfaces and depth fields that move with the bodies."""
