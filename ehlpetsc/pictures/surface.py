@@ -20,12 +20,12 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.base.errors import CaseError, ProfileError
+from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.case.checking import check, in_si
 from ehlpetsc.case.combinations import parsed, put
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
-from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
+from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, PICTURES, atomic_write, check_derived
 from ehlpetsc.surfaces.files.exports import WRITERS, GridField
 from ehlpetsc.surfaces.motion.profile_checks import doubts
 from ehlpetsc.surfaces.parameters import (
@@ -94,6 +94,8 @@ def run(chosen: argparse.Namespace) -> None:
     ):
         if file is not None:
             check_derived(Path(file), inputs, endings, option)
+    if target and target.suffix.lower() in WRITERS and target.exists() and not chosen.overwrite:
+        raise OutputError(f"{target}: exists; {OVERWRITE_ADVICE}")
     surface = _used(chosen.file, spec, chosen.minus is not None)
     if chosen.minus:
         try:

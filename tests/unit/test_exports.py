@@ -65,7 +65,11 @@ def test_the_command_writes_the_map_as_used(tmp_path, capsys, ending):
     assert (dx, dy) == pytest.approx((DX, DY), rel=1e-12)
     assert np.corrcoef(z.ravel(), Z.ravel())[0, 1] > 0.99  # without the plane
     assert z.std() == pytest.approx(2 * Z.std(), rel=1e-2) and abs(z.mean()) < 1e-12
+    target.write_text("measured")
+    assert main([str(tmp_path / "map.npy"), "-o", str(target), *words]) == 2
+    assert "exists; give another -o, or --overwrite" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["map.npy", f"out{ending}"]
+    assert target.read_text() == "measured"
 
 
 @pytest.mark.parametrize("ending", READERS)
