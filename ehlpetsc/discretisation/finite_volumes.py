@@ -37,6 +37,7 @@ M, M_Q, M_H = 3, 4, 5  # mass per area rho h (1 - theta) in a^2/R, and its deriv
 RHO, RHO_P = 6, 7  # density over u a^2/R, and its derivative by p
 FLUIDITY, LN_ETA_P = 8, 9  # 1/eta [1/(Pa s)], d ln(eta)/dp
 PROPERTIES = 10
+THIRD = 1.0 / 3.0
 LEAST_SHARE = 1e-100  # of both fluidities of a face that the smaller one counts as at least
 SERIES_LIMIT = 0.02  # difference over sum of both, below which the logarithmic mean is a series
 # Of an oil that is thinned by other than its pressure, FLUIDITY and LN_ETA_P hold without that. THINNING is
@@ -127,8 +128,8 @@ def face_film(left: float, right: float, leaks: bool) -> tuple[float, float, flo
     if left <= 0.0 or right <= 0.0:
         return 0.0, 0.0, 0.0
     total = left + right
-    film = np.cbrt(2.0 * (left * right) ** 2 / total)
-    third = film / 3.0
+    film = (2.0 * (left * right) ** 2 / total) ** THIRD  # half the time of a cube root
+    third = THIRD * film
     return film, third * (2.0 / left - 1.0 / total), third * (2.0 / right - 1.0 / total)
 
 
@@ -160,21 +161,25 @@ def face_mean(left: float, right: float, leaks: bool) -> tuple[float, float, flo
 
 
 @inlined
-def face(at: np.ndarray, behind: int, left: int, right: int, table: np.ndarray, law: tuple) -> tuple:
+def drawn(at: np.ndarray, behind: int, left: int) -> tuple[float, float, float]:
+    """Mass per area that the mean speed moves through a face, and derivatives by that of both nodes."""
+    return positive_extrapolation(at[M, left], at[M, behind], 0.5 if behind != left else 0.0)
+
+
+@inlined
+def face(at: np.ndarray, left: int, right: int, table: np.ndarray, law: tuple) -> tuple:
     """State of the face between two nodes; parameters as of :func:`flux_through`.
 
-    Returns the mass per area that the mean speed moves through it, with derivatives by that of `left` and of
-    `behind`; film [m] and its derivatives by those of both nodes; pressure gradient [Pa/m]; stress of the
-    shear law [Pa]; mobilities of both nodes.
+    Returns film [m] and its derivatives by those of both nodes; pressure gradient [Pa/m]; stress of the shear
+    law [Pa]; mobilities of both nodes.
     """
     per_length, _, stress, stress_rise, sliding, _, layer, leaks = law
-    drawn = positive_extrapolation(at[M, left], at[M, behind], 0.5 if behind != left else 0.0)
     gradient = per_length * (at[P, right] - at[P, left])
     films = face_film(at[H, left], at[H, right], leaks)
     if stress_rise != 0.0:
         stress += 0.5 * stress_rise * (at[P, left] + at[P, right])
     gap = films[0], gradient, stress, sliding, layer
-    return drawn, films, gradient, stress, face_mobilities(at, left, right, table, gap)
+    return films, gradient, stress, face_mobilities(at, left, right, table, gap)
 
 
 @compiled
@@ -196,8 +201,15 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
         compliant layer [m], 0 without one; whether the face leaks.
     """
     per_length, per_film, _, stress_rise, _, entrainment, _, leaks = law
-    drawn, films, gradient, stress, (mobility_l, mobility_r) = face(at, behind, left, right, table, law)
-    couette, by_left, by_behind = drawn
+    couette, by_left, by_behind = 0.0, 0.0, 0.0
+    if entrainment != 0.0:
+        couette, by_left, by_behind = drawn(at, behind, left)
+        couette, by_left, by_behind = entrainment * couette, entrainment * by_left, entrainment * by_behind
+    of_behind = by_behind * at[M_Q, behind], by_behind * at[M_H, behind]
+    of_left = by_left * at[M_Q, left], by_left * at[M_H, left]
+    if at[DP, left] == 0.0 and at[DP, right] == 0.0:  # no pressure in a cavity
+        return couette, *of_behind, *of_left, 0.0, 0.0
+    films, gradient, stress, (mobility_l, mobility_r) = face(at, left, right, table, law)
     half, flows = 0.5 * gradient, (at[RHO, left] * mobility_l[0], at[RHO, right] * mobility_r[0])
     mean, weight_l, weight_r = face_mean(*flows, leaks)
     rho_l, rho_r = weight_l * at[RHO, left], weight_r * at[RHO, right]
@@ -220,13 +232,11 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
         )
         by_film_l += by_thinning * at[LN_THINNING_H, left]
         by_film_r += by_thinning * at[LN_THINNING_H, right]
-    couette, by_left, by_behind = entrainment * couette, entrainment * by_left, entrainment * by_behind
     return (
         couette - mean * gradient,
-        by_behind * at[M_Q, behind],
-        by_behind * at[M_H, behind],
-        by_left * at[M_Q, left] - by_p_l * at[DP, left],
-        by_left * at[M_H, left] - by_film_l,
+        *of_behind,
+        of_left[0] - by_p_l * at[DP, left],
+        of_left[1] - by_film_l,
         -by_p_r * at[DP, right],
         -by_film_r,
     )

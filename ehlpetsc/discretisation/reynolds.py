@@ -170,18 +170,18 @@ class Reynolds(NoOil):
 
     def evaluate(self, q: np.ndarray, h: np.ndarray, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """See :class:`NoOil`."""
-        table, storage = inputs.flow_table, self.storage(inputs)
+        table, (*history, rate), scale = inputs.flow_table, self.storage(inputs), self.film_scale
         at, law = self.properties(q, h, inputs.oil), self.face_law(inputs, self.dx)
-        residual, derivatives = np.zeros(self.size), np.zeros((self.size, self.width))
-        balance(at, self.layout, law, table, storage, self.dy, (residual, derivatives))
-        if self.has_sides is not None:
-            law, rows = self.face_law(inputs, self.dy), (residual, derivatives)
-            self._add_across(at, self.shape, law, inputs.flow, table, self.dx, rows)
-        self._beyond_edges(derivatives.reshape(*self.shape, -1))
-        residual /= self.film_scale
-        derivatives *= 1.0 / self.film_scale
+        rows = residual, derivatives = np.empty(self.size), np.empty((self.size, self.width))
+        first = slice(None, None, self.shape[1])
         if self.has_inlet:
-            first = slice(None, None, self.shape[1])
+            derivatives[first] = 0.0
+        balance(at, self.layout, law, table, (*history, rate / scale), self.dy / scale, rows)
+        if self.has_sides is not None:
+            law = self.face_law(inputs, self.dy)
+            self._add_across(at, self.shape, law, inputs.flow, table, self.dx / scale, rows)
+        self._beyond_edges(derivatives.reshape(*self.shape, -1))
+        if self.has_inlet:
             of_inlet = inlet(q[self.owned][first], h[self.owned][first], inputs.inlet_film)
             residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = of_inlet
         return residual, derivatives

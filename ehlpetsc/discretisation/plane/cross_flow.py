@@ -82,6 +82,8 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
         rise.
     `flow`: shear law, its stress at zero pressure.
     """
+    if at[DP, left] == 0.0 and at[DP, right] == 0.0:  # no pressure in a cavity
+        return 0.0, 0.0, 0.0, 0.0, 0.0
     per_length, per_film, stress, rise, sliding, _, layer, leaks = law
     gradient = per_length * (at[P, right] - at[P, left])
     film, film_l, film_r = face_film(at[H, left], at[H, right], leaks)

@@ -22,6 +22,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     THINNING,
     H,
     P,
+    drawn,
     face,
     face_film,
     face_mean,
@@ -226,8 +227,8 @@ def faces(
     slope = 0.0
     for i in range(nodes):
         before = slope
-        drawn, films, slope, stress, (left, right) = face(at, max(i - 1, 0), i, i + 1, table, law)
-        couette[i + 1] = entrainment * drawn[0]
+        films, slope, stress, (left, right) = face(at, i, i + 1, table, law)
+        couette[i + 1] = entrainment * drawn(at, max(i - 1, 0), i)[0]
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
         between_oil_nodes = oil[i] and oil[min(i + 1, nodes - 1)]

@@ -32,7 +32,7 @@ OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more
 
 
 # options of glibc's mallopt, and values: M_MMAP_THRESHOLD, M_MMAP_MAX, M_TRIM_THRESHOLD
-RETURNING = ((-3, 1 << 22), (-4, 1 << 16), (-1, 1 << 26))
+RETURNING = ((-3, 1 << 25), (-4, 1 << 16), (-1, 1 << 27))
 
 
 class PlaneMatrices(Matrices):

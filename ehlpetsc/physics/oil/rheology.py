@@ -261,6 +261,11 @@ def mobilities(
     left, right : tuple of 4 floats
         M [m^3/(Pa s)] and its derivatives with respect to h, gradient and :math:`\ln\eta`.
     """
+    if eyring == np.inf:
+        square = 0.25 * h * h
+        cube = square * h / 3.0
+        left, right = cube * fluidity_l, cube * fluidity_r
+        return (left, square * fluidity_l, 0.0, -left), (right, square * fluidity_r, 0.0, -right)
     per_film = gradient * (0.5 / eyring)
     factors = flow_factors(h * per_film)
     return (
