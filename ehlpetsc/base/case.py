@@ -73,6 +73,16 @@ KINDS["point"] = KINDS["strip"]._replace(
 """Kinds of contact by name, :attr:`Case.kind`."""
 
 
+def kind_of(tables: dict[str, Any]) -> str:
+    """Kind of contact, a key of `KINDS`, of tables of a case, which may have faults."""
+    contact, mesh = (
+        table if isinstance(table, dict) else {} for table in map(tables.get, ("contact", "mesh"))
+    )
+    if isinstance(contact.get("radius"), list | tuple):
+        return "point"
+    return "line" if mesh.get("width") is None else "strip"
+
+
 class Contact(Values):
     """`[contact]`: solids and load."""
 
@@ -127,9 +137,7 @@ class Case(Values):
     @property
     def kind(self) -> str:
         """Kind of contact, a key of `KINDS`."""
-        if self.contact.radius_across is not None:
-            return "point"
-        return "line" if self.mesh.width is None else "strip"
+        return self._kind
 
     @property
     def conditions(self) -> Any:

@@ -44,29 +44,28 @@ class _Scope(NamedTuple):
     is_sound: bool
 
 
-def in_si(data: Tables) -> list[Fault]:
+def in_si(data: Tables, kind: str) -> list[Fault]:
     """Replace the texts with a unit in the tables of a case by numbers in SI units; returns the faults."""
-    faults = []
-    for holder, name, key, place in [*entries(data, CASE, ""), *_series_entries(data.get("series"))]:
+    faults, table = [], in_kind(CASE, kind)
+    for holder, name, key, place in [*entries(data, table, ""), *_series_entries(data.get("series"), table)]:
         if key and key.kind is float and key.unit not in NUMBERS_ONLY:
             try:
-                holder[name] = converted(holder[name], in_contact(key, data).unit, key.is_difference)
+                holder[name] = converted(holder[name], key.unit, key.is_difference)
             except UnitFault as fault:
-                is_other = key.point_unit and str(fault).endswith(f"one of {in_contact(key, data).unit}")
-                why = KINDS["point" if is_point(data) else "line"].radii if is_other else ""
-                faults.append(Fault(place, f"{place} = {fault}{why}"))
+                is_other = key.point_unit and str(fault).endswith(f"one of {key.unit}")
+                faults.append(Fault(place, f"{place} = {fault}{KINDS[kind].radii if is_other else ''}"))
     return faults
 
 
-def is_point(data: Tables) -> bool:
-    """Whether the tables of a case describe a point contact, by a pair of radii."""
-    contact = data.get("contact")
-    return isinstance(contact, dict) and isinstance(contact.get("radius"), list | tuple)
+def in_kind(table: KeyTable, kind: str) -> KeyTable:
+    """Table whose keys have their units in a kind of contact."""
 
+    def of_kind(key: Key) -> Key:
+        if key.table:
+            return replace(key, table=in_kind(key.table, kind))
+        return replace(key, unit=key.point_unit) if key.point_unit and KINDS[kind].is_whole else key
 
-def in_contact(key: Key, data: Tables) -> Key:
-    """Key with its unit in the contact of the tables of a case."""
-    return replace(key, unit=key.point_unit) if key.point_unit and is_point(data) else key
+    return replace(table, keys={name: of_kind(key) for name, key in table.keys.items()})
 
 
 def unsound_tables(data: Tables, known: Collection[str] = ()) -> set[str]:
@@ -75,7 +74,7 @@ def unsound_tables(data: Tables, known: Collection[str] = ()) -> set[str]:
     What is missing, and what other keys need, may follow from other tables and counts as sound.
     `known`: places of faults that have been found already.
     """
-    names = {place.partition(".")[0] for place in (*known, *_faulty_places(CASE, data, "", data))}
+    names = {place.partition(".")[0] for place in (*known, *_faulty_places(CASE, data, ""))}
     return names | _meant(CASE, data)
 
 
@@ -84,13 +83,13 @@ def _meant(table: KeyTable, data: Tables) -> set[str]:
     return {key for name in data if name not in table.keys for key in similar(str(name), table.keys)}
 
 
-def _faulty_places(table: KeyTable, data: Tables, where: str, root: Tables) -> Iterator[str]:
+def _faulty_places(table: KeyTable, data: Tables, where: str) -> Iterator[str]:
     yield from (f"{where}{name}" for name in data if name not in table.keys)
     for name in table.keys.keys() & data.keys():
-        key, value = in_contact(table.keys[name], root), data[name]
+        key, value = table.keys[name], data[name]
         inner = _table_of(key, value)
         if inner and isinstance(value, dict):
-            yield from _faulty_places(inner, value, f"{where}{name}.", root)
+            yield from _faulty_places(inner, value, f"{where}{name}.")
         elif value is not None and not (is_word(key, value) or is_allowed(key, value)):
             yield where + name
 
@@ -106,14 +105,14 @@ def entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, An
             yield data, name, key, where + name
 
 
-def _series_entries(series: object) -> Iterator[tuple[Any, Any, Key | None, str]]:
+def _series_entries(series: object, table: KeyTable) -> Iterator[tuple[Any, Any, Key | None, str]]:
     if not isinstance(series, dict) or not isinstance(values := series.get("values"), list):
         return
     if "key" in series:
-        yield series, "values", key_of(series["key"]), "series.values"
+        yield series, "values", key_of(series["key"], table), "series.values"
     elif isinstance(keys := series.get("keys"), list):
         for number, name in enumerate(keys[: len(values)]):
-            yield values, number, key_of(name), f"series.values.{number}"
+            yield values, number, key_of(name, table), f"series.values.{number}"
 
 
 def check(
@@ -135,8 +134,8 @@ def check(
     faults: list[Fault] = []
     others = [str(name) for name in data if name not in table.keys]
     misspelt = _meant(table, data) | {f"[{name}]" for name in _meant(CASE, scope.root)}
-    for name, declared in table.keys.items():
-        place, value, key = where + name, data.get(name), in_contact(declared, scope.root)
+    for name, key in table.keys.items():
+        place, value = where + name, data.get(name)
         if place in known:
             faults.append(Fault(place, ""))
         elif value is None and not (key.table and key.table.always):

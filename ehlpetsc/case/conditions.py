@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import check, in_contact, is_point
+from ehlpetsc.case.checking import check, in_kind
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
 from ehlpetsc.case.values import is_number, shortened
-from ehlpetsc.physics.contact.geometry import LINE, POINT
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
@@ -54,9 +54,9 @@ def _spellings(names: Columns) -> str:
     return ", ".join(spellings[0] for spellings in names.values())
 
 
-def units_in(tables: Tables, table: KeyTable) -> dict[str, str]:
-    """Units of the keys of a table in the contact of the tables of a case."""
-    return {name: in_contact(key, tables).unit for name, key in table.keys.items()}
+def units_in(kind: str, table: KeyTable) -> dict[str, str]:
+    """Units of the keys of a table in a kind of contact."""
+    return {name: key.unit for name, key in in_kind(table, kind).keys.items()}
 
 
 def _factors(heading: str, units: Mapping[str, str], names: Columns) -> dict[str, float]:
@@ -79,8 +79,8 @@ def _factors(heading: str, units: Mapping[str, str], names: Columns) -> dict[str
 MIN_LOAD_FRACTION = 0.05  # of the load of the mesh: load of two teeth at the ends of their contact
 
 
-def conditions_of(tables: Tables, folder: Path, unsound: Set[str] = frozenset()) -> ConditionsTable | None:
-    """Conditions over time from the tables of a case in a folder; raises `ProfileError`.
+def conditions_of(tables: Tables, folder: Path, kind: str, unsound: Set[str]) -> ConditionsTable | None:
+    """Conditions over time from the tables of a case of a kind in a folder; raises `ProfileError`.
 
     None: constant conditions, or unsound tables, whose faults the check of the keys reports.
     """
@@ -92,25 +92,27 @@ def conditions_of(tables: Tables, folder: Path, unsound: Set[str] = frozenset())
 
         values, _ = check(GEARS, gears)
         return of_gears(path_of_contact(values.pair)) if values else None
-    values = check(OPERATION, operation, root=tables)[0] if isinstance(operation, dict) else None
+    values = (
+        check(in_kind(OPERATION, kind), operation, root=tables)[0] if isinstance(operation, dict) else None
+    )
     if values is None:
         return None
     if values.file is not None:
-        columns = read_table(folder / values.file, units_in(tables, OPERATION), COLUMNS)
+        columns = read_table(folder / values.file, units_in(kind, OPERATION), COLUMNS)
     else:
         columns = {key: column for key, column in values.as_dict().items() if key in COLUMNS and column}
-    return _table(columns, tables, values.repeat, unsound)
+    return _table(columns, tables, kind, values.repeat, unsound)
 
 
 FILES = {"operation": ("file", OPERATION, COLUMNS), "gears": ("load_file", GEARS, PATH_COLUMNS)}
 
 
-def with_columns(tables: Tables, folder: Path, of: Sequence[str] = tuple(FILES)) -> Tables:
+def with_columns(tables: Tables, folder: Path, kind: str, of: Sequence[str] = tuple(FILES)) -> Tables:
     """Tables of a case with the columns of files of conditions in place of their names, as in results."""
     for name in of:
         (key, table, names), given = FILES[name], tables.get(name)
         if isinstance(given, dict) and isinstance(given.get(key), str):
-            columns = read_table(folder / given[key], units_in(tables, table), names)
+            columns = read_table(folder / given[key], units_in(kind, table), names)
             tables = tables | {name: {k: v for k, v in given.items() if k != key} | columns}
     return tables
 
@@ -143,7 +145,7 @@ def of_gears(path: ContactPath) -> ConditionsTable:
 
 
 def _table(
-    columns: dict[str, list[float]], tables: Tables, repeat: int, unsound: Set[str]
+    columns: dict[str, list[float]], tables: Tables, kind: str, repeat: int, unsound: Set[str]
 ) -> ConditionsTable | None:
     """Conditions of the columns, for missing ones the constants of the case; raises `ProfileError`.
 
@@ -160,7 +162,7 @@ def _table(
 
     def refuse(key: str, wrong: np.ndarray, allowed: str) -> None:
         for k in np.flatnonzero(wrong)[:1]:
-            unit = units_in(tables, OPERATION)[key]
+            unit = units_in(kind, OPERATION)[key]
             raise ProfileError(f"row {k + 1}: {key} = {values[key][k]:g} {unit}: allowed: {allowed}")
 
     for key, column in values.items():
@@ -188,22 +190,19 @@ def _table(
 def _constants(tables: Tables) -> dict[str, float]:
     """Constant conditions in the other tables of a case."""
     contact, motion = tables.get("contact", {}), tables.get("motion", {})
-    constants = {key: contact[key] for key in ("load", "radius") if key in contact}
-    if is_point(tables):
-        constants["radius"] = contact["radius"][0]
+    constants = {key: np.ravel(contact[key])[0] for key in ("load", "radius") if key in contact}
     if "entrainment_speed" in motion:
         u, xi = motion["entrainment_speed"], motion.get("slide_roll_ratio", 0.0)
         constants |= {"speed_1": u * (1.0 + xi / 2.0), "speed_2": u * (1.0 - xi / 2.0)}
     return {key: float(value) for key, value in constants.items()}
 
 
-def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Tables:
+def with_reference_state(tables: Tables, table: ConditionsTable | None, kind: str) -> Tables:
     """Tables of a case, none of them unsound, with the reference state of its conditions filled in."""
     if table is None:
         return tables
     contact, motion, time = (tables.get(name, {}) for name in ("contact", "motion", "time"))
     load, radius, u, xi = table.reference()
-    geometry = POINT if is_point(tables) else LINE
     radii, ratio = _radii(contact.get("radius"), radius)
     contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
@@ -216,7 +215,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None) -> Table
         elastic = [contact.get(key) for key in ("youngs_modulus", "poisson_ratio")]
         if None not in elastic:
             modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
-            half_width = geometry.half_width(load, radius, modulus, ratio)
+            half_width = KINDS[kind].part("geometry").half_width(load, radius, modulus, ratio)
             time["travel"] = float(table.swept_length() / half_width)
     return tables | {"contact": contact, "motion": motion, "time": time}
 

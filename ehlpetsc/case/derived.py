@@ -13,7 +13,7 @@ from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.base.toml_file import Tables
-from ehlpetsc.case.checking import Fault, check, is_point, unsound_tables, values_of
+from ehlpetsc.case.checking import Fault, check, unsound_tables, values_of
 from ehlpetsc.case.tables.contact import CONTACT, GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.case.values import is_allowed, is_number
@@ -67,7 +67,7 @@ def _with_approach(tables: Tables) -> Tables:
     """Load of the dry smooth point contact of a given approach, from which the scales come."""
     contact = tables.get("contact", {})
     elastic = [contact.get(key) for key in ("youngs_modulus", "poisson_ratio")]
-    if "approach" not in contact or not is_point(tables) or None in elastic:
+    if not {"approach", "radius"} <= contact.keys() or None in elastic:
         return tables
     modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
     along, across = contact["radius"]

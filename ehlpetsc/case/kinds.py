@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.toml_file import Tables
-from ehlpetsc.case.checking import Fault, entries, is_point
+from ehlpetsc.case.checking import Fault, entries
 from ehlpetsc.case.tables import CASE
+from ehlpetsc.case.tables.contact import CONTACT
 from ehlpetsc.case.tables.surface import AREAL
 from ehlpetsc.case.values import show
 from ehlpetsc.effects import EFFECTS
@@ -20,15 +21,14 @@ OF_GEARS = {"contact": ("load", "radius"), "motion": ("entrainment_speed", "slid
 MAX_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 
 
-def given_by_gears(data: Tables) -> list[Fault]:
-    """Faults of keys beside `[gears]`, which gives their values and is of line contacts."""
+def given_by_gears(data: Tables, kind: str) -> list[Fault]:
+    """Faults of keys beside `[gears]`, which gives their values and is of line contacts and strips."""
     if "gears" not in data:
         return []
-    if is_point(data):
+    if KINDS[kind].is_whole:
         given = f"contact.radius = {show(data['contact']['radius'])}"
-        text = (
-            f"{given}: a point contact has no [gears]; leave the radius out (mesh.width: a strip), or [gears]"
-        )
+        text = f"{given}: a {kind} contact has no [gears]"
+        text += "; leave the radius out (mesh.width: a strip), or [gears]"
         return [Fault("contact.radius", text)]
     faults = []
     for table, keys in OF_GEARS.items():
@@ -42,7 +42,7 @@ def given_by_gears(data: Tables) -> list[Fault]:
     return faults
 
 
-def approach_faults(data: Tables) -> list[Fault]:
+def approach_faults(data: Tables, kind: str) -> list[Fault]:
     """Faults of an approach in another contact than a point's, and of loads beside it."""
     contact = data.get("contact")
     if not isinstance(contact, dict) or "approach" not in contact:
@@ -50,7 +50,7 @@ def approach_faults(data: Tables) -> list[Fault]:
     beside = ["contact.load"] * ("load" in contact) + [
         f"[{name}]" for name in ("operation", "gears") if name in data
     ]
-    if "radius" in contact and not is_point(data):
+    if "radius" in contact and kind not in CONTACT.keys["approach"].contacts:
         reason = (
             "of point contacts, and one radius is of a line or a strip; allowed: two radii, or contact.load"
         )

@@ -10,11 +10,11 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.case import KINDS, kind_of
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import Tables, parse_toml, plain, read_text
-from ehlpetsc.case.checking import Fault, check, in_si, unsound_tables
+from ehlpetsc.case.checking import Fault, check, in_kind, in_si, unsound_tables
 from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.derived import (
@@ -79,16 +79,17 @@ def load(
     data = plain(case) if text is None else parse_toml(path, text)
     written, folder = copy.deepcopy(data), Path(path).parent
     faults = _override(data, overrides)
-    faults += in_si(data)
+    kind = kind_of(data)
+    faults += in_si(data, kind)
     faults += resolve_measured_layer(folder, data, {fault.place for fault in faults})
     base = copy.deepcopy(data) if "series" in data else data  # each member has bulk temperatures of its own
-    checked, found = _with_profiles(folder, base, {fault.place for fault in faults})
+    checked, found = _with_profiles(folder, base, kind, {fault.place for fault in faults})
     lines = _lines(path, faults + found)
     if not lines and "series" in data:
         lines = _series_faults(path, folder, data)
     if lines:
         raise CaseError(lines)
-    stored = with_columns(data, folder)
+    stored = with_columns(data, folder, kind)
     text = text if stored == written else None
     return _of_files(checked.copy({"_path": Path(path), "_tables": stored, "_text": text}))
 
@@ -101,8 +102,10 @@ def _of_files(case: Case) -> Case:
 def stored_case(text: str, overrides: Overrides = None) -> Case:
     """Case from the text in a result file, which it keeps, without its profile files; raises `CaseError`."""
     data = parse_toml(DICT_NAME, text)
-    faults = _override(data, overrides) + in_si(data)
-    case, found = _checked(Path(), data, is_stored=True)
+    faults = _override(data, overrides)
+    kind = kind_of(data)
+    faults += in_si(data, kind)
+    case, found = _checked(Path(), data, kind, is_stored=True)
     if faults + found:
         own = "" if overrides or os.environ.get("EHLPETSC_OWN") else OWN_ADVICE
         raise CaseError([f"{line}{own}" for line in _lines(DICT_NAME, faults + found)])
@@ -120,7 +123,7 @@ def members(case: Case | str | PathLike | Tables) -> list[tuple[Any, Case]]:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
     for settings in settings_of(data["series"]):
         tables = member_tables(data, settings)
-        member, _ = _checked(case.path.parent, tables)
+        member, _ = _checked(case.path.parent, tables, kind_of(tables))
         values = tuple(value for _, value in settings)
         member = _of_files(member.copy({"_path": case.path, "_tables": tables, "_text": None}))
         result.append((values[0] if case.series.key else values, member))
@@ -142,29 +145,29 @@ def _override(data: Tables, overrides: Overrides) -> list[Fault]:
 
 
 def _checked(
-    folder: Path, data: Tables, known: Collection[str] = (), is_stored: bool = False
+    folder: Path, data: Tables, kind: str, known: Collection[str] = (), is_stored: bool = False
 ) -> tuple[Any, list[Fault]]:
-    """The case with its conditions over time, None with faults, and the faults of its tables."""
+    """The case of a kind with its conditions over time, None with faults, and the faults of its tables."""
     heat = data.get("heat")
     if isinstance(heat, dict) and heat.get("bulk_temperature") == "losses":
-        return _checked_with_losses(folder, data, known)
+        return _checked_with_losses(folder, data, kind, known)
     faults, conditions = [], None
-    if wrong := approach_faults(data) or given_by_gears(data):
+    if wrong := approach_faults(data, kind) or given_by_gears(data, kind):
         return None, wrong
     unsound = unsound_tables(data, known)
     data = with_derived(data, unsound)
     try:
-        data = with_columns(data, folder, ("gears",))
-        conditions = conditions_of(data, folder, unsound)
+        data = with_columns(data, folder, kind, ("gears",))
+        conditions = conditions_of(data, folder, kind, unsound)
     except ProfileError as error:
         faults = [] if is_stored else [_file_fault(data, error)]
     if not unsound:
-        data = with_reference_state(data, conditions)
+        data = with_reference_state(data, conditions, kind)
     if "motion" not in data and ("fluid" in data or "time" in data):
         faults.append(Fault("motion", SPEEDS, bool(unsound) or "gears" in data or "operation" in data))
-    case, found = check(CASE, data, known=known, is_sound=not unsound and not faults)
+    case, found = check(in_kind(CASE, kind), data, known=known, is_sound=not unsound and not faults)
     if case:
-        case = with_layer_stiffness(case.copy({"_conditions": conditions}))
+        case = with_layer_stiffness(case.copy({"_kind": kind, "_conditions": conditions}))
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
         faults += [Fault("mesh", line) for line in reversed_flow]
         faults += contact_faults(cast(Case, case), data) if case.contact and case.mesh else []
@@ -177,7 +180,9 @@ def _file_fault(data: Tables, error: ProfileError) -> Fault:
     return Fault(name, f"{name}{f'.{key} = {show(file)}' if file else ''}: {error}")
 
 
-def _checked_with_losses(folder: Path, data: Tables, known: Collection[str]) -> tuple[Any, list[Fault]]:
+def _checked_with_losses(
+    folder: Path, data: Tables, kind: str, known: Collection[str]
+) -> tuple[Any, list[Fault]]:
     """As :func:`_checked`, with bulk temperatures from the losses of the gears, which are put into `data`."""
     fluid, heat = data.get("fluid"), data["heat"]
     graded = fluid.get("temperature") if isinstance(fluid, dict) else None
@@ -186,7 +191,7 @@ def _checked_with_losses(folder: Path, data: Tables, known: Collection[str]) -> 
         text = 'heat.bulk_temperature = "losses": needs [gears] and the temperature of the oil, '
         text += "heat.inlet_temperature, fluid.temperature or heat.reference_temperature"
         return None, [Fault("heat.bulk_temperature", text)]
-    case, faults = _checked(folder, data | {"heat": heat | {"bulk_temperature": oil}}, known)
+    case, faults = _checked(folder, data | {"heat": heat | {"bulk_temperature": oil}}, kind, known)
     if case is None:
         return None, faults
     from ehlpetsc.gears.standards import bulk_temperatures
@@ -196,7 +201,7 @@ def _checked_with_losses(folder: Path, data: Tables, known: Collection[str]) -> 
     except ProfileError:  # of a surface, reported by its check
         return None, []
     heat["bulk_temperature"] = [round(value, 1) for value in bulk]
-    return _checked(folder, data, known)
+    return _checked(folder, data, kind, known)
 
 
 def _series_faults(path: str | PathLike, folder: Path, data: Tables) -> list[str]:
@@ -208,7 +213,7 @@ def _series_faults(path: str | PathLike, folder: Path, data: Tables) -> list[str
         except ValueError:
             named = ", ".join(show(key) for key in keys_of(data["series"]))
             return [f"{path}: series.key = {named}: allowed: a key of this case"]
-        _, faults = _with_profiles(folder, member)
+        _, faults = _with_profiles(folder, member, kind_of(member))
         values = ", ".join(show(value) for _, value in settings)
         lines += [f"{line} (series.values: {values})" for line in _lines(path, faults)]
     return lines
@@ -220,12 +225,14 @@ def _lines(path: str | PathLike, faults: list[Fault]) -> list[str]:
     return list(dict.fromkeys(f"{path}: {fault.text}" for fault in own))
 
 
-def _with_profiles(folder: Path, data: Tables, known: Collection[str] = ()) -> tuple[Any, list[Fault]]:
+def _with_profiles(
+    folder: Path, data: Tables, kind: str, known: Collection[str] = ()
+) -> tuple[Any, list[Fault]]:
     """As :func:`_checked`, with the faults of the files or heights of both surfaces.
 
     Without a case, as other tables have faults, they are read alone, as profiles or maps.
     """
-    case, faults = _checked(folder, data, known)
+    case, faults = _checked(folder, data, kind, known)
     whole = case if case and case.contact and case.mesh else None  # its kind is known
     surface = data.get("surface")
     tables = {side: surface.get(side) if isinstance(surface, dict) else None for side in SIDES}

@@ -150,7 +150,7 @@ def _spec(file: str, overrides: list[str]) -> Values:
             raise CaseError([f"--set {override}: allowed: KEY=VALUE, as in unit=um"]) from None
     if "form" not in table:
         table.setdefault("level", True)
-    faults = in_si({"surface": {"1": table}})
+    faults = in_si({"surface": {"1": table}}, "line")
     spec, found = (None, []) if faults else check(PROFILE, table, TABLE)
     if faults or found:
         raise CaseError([f"{file}: {fault.text.removeprefix(TABLE)}" for fault in [*faults, *found]])

@@ -115,9 +115,8 @@ def extend(
             CASE.keys[effect.table.name] = effect.table.key
 
 
-def key_of(name: object) -> Key | None:
+def key_of(name: object, table: KeyTable | None = CASE) -> Key | None:
     """Key by its dotted name; None: there is none."""
-    table: KeyTable | None = CASE
     key = None
     for part in name.split(".") if isinstance(name, str) else ():
         key = table.keys.get(part) if table else None

@@ -47,6 +47,7 @@ KEYS = {
         "of a point contact in place of its load: rigid-body approach `delta` from the first touch of the "
         "smooth bodies; `a` and `p0` are those of the dry contact with this approach",
         *("m", 1e-9, 1e-2),
+        contacts=("point",),
         equation="`h00 = -delta` in place of the balance of the load",
     ),
     "tilt": Key(
