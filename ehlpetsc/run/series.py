@@ -84,7 +84,7 @@ class Member:
         """Sort key that puts the longest members first: nodes times steps, then the thinner film."""
         scales = Scales.of(self.case)
         film = smooth_films(scales, self.case.fluid, scales.conditions)[1] if self.case.fluid else 0.0
-        return scales.grid.n * (steps(scales) if self.case.time else 1), -film
+        return scales.grid.n * (steps(self.case, scales) if self.case.time else 1), -film
 
     def totals(self) -> Totals:
         """Totals of the run from the result file; empty without a file."""

@@ -95,6 +95,13 @@ def test_expected_errors_are_those_of_the_page_of_accuracy():
     assert line.endswith("; 8.04 nodes to the shortest one, 27 um")
 
 
+def test_heading_of_a_gear_run_has_the_steps_of_its_changing_conditions():
+    gears = case.load(CASES / "fzg.toml", ())
+    heading = forecast.banner(gears, Scales.of(gears), None, 1)[1]
+    assert " 3170 steps; 1 rank" in heading
+    assert starting(lines("fzg.toml"), "Time: ")[0].endswith("; 3170 steps")
+
+
 def test_rough_start_is_named():
     begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
     assert begun == ["Start: rough, after a ramp before time 0"]

@@ -9,7 +9,7 @@ from ehlpetsc import __version__
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.effects.effect import combined_rq
-from ehlpetsc.physics import film_formulas
+from ehlpetsc.physics import film_formulas, operation_of
 from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps [s]."""
     speed = PLANE if KINDS[case.kind].is_areal else LINE
-    count, passes = (steps(s), case.time.passes) if case.time else (0, 1)
+    count, passes = (steps(case, s), case.time.passes) if case.time else (0, 1)
     each = speed.iteration + speed.node * s.grid.n
     return passes * (iterations(case, s, rough, speed) * each + count * speed.step)
 
@@ -70,7 +70,7 @@ def iterations(case: Case, s: Scales, rough: Roughness | None, speed: Speed = LI
     fraction = _rough_fraction(case, s, rough)
     is_mixed = bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
     each = (1.0 - fraction) * speed.smooth + fraction * (speed.mixed if is_mixed else speed.film)
-    return speed.start + (steps(s) if case.time else 0) * each
+    return speed.start + (steps(case, s) if case.time else 0) * each
 
 
 def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
@@ -84,15 +84,15 @@ def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:
     return min(max(1.0 - first / case.time.travel, 0.0), 1.0)
 
 
-def steps(s: Scales) -> int:
+def steps(case: Case, s: Scales) -> int:
     """Number of time steps of a transient case without halved steps."""
-    return math.ceil(s.duration / s.dt - 1e-9)
+    return operation_of(case, s).step_count(s.dt)
 
 
 def file_size(case: Case, s: Scales) -> float:
     """Expected size of the result file of a pass [bytes], in whole chunks; contact flags take nothing."""
     value = 8 if case.output.precision == "float64" else 4
-    count = steps(s) if case.time else 0
+    count = steps(case, s) if case.time else 0
     frames, rows = count // case.output.every + 1, frames_of_chunk(s.grid.shape, value)
     stored = set(case.output.fields) & set(of_case(FIELDS, case))
     fields = sum(FIELDS[name].dtype == "f8" for name in stored)
@@ -159,7 +159,8 @@ def _part_in_contact(case: Case, s: Scales, profile: RoughSurface, reaches: floa
 
 def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:
     """Heading of a run in a few lines: title, size, surfaces."""
-    length = f"{steps(scales)} steps of {1e9 * scales.dt:.2f} ns" if case.time else "steady"
+    length = f"{steps(case, scales)} steps" if case.time else "steady"
+    length += f" of {1e9 * scales.dt:.2f} ns" * bool(case.time and not case.conditions)
     nodes, size = " x ".join(map(str, scales.grid.shape[::-1])), f"a = {1e3 * scales.a:.4f} mm"
     size += f", b = {1e3 * scales.b:.4f} mm" * math.isfinite(scales.b)
     return [

@@ -203,7 +203,7 @@ def _motion(case: Case, s: Scales) -> list[str]:
     return [
         line,
         f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
-        f"{s.duration * 1e3:.4f} ms, {steps(s)} steps of {s.dt * 1e9:.2f} ns",
+        f"{s.duration * 1e3:.4f} ms, {steps(case, s)} steps of {s.dt * 1e9:.2f} ns",
         *["Start: rough, after a ramp before time 0"] * (case.time.start == "rough"),
         *_post(case, s),
     ]
@@ -241,7 +241,7 @@ def _variable(case: Case, s: Scales) -> list[str]:
         f"Motion: mean {range_of(table.entrainment, 'm/s')}; surface 1 {range_of(table.u1, 'm/s')}, "
         f"surface 2 {range_of(table.u2, 'm/s')}",
         f"Time: {1e3 * operation.duration:.4f} ms, the faster surface moves {moved:.3f} mm; "
-        f"{operation.step_count(s.dt)} steps",
+        f"{steps(case, s)} steps",
     ]
 
 
