@@ -1,9 +1,9 @@
 """Friction of FZG gears of type C-mod over the speed beside measurements: tables and picture.
 
-``ehlpetsc python cases/paper/cmod.py [MODEL ...] [-o PICTURE]`` computes `cases/cmod.toml` by each of
-`MODELS`, prints friction and the share of the solids beside `data/cmod.csv` on two meshes and, at 8.3 m/s,
-the effect of each of `CHANGES`, and draws friction and share over the speed. Results are files
-`cmod_MODEL_SPEED_POINTS*.h5`; those that exist are used.
+``ehlpetsc python cases/paper/cmod.py [MODEL ...] [--store] [-o PICTURE]`` computes `cases/cmod.toml` by each
+of `MODELS`, prints friction and the share of the solids beside `data/cmod.csv` on two meshes, of a strip
+their mean and scatter over `SEEDS`, and, at 8.3 m/s, the effect of each of `CHANGES`, and draws friction and
+share over the speed. Results are files `cmod_MODEL_SPEED_POINTS*.h5`; those that exist are used.
 """
 
 from __future__ import annotations
@@ -58,7 +58,8 @@ class Model(NamedTuple):
 LONG = 79e-6, 0.168e-6, 0.262e-6, 1.0  # border, Sq of a flank and rms of the layer [m], width
 SHORT = 40e-6, 0.226e-6, 0.151e-6, 0.5
 LONGEST = 158e-6, 0.0845e-6, 0.3328e-6, 1.0
-STIFF = {"contact.asperity_stiffness": 0.0261}  # by 80 um, as of the layer with all roughness
+STIFF = {"contact.asperity_stiffness": 0.0261}  # by the roll-off, 80 um; by the border it is half of it
+SEEDS = (2, 3), (4, 5), (6, 7)
 MODELS = {
     "smooth": Model("smooth flanks", (20, 40), {}),
     "layer": Model(
@@ -70,23 +71,23 @@ MODELS = {
             "contact.asperity_stiffness": 0.0278,
         },
     ),
-    "strip": Model("strip of isotropic roughness", (20,), strip(*LONG, (2, 3)), (2.0, 8.3, 20.0)),
+    "strip": Model(
+        "strip of isotropic roughness", (20,), strip(*LONGEST, SEEDS[0]) | STIFF, (2.0, 8.3, 20.0)
+    ),
 }
 COLOURS = {"smooth": style.DARK, "layer": style.SINGLE, "strip": style.SECOND}
+OTHER_SEEDS = {f"seeds {one}, {two}": strip(*LONGEST, (one, two)) for one, two in SEEDS[1:]}
 CHANGES: dict[str, dict[str, Any]] = {
     "isothermal": {"heat": None, "fluid.temperature": 363.15},
     "46 W/(m K) of soft steel": {"heat.conductivity": 46.0},
     "FVA 3 as oil m100": {"fluid.oil": "m100"},
 }
-CHANGES_OF_STRIPS = {
-    "seeds 4, 5": strip(*LONG, (4, 5)),
-    "seeds 6, 7": strip(*LONG, (6, 7)),
-    "border 40 um, a/32, 6.5 nodes a wave": strip(*SHORT, (2, 3)) | {"mesh.points_per_half_width": 32},
-    "border 158 um, a/10, 8 nodes a wave": strip(*LONGEST, (2, 3))
-    | STIFF
-    | {"mesh.points_per_half_width": 10},
-    "border 158 um, 16 nodes a wave": strip(*LONGEST, (2, 3)) | STIFF,
-    "border 158 um, softer layer": strip(*LONGEST, (2, 3)),
+CHANGES_OF_STRIPS: dict[str, dict[str, Any]] = {
+    "border 79 um, 8 nodes a wave": strip(*LONG, SEEDS[0]) | {"contact.asperity_stiffness": None},
+    "border 40 um, a/32, 6.5 nodes a wave": strip(*SHORT, SEEDS[0])
+    | {"contact.asperity_stiffness": None, "mesh.points_per_half_width": 32},
+    "8 nodes a wave": {"mesh.points_per_half_width": 10},
+    "layer as stiff as by the border": {"contact.asperity_stiffness": None},
 }
 """What moves friction, with the changed keys, on the coarser mesh."""
 
@@ -100,7 +101,8 @@ class Point(NamedTuple):
     share: float
 
 
-MEASURED = tuple(Point(*row) for row in zip(*measured_data.read("cmod.csv").columns.values(), strict=True))
+DATA = measured_data.read("cmod.csv").columns
+MEASURED = tuple(Point(*row) for row in zip(*(DATA[name] for name in Point._fields), strict=True))
 
 
 class Found(NamedTuple):
@@ -122,7 +124,7 @@ def found(
     name = f"cmod_{model}_{rotation:g}_{points}" + (f"_{change}" if change else "")
     file = folder / (re.sub(r"\W+", "_", name) + ".h5")
     keys = {"gears.speed": rotation, "mesh.points_per_half_width": points} | MODELS[model].keys
-    case = load(CASE, keys | (CHANGES | CHANGES_OF_STRIPS).get(change or "", {}))
+    case = load(CASE, keys | (CHANGES | CHANGES_OF_STRIPS | OTHER_SEEDS).get(change or "", {}))
     if not file.exists():
         solve(case, file, progress=False).close()
     run = GearRun(file)
@@ -131,6 +133,17 @@ def found(
     share = np.interp(run.path.rho, run.rho, run.scalars["contact_share"])
     solids = mean_friction(run.path, BOUNDARY * share)
     return Found(mean_friction(run.path, run.friction_on_path()), solids, run.mean("contact_share"))
+
+
+def with_seeds(model: str, rotation: float, points: int) -> list[Found]:
+    """Computed values of each of `SEEDS`; of a model without them one."""
+    others = OTHER_SEEDS if model == "strip" else {}
+    return [found(model, rotation, points, change=change) for change in (None, *others)]
+
+
+def mean(values: list[Found]) -> Found:
+    """Mean of computed values."""
+    return Found(*np.mean(values, axis=0))
 
 
 def points_of(model: str) -> list[Point]:
@@ -180,6 +193,7 @@ def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
     parser = measured_data.parser(__doc__, "cmod_friction.png")
     parser.add_argument("models", nargs="*", choices=[*MODELS, []], metavar="MODEL", help=", ".join(MODELS))
+    parser.add_argument("--store", action="store_true", help="friction at all speeds as columns of the file")
     chosen = parser.parse_args(words)
     computed: dict[str, list[Found]] = {}
     for model in chosen.models or MODELS:
@@ -189,15 +203,23 @@ def main(words: list[str] | None = None) -> None:
         )
         computed[model] = []
         for point in points_of(model):
-            both = [found(model, point.rotation, number) for number in points]
+            of_seeds = [with_seeds(model, point.rotation, number) for number in points]
+            both = [mean(values) for values in of_seeds]
             ratio = both[-1].friction / point.friction
             text = "; ".join(map(str, both))
+            if len(of_seeds[-1]) > 1:
+                friction, _, share = np.std(of_seeds[-1], axis=0, ddof=1)
+                text += f"; standard deviation {friction:.4f}, {share:.3f}"
             print(
                 f"{point.speed:g}: {point.friction:.3f}, {point.share:.2f}; {text}; ratio {ratio:.2f}",
                 flush=True,
             )
             computed[model].append(both[-1])
         influences(model)
+    if chosen.store:
+        of_all = {model: values for model, values in computed.items() if MODELS[model].speeds is None}
+        columns = {model: [f"{value.friction:.4f}" for value in of_all[model]] for model in of_all}
+        measured_data.store("cmod.csv", **columns)
     style.save(draw(computed), chosen.output)
     print(chosen.output)
 

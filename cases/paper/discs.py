@@ -1,8 +1,8 @@
 """Friction of twin discs beside measurements: table, influences and picture.
 
-``./run_mpi.sh python cases/paper/discs.py [-o PICTURE]`` computes `cases/discs.toml` with the oils and speeds
-of `data/discs.csv` on a/60, prints measured and computed friction with their ratio, the effect of each of
-`CHANGES`, and draws friction over the slide/roll ratio.
+``./run_mpi.sh python cases/paper/discs.py [--store] [-o PICTURE]`` computes `cases/discs.toml` with the oils
+and speeds of `data/discs.csv` on a/60, prints measured and computed friction with their ratio, the effect of
+each of `CHANGES`, and draws friction over the slide/roll ratio.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ SHIFTS = (0.95, 1.0, 1.05)  # of measured points, so that their bars do not over
 POINTS = 60  # nodes per half-width
 BAND = 0.005  # of the measured coefficients
 SECOND_OIL = "m100"  # FVA 3, measured by Arana et al.
+AS_SECOND_OIL = f"FVA 3 as oil {SECOND_OIL}"
 PANELS = {"FVA 3": ("fva3",), "at 4 m/s": ("fva3", "n100", "pao100")}
 NAMES = {"fva3": "FVA 3, mineral", "n100": "N100, naphthenic", "pao100": "PAO100"}
 CHANGES: dict[str, dict[str, Any]] = {
@@ -32,7 +33,7 @@ CHANGES: dict[str, dict[str, Any]] = {
     "isothermal": {"heat": None, "fluid.temperature": 333.15},
     "no limit of the shear stress": {"fluid.limiting_shear": 1.0},
     "Eyring stress constant over pressure": {"fluid.eyring_stress_pressure": 0.0},
-    "FVA 3 as oil m100": {"fluid.oil": SECOND_OIL},
+    AS_SECOND_OIL: {"fluid.oil": SECOND_OIL},
 }
 """What moves friction, with the changed keys."""
 
@@ -113,6 +114,7 @@ def draw() -> Figure:
 def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
     parser = measured_data.parser(__doc__, "discs.png")
+    parser.add_argument("--store", action="store_true", help="computed friction as columns of the file")
     chosen = parser.parse_args(words)
     print(f"oil, speed [m/s], slide/roll ratio: measured; computed on a/{POINTS}")
     published = computed()
@@ -121,10 +123,15 @@ def main(words: list[str] | None = None) -> None:
             at = f"{measured.oil}, {measured.speed:g}, {ratio:g}: {value:.4f}"
             print(f"{at}; {found:.4f}; ratio {found / value:.3f}")
     print(agreement(published), flush=True)
+    changed = {}
     for name, changes in CHANGES.items():
-        found = computed(changes)
+        found = changed[name] = computed(changes)
         change = 100.0 * (found / published - 1.0)
         print(f"{name}: {change.min():+.1f} to {change.max():+.1f} %; {agreement(found)}", flush=True)
+    if chosen.store:
+        of_oils = {"computed": published, SECOND_OIL: changed[AS_SECOND_OIL]}
+        columns = {name: [f"{value:.4f}" for value in found.flat] for name, found in of_oils.items()}
+        measured_data.store("discs.csv", **columns)
     style.save(draw(), chosen.output)
     print(chosen.output)
 

@@ -21,13 +21,15 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import least_squares
 
+from ehlpetsc.base.errors import NotConverged
 from ehlpetsc.case.loading import load
 from ehlpetsc.pictures import style
 from ehlpetsc.run.simulation import Simulation
 
 CASE = Path(__file__).parents[1] / "discs.toml"
 POINTS = 30  # nodes per half-width
-STEP = 0.02  # of the derivatives, relative
+STEP = 0.02  # of the derivatives, in logarithms of the constants
+MAX_STEPS = 15  # of the fit, each of four times the computed points
 KEYS = {"entrainment_speed": "motion.entrainment_speed", "slide_roll_ratio": "motion.slide_roll_ratio"}
 MODULI = ("modulus_a1", "modulus_a2", "modulus_b1", "modulus_b2")
 NAMES = ("Eyring stress [MPa]", "limiting shear stress over pressure", "pressure-viscosity [1/GPa]")
@@ -62,9 +64,21 @@ class Fit:
         self.first = np.array([self.fluid.eyring_stress, limit, self.fluid.pressure_viscosity])
 
     def fit(self) -> None:
-        """Find `values`, `errors`, `correlation` and `residual`."""
-        found = least_squares(self._deviations, np.zeros(3), bounds=(-1.5, 1.5), diff_step=STEP, xtol=1e-3)
-        self.values = self.first * np.exp(found.x)
+        """Find `values`, `errors`, `correlation` and `residual`.
+
+        SystemExit, in one sentence, where `MAX_STEPS` do not suffice or a contact has no solution.
+        """
+        limits = dict(bounds=(-0.5, 2.5), xtol=1e-3, max_nfev=MAX_STEPS)
+        try:  # from 1, as a relative step of the derivatives has no length at 0
+            found = least_squares(self._deviations, np.ones(3), diff_step=STEP, **limits)
+        except NotConverged as error:
+            raise SystemExit(f"fit_oil: a contact of the fit has no solution: {error}") from None
+        if not found.success:
+            raise SystemExit(
+                f"fit_oil: not converged in {MAX_STEPS} steps, as these {len(self.measured)} points do not "
+                "determine all three constants; allowed: points at several speeds and slide/roll ratios"
+            )
+        self.values = self.first * np.exp(found.x - 1.0)
         scatter = 2.0 * found.cost / max(len(self.measured) - len(found.x), 1)
         self.residual = float(np.sqrt(scatter)) * self.error
         covariance = scatter * np.linalg.pinv(found.jac.T @ found.jac)
@@ -72,7 +86,7 @@ class Fit:
         self.errors, self.correlation = self.values * spread, covariance / np.outer(spread, spread)
 
     def _deviations(self, logarithms: np.ndarray) -> np.ndarray:
-        return (self.friction(self.first * np.exp(logarithms)) - self.measured) / self.error
+        return (self.friction(self.first * np.exp(logarithms - 1.0)) - self.measured) / self.error
 
     def friction(self, constants: np.ndarray) -> np.ndarray:
         """Computed friction coefficients of the measured points."""

@@ -1,9 +1,13 @@
-"""Measured values of cases/paper/data: CSV files with source and reading error in their first lines."""
+"""Measured values of cases/paper/data: CSV files with source and reading error in their first lines.
+
+Columns ``computed``, or named after a model or an oil, hold what the script of the file computed.
+"""
 
 from __future__ import annotations
 
 import argparse
 import csv
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -44,6 +48,19 @@ def _column(values: tuple[str, ...]) -> np.ndarray:
         return np.array([float(value) for value in values])
     except ValueError:
         return np.array([value.strip() for value in values])
+
+
+def store(name: str, **columns: Iterable[str]) -> None:
+    """Add columns to a file of `FOLDER`, or replace them; its notes and other columns stay."""
+    lines = (FOLDER / name).read_text(encoding="utf-8").splitlines()
+    notes = [line for line in lines if line.startswith("#")]
+    names, *rows = csv.reader(lines[len(notes) :])
+    table = dict(zip(names, zip(*rows, strict=True), strict=True)) | columns
+    with (FOLDER / name).open("w", encoding="utf-8", newline="") as file:
+        file.writelines(f"{note}\n" for note in notes)
+        rewritten = csv.writer(file, lineterminator="\n")
+        rewritten.writerow(table)
+        rewritten.writerows(zip(*table.values(), strict=True))
 
 
 def parser(text: str | None, picture: str) -> argparse.ArgumentParser:

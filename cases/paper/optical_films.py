@@ -1,7 +1,7 @@
 """Central films of a ball on glass beside optical measurements: table on two meshes and picture.
 
-``ehlpetsc python cases/paper/optical_films.py [-o PICTURE]`` computes cases/optical.toml at the measured
-speeds on a/16 and a/32, prints measured and computed films with their ratio, and draws them over the
+``ehlpetsc python cases/paper/optical_films.py [--store] [-o PICTURE]`` computes cases/optical.toml at the
+measured speeds on a/16 and a/32, prints measured and computed films with their ratio, and draws them over the
 speed.
 """
 
@@ -127,10 +127,15 @@ def table(oil: Oil) -> np.ndarray:
 def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
     parser = measured_data.parser(__doc__, "optical_films.png")
+    parser.add_argument("--store", action="store_true", help="computed films as a column of the file")
     chosen = parser.parse_args(words)
     meshes = ", ".join(f"on a/{points}" for points in MESHES)
     print(f"oil, speed [m/s]: film measured, {meshes}, Hamrock and Dowson [nm]")
-    style.save(draw({oil.title: table(oil) for oil in OILS}), chosen.output)
+    computed = {oil.title: table(oil) for oil in OILS}
+    if chosen.store:
+        films = (computed[oil.title] for oil in (FVA3, SHC320))
+        measured_data.store("optical_films.csv", computed=[f"{film:.1f}" for of in films for film in of])
+    style.save(draw(computed), chosen.output)
     print(chosen.output)
 
 

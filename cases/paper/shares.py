@@ -7,7 +7,6 @@ in ten minutes of processor time.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -19,8 +18,7 @@ from scipy.special import erf
 
 from ehlpetsc.pictures import style
 
-FILE = measured_data.FOLDER / "shares.csv"
-SPEEDS = (15.0, 3.3, 0.6, 0.15, 0.03)  # m/s
+FILE = "shares.csv"
 
 
 class Computed(NamedTuple):
@@ -61,7 +59,8 @@ LAWS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
   0 at 2, of electric resistances of axially ground discs by Clarke, Weeks, Evans et al. (Tribol. Int. 93
   (2016) 709);
 - Zhou, Hoeprich (J. Tribol. 113 (1991) 590, equation 29): computed dry contact of measured ground profiles
-  after running in, longitudinal, elastic and ideally plastic; of three rms heights;
+  after running in, longitudinal, elastic and ideally plastic. They print no constants, which come from their
+  curves by Wingertszahn et al. (Lubricants 11 (2023) 369, tables 4 and A2), for three rms heights;
 - Aihara (J. Tribol. 109 (1987) 471, equation 13): computed with the flow model of Patir and Cheng (1978),
   below 0.4 GPa, longitudinal roughness, central film;
 - Doleschel, by Arana et al., table 1: of gears, tested by friction alone.
@@ -69,19 +68,20 @@ LAWS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 
 
 def compute() -> None:
-    """Write `FILE` anew."""
-    lines = FILE.read_text(encoding="utf-8").splitlines()
-    notes = [line for line in lines if line.startswith("#")]
-    with FILE.open("w", encoding="utf-8", newline="") as file:
-        file.write("\n".join(notes) + "\n")
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["model", "speed", "lambda_ratio", "friction", "share"])
-        for model, of in MODELS.items():
-            chosen = anisotropy.arguments().parse_args(["film", "--width", "0.5", "--points", str(of.points)])
-            for speed in SPEEDS:
-                found = anisotropy.lubricated(chosen, of.lay, speed)
-                values = f"{found.lambda_ratio:.2f}", f"{found.friction:.4f}", f"{found.share:.4f}"
-                rows.writerow([model, f"{speed:g}", *values])
+    """Write `FILE` anew, at its speeds."""
+    found = []
+    for model, speed in zip(
+        *(measured_data.read(FILE).columns[key] for key in ("model", "speed")), strict=True
+    ):
+        of = MODELS[model]
+        chosen = anisotropy.arguments().parse_args(["film", "--width", "0.5", "--points", str(of.points)])
+        found.append(anisotropy.lubricated(chosen, of.lay, float(speed)))
+    measured_data.store(
+        FILE,
+        lambda_ratio=[f"{film.lambda_ratio:.2f}" for film in found],
+        friction=[f"{film.friction:.4f}" for film in found],
+        share=[f"{film.share:.4f}" for film in found],
+    )
 
 
 def draw(data: measured_data.Measured) -> Figure:
