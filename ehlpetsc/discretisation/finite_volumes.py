@@ -266,7 +266,7 @@ def balance(
         Filled in: residual, shape (rows,); derivatives with respect to q and h of the `ALONG` nodes, (rows, 8
         or more).
     """
-    (m_old, extrapolated, k, rate), (residual, derivatives) = storage, rows
+    (m_old, extrapolated, k, rate), (residual, by) = storage, rows
     n_rows, cells, first, stride, filled, filled_stride, has_behind = layout
     for line in range(unsigned(n_rows)):  # numba takes longer over indices that may be negative
         begin = unsigned(first) + line * unsigned(stride)
@@ -276,50 +276,45 @@ def balance(
         inflow = flux_through(at, behind, left, begin, table, law)
         for i in range(unsigned(cells)):
             node, here = begin + i, place + i
-            by = derivatives[here]
             outflow = flux_through(at, node - ONE, node, node + ONE, table, law)
             stored, by_m, _ = positive_extrapolation(at[M, node], m_old[here], k)
             residual[here] = breadth * (outflow[0] - inflow[0]) + (stored - extrapolated[here]) * rate
-            by[0], by[1] = -breadth * inflow[1], -breadth * inflow[2]
-            by[2], by[3] = breadth * (outflow[1] - inflow[3]), breadth * (outflow[2] - inflow[4])
-            by[4] = breadth * (outflow[3] - inflow[5]) + by_m * at[M_Q, node] * rate
-            by[5] = breadth * (outflow[4] - inflow[6]) + by_m * at[M_H, node] * rate
-            by[6], by[7] = breadth * outflow[5], breadth * outflow[6]
+            by[here, 0], by[here, 1] = -breadth * inflow[1], -breadth * inflow[2]
+            by[here, 2], by[here, 3] = breadth * (outflow[1] - inflow[3]), breadth * (outflow[2] - inflow[4])
+            by[here, 4] = breadth * (outflow[3] - inflow[5]) + by_m * at[M_Q, node] * rate
+            by[here, 5] = breadth * (outflow[4] - inflow[6]) + by_m * at[M_H, node] * rate
+            by[here, 6], by[here, 7] = breadth * outflow[5], breadth * outflow[6]
             inflow = outflow
 
 
 @compiled
-def reynolds_product(
-    derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, n_x: int, first: int, out: np.ndarray
-) -> None:
+def reynolds_product(by: np.ndarray, v: np.ndarray, n_x: int, first: int, out: np.ndarray) -> None:
     """Fill in the derivatives of the Reynolds rows times a vector.
 
     Parameters
     ----------
-    derivatives : shape (rows, 8 or 12)
-        With respect to q and h of the `ALONG` nodes and of those across; zero where there is no such node.
-    v_q, v_h : shape (window,)
+    by : shape (rows, 8 or 12)
+        Derivatives with respect to q and h of the `ALONG` nodes and of those across; zero where there is no
+        such node.
+    v : shape (window, 2)
+        Changes of q and h.
     n_x
         Nodes along x.
     first
         Index in the window of the node of the first row.
     out : shape (rows,)
     """
-    first, last = unsigned(first), unsigned(len(v_q) - 1)
-    for row in range(unsigned(len(derivatives))):
+    first, last, stride = unsigned(first), unsigned(len(v) - 1), unsigned(n_x)
+    for row in range(unsigned(len(by))):  # a view by[row] would take as long as its product
         here = first + row
-        left = here - ONE if here > 0 else here
-        behind = left - ONE if left > 0 else left
-        right = here + ONE if here < last else here
-        by = derivatives[row]
-        total = by[0] * v_q[behind] + by[1] * v_h[behind] + by[2] * v_q[left] + by[3] * v_h[left]
-        total = total + by[4] * v_q[here] + by[5] * v_h[here]
-        out[row] = total + by[6] * v_q[right] + by[7] * v_h[right]
-    if derivatives.shape[1] > BELOW:
-        stride = unsigned(n_x)
-        for row in range(unsigned(len(derivatives))):
-            here, by = first + row, derivatives[row]
-            below = here - stride if here >= stride else here
-            above = here + stride if here + stride <= last else here
-            out[row] += by[BELOW] * v_q[below] + by[BELOW + 1] * v_h[below]
-            out[row] += by[ABOVE] * v_q[above] + by[ABOVE + 1] * v_h[above]
+        left, right = max(here, ONE) - ONE, min(here + ONE, last)
+        behind = max(left, ONE) - ONE
+        by_q = by[row, 0] * v[behind, 0] + by[row, 2] * v[left, 0]  # of two sums processors add pairs at once
+        by_h = by[row, 1] * v[behind, 1] + by[row, 3] * v[left, 1]
+        by_q += by[row, 4] * v[here, 0] + by[row, 6] * v[right, 0]
+        by_h += by[row, 5] * v[here, 1] + by[row, 7] * v[right, 1]
+        if by.shape[1] > BELOW:
+            below, above = max(here, stride) - stride, min(here + stride, last)
+            by_q += by[row, BELOW] * v[below, 0] + by[row, ABOVE] * v[above, 0]
+            by_h += by[row, BELOW + 1] * v[below, 1] + by[row, ABOVE + 1] * v[above, 1]
+        out[row] = by_q + by_h

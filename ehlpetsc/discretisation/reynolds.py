@@ -79,10 +79,13 @@ class NoOil:
         derivatives[:, OWN] = 1.0
         return q[self.owned], derivatives
 
-    def product(self, derivatives: np.ndarray, v_q: np.ndarray, v_h: np.ndarray, first: int) -> np.ndarray:
-        """Derivatives of the local rows times a vector of the window, whose local nodes begin at `first`."""
+    def product(self, derivatives: np.ndarray, v: np.ndarray, first: int) -> np.ndarray:
+        """Derivatives of the local rows times changes of q and h, shape (window, 2).
+
+        `first`: index of the first local node in the window.
+        """
         out = np.empty(len(derivatives))
-        reynolds_product(derivatives, v_q, v_h, self.n_x, first, out)
+        reynolds_product(derivatives, v, self.n_x, first, out)
         return out
 
 

@@ -280,7 +280,7 @@ class TwoFields:
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
         derivatives, first = np.abs(evaluation.reynolds_derivatives), self.problem.owned.start
-        changes = self.problem.reynolds.product(derivatives, np.abs(unknown), np.abs(film), first)
+        changes = self.problem.reynolds.product(derivatives, np.abs(np.stack([unknown, film], 1)), first)
         changes *= LAST_DIGIT
         return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, float(changes @ changes))))
 

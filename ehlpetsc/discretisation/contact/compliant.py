@@ -84,14 +84,21 @@ class CompliantContact(SeparatedContact):
         self.layer = layer
         self.law = tuple(layer.law)
         self.minimum_film = asperity_separation(1.0, *self.law)
+        self._known: tuple = ()
+
+    def _solids(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure of the asperities and its slope, kept: an iteration needs it six times."""
+        if not self._known or not np.array_equal(w, self._known[0]):
+            self._known = w.copy(), asperity_pressures(w, self.law)
+        return self._known[1]
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
-        solids, slope = asperity_pressures(w, self.law)
+        solids, slope = self._solids(w)
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
         return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones)
 
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
-        return asperity_pressures(w, self.law)[0]
+        return self._solids(w)[0]
 
     def contact_mask(self, w: np.ndarray, reynolds_residual: np.ndarray) -> np.ndarray:
         """Nodes whose asperities carry more than `CONTACT_PRESSURE`."""
@@ -158,9 +165,10 @@ def pressure_change(now: np.ndarray, step: np.ndarray, law: tuple, limit: float,
 @compiled
 def limit_rise(now: np.ndarray, step: np.ndarray, law: tuple) -> None:
     """Limit steps in place where a cavity fills or empties, or where p_c would more than double."""
+    film = asperity_separation(FREE_RISE, *law)
     for i in range(len(now)):
         h = now[i, 1]
         step[i, 0] = limit_cavitation(now[i, 0], step[i, 0])
-        if step[i, 1] > 0.0:  # asperities carry more
+        if h - step[i, 1] < film and step[i, 1] > 0.0:  # asperities carry more
             highest = max(2.0 * asperity_pressure(h, *law)[0], FREE_RISE)
             step[i, 1] = min(step[i, 1], h - asperity_separation(highest, *law))

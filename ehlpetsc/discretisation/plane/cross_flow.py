@@ -146,7 +146,7 @@ def add_across(
     rows
         Residual, shape (n_y n_x,); derivatives with respect to q and h of the `STENCIL`, (n_y n_x, 12).
     """
-    (n_y, n_x), (residual, derivatives) = shape, rows
+    (n_y, n_x), (residual, by) = shape, rows
     stride = unsigned(n_x + 1)
     for row in range(unsigned(n_y + 1)):
         for i in range(ONE, unsigned(n_x)):
@@ -155,14 +155,12 @@ def add_across(
             if row > 0:
                 node = (row - ONE) * unsigned(n_x) + i
                 residual[node] += breadth * flux[0]
-                by = derivatives[node]
-                by[OWN] += breadth * flux[1]
-                by[OWN + 1] += breadth * flux[2]
-                by[ABOVE], by[ABOVE + 1] = breadth * flux[3], breadth * flux[4]
+                by[node, OWN] += breadth * flux[1]
+                by[node, OWN + 1] += breadth * flux[2]
+                by[node, ABOVE], by[node, ABOVE + 1] = breadth * flux[3], breadth * flux[4]
             if row < n_y:
                 node = row * unsigned(n_x) + i
                 residual[node] -= breadth * flux[0]
-                by = derivatives[node]
-                by[OWN] -= breadth * flux[3]
-                by[OWN + 1] -= breadth * flux[4]
-                by[BELOW], by[BELOW + 1] = -breadth * flux[1], -breadth * flux[2]
+                by[node, OWN] -= breadth * flux[3]
+                by[node, OWN + 1] -= breadth * flux[4]
+                by[node, BELOW], by[node, BELOW + 1] = -breadth * flux[1], -breadth * flux[2]

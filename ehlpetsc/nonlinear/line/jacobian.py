@@ -51,7 +51,8 @@ class JacobianOperator(Jacobian):
     def __init__(self, problem: EHLProblem, halo: Halo, ranks: MPI.Comm, factors: object):
         super().__init__(problem, halo, ranks)
         self.halo, self.factors = halo, factors
-        self._work = np.empty(problem.local), np.empty((3, len(halo.buffers[2])))
+        window = len(halo.buffers[2])
+        self._work = np.empty(problem.local), np.empty((window, 2)), np.empty(window)
 
     @property
     def linearisation(self) -> tuple[tuple, tuple]:
@@ -151,18 +152,19 @@ def jacobian_product(state: tuple, work: tuple, halo: tuple, v: np.ndarray, out:
     `state`: :meth:`.contact.node_state.NodeState.derivatives`, shape (4, 2, window); derivatives of the
         Reynolds rows, (local nodes, 8); local nodes whose second unknown is not in the system; constants of
         :func:`.deflection.deflection_rows`.
-    `work`: work arrays: changes of pressure (local nodes,); of Reynolds unknown, film and separation (3,
-        window).
+    `work`: work arrays: changes of pressure (local nodes,); of Reynolds unknown and film (window, 2); of the
+        separation (window,).
     `halo`: a `ranks.Halo` as a plain tuple.
     """
-    (by, derivatives, inactive_nodes, form), (pressure, change) = state, work
+    (by, derivatives, inactive_nodes, form), (pressure, change, separation) = state, work
     local = 2 * len(derivatives)
     directional_derivative(by[0], v[:local].reshape(len(pressure), 2), form[0], pressure)
     nodes, border, curvature, load = exchange_unknowns(*halo, (v, pressure, False))
-    for k in range(3):
-        directional_derivative(by[k + 1], nodes, ZERO, change[k])
-    deflection_rows(change[2], border[0], curvature, load, form, out[0:local:2])
-    reynolds_product(derivatives, change[0], change[1], 0, form[0], out[1:local:2])
+    for k in range(2):
+        directional_derivative(by[k + 1], nodes, ZERO, change[:, k])
+    directional_derivative(by[3], nodes, ZERO, separation)
+    deflection_rows(separation, border[0], curvature, load, form, out[0:local:2])
+    reynolds_product(derivatives, change, 0, form[0], out[1:local:2])
     if len(out) > local:
         out[local] = load[2]  # the border of a line is the balance of the load
     for i in inactive_nodes:

@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from mpi4py import MPI
 
+from ehlpetsc.discretisation.contact.node_state import directional_derivative
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.plane.deflection import PressureSums
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
@@ -64,9 +65,10 @@ class PlaneJacobian(Jacobian):
 
     def pressure_of(self, v: np.ndarray) -> np.ndarray:
         """Change of the local pressures by a change of the local unknowns."""
-        by, owned = self.derivatives, self.problem.owned
+        pressure = np.empty(self.problem.local)
         pairs = v[: n_dofs(self.problem.local)].reshape(-1, 2)
-        return by[0, 0, owned] * pairs[:, 0] + by[0, 1, owned] * pairs[:, 1]
+        directional_derivative(self.derivatives[0], pairs, self.problem.owned.start, pressure)
+        return pressure
 
     def remember(self, v: np.ndarray, pressure: np.ndarray, sums: PressureSums) -> None:
         """Store deflection and forces by local pressures, if these are those of the change v of unknowns."""
@@ -78,19 +80,21 @@ class PlaneJacobian(Jacobian):
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
         p, by = self.problem, self.derivatives
-        local, owned = n_dofs(p.local), p.owned
+        local, first = n_dofs(p.local), p.owned.start
         pairs = v[:local].reshape(-1, 2)
         if self.known is not None and all_ranks(self.ranks, np.array_equal(self.known.change, v)):
             _, deflection, forces = self.known
         else:
             deflection, forces = self.exchange.sums(self.pressure_of(v))
-        window = self.exchange.window(pairs)
-        unknown, film = (by[k, 0] * window[:, 0] + by[k, 1] * window[:, 1] for k in (1, 2))
-        separation = by[3, 0, owned] * pairs[:, 0] + by[3, 1, owned] * pairs[:, 1]
+        window, separation = self.exchange.window(pairs), np.empty(p.local)
+        changes = np.empty_like(window)
+        for k in range(2):
+            directional_derivative(by[1 + k], window, 0, changes[:, k])
+        directional_derivative(by[3], pairs, first, separation)
         border = self.exchange.border(v)
         of_border = p.balance.gap(border, p.share.local)
         out[0:local:2] = p.deflection.row_scale * (separation - of_border - deflection)
-        out[1:local:2] = p.reynolds.product(self.reynolds_derivatives, unknown, film, owned.start)
+        out[1:local:2] = p.reynolds.product(self.reynolds_derivatives, changes, first)
         if p.owns_border:
             border_of(out, p.local)[:] = p.balance.product(border, forces)
         out[2 * self.inactive_nodes + 1] = 0.0

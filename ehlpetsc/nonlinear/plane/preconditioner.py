@@ -193,7 +193,7 @@ class Elimination:
         owned = self.problem.owned
         inactive = np.zeros(self.problem.share.window_size, dtype=bool)
         inactive[owned.start + operator.inactive_nodes] = True
-        self.reduction = reduction_of(operator.state, inactive)
+        self.reduction = reduction_of(operator.derivatives, inactive)
         slow = self._any(self.applications > MAX_KEPT)
         if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
             with events.FACTOR:
@@ -233,9 +233,10 @@ class Elimination:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes, and forces; see :meth:`SparseForm.solve`."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        nothing = np.zeros(p.share.window_size)
-        given = operator.exchange.window(separation)
-        reynolds = reynolds - p.reynolds.product(sparse.by, nothing, given, p.owned.start)
+        changes = np.zeros((p.local, 2))
+        changes[:, 1] = separation
+        given = operator.exchange.window(changes)
+        reynolds = reynolds - p.reynolds.product(sparse.by, given, p.owned.start)
         with events.BACK_SOLVE:
             coarsely = 0.0
             if coarse:
@@ -249,10 +250,10 @@ class Elimination:
         """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
         p, (sparse, coarse, _) = self.problem, self.factors
         reynolds[sparse.no_reynolds] = 0.0
-        pressure, separation = np.ascontiguousarray(coarse(reynolds).T)
-        pressure[sparse.no_pressure] = 0.0
-        left = reynolds - p.reynolds.product(sparse.by, pressure, separation, p.owned.start)
-        return pressure[p.owned], separation[p.owned], left
+        changes = coarse(reynolds)
+        changes[sparse.no_pressure, 0] = 0.0
+        left = reynolds - p.reynolds.product(sparse.by, changes, p.owned.start)
+        return changes[p.owned, 0], changes[p.owned, 1], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side, both of the whole system."""

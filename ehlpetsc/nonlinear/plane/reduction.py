@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.discretisation.contact.node_state import NodeState
 
 PRESSURE, VOID, STIFF, CONTACT, BOUND = range(5)
 STIFF_SLOPE = 1e-3  # p0 per a^2/R: from this slope of the asperities' pressure on it counts in a cavity
@@ -46,54 +45,57 @@ class Reduction(NamedTuple):
     back: np.ndarray
 
 
-def reduction_of(state: NodeState, inactive: np.ndarray) -> Reduction:
-    """Reduction of the nodes of a state; `inactive`: mask of those whose w is not in the system."""
+def reduction_of(derivatives: np.ndarray, inactive: np.ndarray) -> Reduction:
+    """Reduction of some nodes.
+
+    `derivatives`: of :meth:`.contact.node_state.NodeState.derivatives`.
+    `inactive`: mask of the nodes whose w is not in the system.
+    """
     kind, changes = np.empty(len(inactive), dtype=np.uint8), np.zeros((5, len(inactive)))
     back = np.zeros((4, len(inactive)))
-    reduce_nodes(state.derivatives(), inactive, kind, changes, back)
+    reduce_nodes(derivatives, inactive, kind, changes, back)
     return Reduction._make((kind, *changes, back))
 
 
 @compiled
 def reduce_nodes(
-    derivatives: np.ndarray, inactive: np.ndarray, kind: np.ndarray, changes: np.ndarray, back: np.ndarray
+    by: np.ndarray, inactive: np.ndarray, kind: np.ndarray, changes: np.ndarray, back: np.ndarray
 ) -> None:
     """Fill in the fields of a :class:`Reduction`; `changes`: r_p .. p_s, zeros, and `back`, zeros."""
     for i in range(len(kind)):
-        of_node = derivatives[:, :, i]
-        pressure, r, film, separation = of_node[0], of_node[1], of_node[2], of_node[3]
-        kind[i] = kind_of(pressure, separation, inactive[i])
+        (p_q, p_w), (r_q, r_w) = (by[0, 0, i], by[0, 1, i]), (by[1, 0, i], by[1, 1, i])
+        h_w, s_q, s_w = by[2, 1, i], by[3, 0, i], by[3, 1, i]
+        kind[i] = kind_of(p_q, p_w, s_q, s_w, inactive[i])
         if kind[i] == BOUND:
-            changes[0, i], back[0, i] = r[0], 1.0
+            changes[0, i], back[0, i] = r_q, 1.0
             continue
-        p_q, p_w, r_q, r_w, s_q, s_w = pressure[0], pressure[1], r[0], r[1], separation[0], separation[1]
         if kind[i] == PRESSURE:
-            by = inverse(p_q, p_w, s_q, s_w)
-            changes[0, i], changes[1, i] = r_q * by[0] + r_w * by[2], r_q * by[1] + r_w * by[3]
+            of = inverse(p_q, p_w, s_q, s_w)
+            changes[0, i], changes[1, i] = r_q * of[0] + r_w * of[2], r_q * of[1] + r_w * of[3]
         elif kind[i] == CONTACT:
-            by = inverse(p_q, p_w, r_q, r_w)
-            back[0, i], back[1, i], back[2, i], back[3, i] = by
+            of = inverse(p_q, p_w, r_q, r_w)
+            back[0, i], back[1, i], back[2, i], back[3, i] = of
             continue
         else:
             if r_q == 0.0:
                 r_w = min(r_w, -MIN_SLOPE)
-            by = inverse(r_q, r_w, s_q, s_w)
-        changes[2, i], changes[3, i] = film[1] * by[2], film[1] * by[3]
+            of = inverse(r_q, r_w, s_q, s_w)
+        changes[2, i], changes[3, i] = h_w * of[2], h_w * of[3]
         if kind[i] == STIFF:
-            changes[4, i], by = p_w / s_w, inverse(p_q, p_w, r_q, r_w)
-        back[0, i], back[1, i], back[2, i], back[3, i] = by
+            changes[4, i], of = p_w / s_w, inverse(p_q, p_w, r_q, r_w)
+        back[0, i], back[1, i], back[2, i], back[3, i] = of
 
 
 @compiled
-def kind_of(pressure: np.ndarray, separation: np.ndarray, is_inactive: bool) -> int:
+def kind_of(p_q: float, p_w: float, s_q: float, s_w: float, is_inactive: bool) -> int:
     """Kind of a node by the derivatives of pressure and separation by q and w."""
     if is_inactive:
         return BOUND
-    if abs(pressure[0] * separation[1] - pressure[1] * separation[0]) >= 1e-12:
+    if abs(p_q * s_w - p_w * s_q) >= 1e-12:
         return PRESSURE
-    if separation[1] != 0.0:
-        return STIFF if abs(pressure[1]) > STIFF_SLOPE else VOID
-    return CONTACT if pressure[1] != 0.0 else VOID
+    if s_w != 0.0:
+        return STIFF if abs(p_w) > STIFF_SLOPE else VOID
+    return CONTACT if p_w != 0.0 else VOID
 
 
 @compiled

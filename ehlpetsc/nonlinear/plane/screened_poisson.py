@@ -142,29 +142,27 @@ def fill(
             by[row, 2 * k], by[row, 2 * k + 1] = 0.0, 0.0
             if places[row, k] < 0:
                 continue
-            near, block = (
-                neighbour(i, k, mesh),
-                blocks[pointers[row] - pointers[begin - first] + places[row, k]],
-            )
+            near = neighbour(i, k, mesh)
+            b = pointers[row] - pointers[begin - first] + places[row, k]  # a view of the block takes longer
             poisson = 0.0 if k == 0 else -dx / dy if k >= 4 else -dy / dx
             if k == OWN:
-                block[0, 0] += 2.0 * dy / dx + 2.0 * dx / dy + (s_2 - p_s[i] * c) * dx * dy
-                block[V, 0] -= 0.0 if kind[i] == VOID or kind[i] == STIFF else dx * dy
+                blocks[b, 0, 0] += 2.0 * dy / dx + 2.0 * dx / dy + (s_2 - p_s[i] * c) * dx * dy
+                blocks[b, V, 0] -= 0.0 if kind[i] == VOID or kind[i] == STIFF else dx * dy
                 if touches:  # the row of the deflection is that of v
-                    block[0, V] -= row_scale * c
+                    blocks[b, 0, V] -= row_scale * c
                 if kind[i] != CONTACT and unknowns > R:
-                    block[R, R] += 1.0
+                    blocks[b, R, R] += 1.0
             else:
-                block[0, 0] += poisson
+                blocks[b, 0, 0] += poisson
             if kind[i] == BOUND:
                 continue
             by_r, by_h, by_v, gamma = derivatives[row, 2 * k], derivatives[row, 2 * k + 1], 0.0, 0.0
             if kind[near] == CONTACT:
-                block[R, r] += by_r
+                blocks[b, R, r] += by_r
             elif kind[near] == VOID or kind[near] == STIFF:
                 by_v, gamma = by_r + by_h * h_p[near], by_h * h_s[near]
             else:
                 by_v, gamma = by_r * r_p[near] + by_h * h_p[near], by_r * r_s[near] + by_h * h_s[near]
-            block[V, r] += by_v
-            block[0, r] += gamma * c
+            blocks[b, V, r] += by_v
+            blocks[b, 0, r] += gamma * c
             by[row, 2 * k], by[row, 2 * k + 1] = by_v, gamma
