@@ -12,6 +12,19 @@ def is_line_with(text, *parts):
     return text.strip().count("\n") == 0 and all(str(part) in text for part in parts)
 
 
+def one_fault(call, *arguments):
+    """The one fault, a line, of a case that a call refuses."""
+    import pytest  # of which benchmarks have no need
+
+    from ehlpetsc.base.errors import CaseError
+
+    with pytest.raises(CaseError) as refusal:
+        call(*arguments)
+    (fault,) = refusal.value.faults
+    assert "\n" not in fault
+    return fault
+
+
 def refused(capsys, command, *words):
     """Error output of a command called in process that must end with exit status 2."""
     capsys.readouterr()

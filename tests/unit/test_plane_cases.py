@@ -6,10 +6,10 @@ import tomllib
 
 import numpy as np
 import pytest
-from support import ROOT
+from support import ROOT, one_fault
 
 import ehlpetsc
-from ehlpetsc.base.errors import CaseError, UsageError
+from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.keys import keys, template
 from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.flash_temperature import flash_temperature
@@ -26,10 +26,8 @@ POINT["surface"]["1"]["synthetic"] |= {"sq": "0.03 um", "roll_off": "80 um", "sh
 
 
 def fault(tables, **overrides):
-    with pytest.raises(CaseError) as error:
-        load(copy.deepcopy(tables), {key.replace("__", "."): value for key, value in overrides.items()})
-    (text,) = error.value.faults
-    return text
+    changes = {key.replace("__", "."): value for key, value in overrides.items()}
+    return one_fault(load, copy.deepcopy(tables), changes)
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,6 @@ sys.path.append(str(ROOT / "cases" / "paper"))
 import damage as figures
 
 pytestmark = pytest.mark.usefixtures("coarse_pictures")
-FORBIDDEN = ("petsc4py", "mpi4py", "ehlpetsc.nonlinear", "ehlpetsc.stepping", "ehlpetsc.run", "ehlpetsc.life")
 
 
 @pytest.fixture(scope="module")

@@ -27,10 +27,6 @@ def states(name, overrides):
     return simulation, [state.dimensionless for state in simulation]
 
 
-def scaled(simulation, name, solution):
-    return getattr(solution, name) * {"h": simulation.scales.h, "p": simulation.scales.p0}[name]
-
-
 @pytest.mark.parametrize("name", ["table1_smooth.toml", "table1_mixed.toml"])
 def test_constant_conditions_in_a_table_are_the_plain_case(name):
     plain = COARSE | {"time.travel": 0.4, "time.courant": 0.5}
