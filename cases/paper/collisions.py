@@ -175,7 +175,7 @@ def draw_collisions(results: list[Result], values: list[float], key: str, chosen
         lower.set(xlabel=style.ACROSS, ylim=(0.0, None))
     axes[0, 0].set_ylabel("pressure [GPa]")
     axes[1, 0].set_ylabel("film thickness [µm]")
-    style.legend_beside(axes[0, -1], title=f"{style.UNITS.get(key, key)}\ntriangles: in contact")
+    style.legend_beside(axes[0, -1], title=f"{style.LABELS.get(key, key)}\ntriangles: in contact")
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure
 
@@ -190,7 +190,7 @@ def draw_points(results: list[Result], values: list[float], key: str, points: li
             panel.plot(values, shown, "o-", markevery=np.flatnonzero(~dry).tolist(), label=label, **look)
             panel.plot(np.array(values)[dry], shown[dry], "v", **look)
     upper.set(ylabel="film thickness [µm]", ylim=(0.0, None))
-    lower.set(ylabel="pressure [GPa]", xlabel=style.UNITS.get(key, key), ylim=(0.0, None), xlim=(0.0, None))
+    lower.set(ylabel="pressure [GPa]", xlabel=style.LABELS.get(key, key), ylim=(0.0, None), xlim=(0.0, None))
     style.legend_beside(upper, title="triangles: in contact")
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure

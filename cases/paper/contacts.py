@@ -52,7 +52,7 @@ def draw(results: list[Result]) -> Figure:
         lower.plot(x[inside], fit(x[inside]), color=colour, lw=1.4, label=label)
     upper.set(ylabel="contacts per ms", xlim=(-1.5, 1.5), ylim=(0.0, None))
     lower.set(ylabel=f"polynomial of order {ORDER}", xlabel=style.ACROSS, ylim=(0.0, None))
-    varied = f"{style.UNITS.get(key, key)}: " if key else ""
+    varied = f"{style.LABELS.get(key, key)}: " if key else ""
     style.legend_beside(lower, title=f"{varied}mean\nin abs(x) < a [1/ms]")
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results))
     return figure

@@ -101,7 +101,7 @@ def draw() -> Figure:
             panel.plot(DENSE, curves[measured.oil, measured.speed], color=colour, lw=1.4, label=label)
             bars = dict(fmt="o", ms=4, lw=0.8, capsize=2, color=colour)
             panel.errorbar(measured.ratios * shift, measured.friction, yerr=BAND, **bars)
-        panel.set(xscale="log", xlabel=style.UNITS["motion.slide_roll_ratio"], ylim=(0.0, 0.06))
+        panel.set(xscale="log", xlabel=style.LABELS["motion.slide_roll_ratio"], ylim=(0.0, 0.06))
         panel.set_title(title, fontsize="medium")
         panel.xaxis.set_major_formatter("{x:g}")
         panel.grid(lw=0.3)

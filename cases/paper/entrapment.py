@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from ehlpetsc.api import Result, read_result
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import line
-from ehlpetsc.pictures.frames.data import PRESSURE
+from ehlpetsc.pictures.frames.data import PRESSURE_LABEL
 
 MIN_GAP_NODES = 3  # mesh spacings between the contacts: two nodes of oil
 MAX_GAP = 0.05  # half-widths between the contacts
@@ -75,14 +75,14 @@ def draw(result: Result, event: Entrapment) -> Figure:
         lower.get_legend().remove()
         heights += lower.get_ylim()
         upper.plot(x[view], pressure[view], color=style.SINGLE, lw=1.1)
-        marks = dict(color=style.CONTACT, ms=4)
+        marks = dict(color=style.CONTACTS, ms=4)
         upper.plot(x[touching], pressure[touching], "v", **marks)
         lower.plot(x[touching], 1e6 * below[touching], "v", **marks)
         upper.set_title(f"{1e6 * result.time[frame]:.1f} µs", fontsize="medium")
         upper.set_xlim(x[view][0], x[view][-1])
     axes[0, 0].set_ylim(bottom=0.0)
     axes[1, 0].set_ylim(min(heights), max(heights))
-    axes[0, 0].set_ylabel(PRESSURE)
+    axes[0, 0].set_ylabel(PRESSURE_LABEL)
     for panel in axes[1, 1:]:
         panel.set_ylabel("")
     style.set_title(figure, str(result.attrs["title"]), style.conditions([result]))

@@ -128,7 +128,7 @@ def draw(fit: Fit, rows: dict[str, np.ndarray]) -> Figure:
         at = rows["slide_roll_ratio"][of]
         panel.errorbar(at, fit.measured[of], yerr=fit.error, fmt="o", ms=4, lw=0.8, capsize=2, color=colour)
         panel.plot(at, fitted[of], color=colour, lw=1.4, label=f"{speed:g} m/s")
-    panel.set(xscale="log", xlabel=style.UNITS["motion.slide_roll_ratio"], ylabel="friction coefficient")
+    panel.set(xscale="log", xlabel=style.LABELS["motion.slide_roll_ratio"], ylabel="friction coefficient")
     panel.set_ylim(bottom=0.0)
     panel.grid(lw=0.3)
     panel.legend(**style.SMALL)

@@ -23,9 +23,9 @@ from ehlpetsc.results.reader import Result, read_result
 
 RTOL = 1e-6  # default of --rtol
 ABSCISSA_TOLERANCE = 1e-9  # of the extent: computed coordinates nearer than this are equal
-LINE = "line"
+LINE_KIND = "line"
 NOWHERE = np.array([np.nan]), np.array([np.nan])
-OF_NODES = ("in_contact", "contacts", "contact_count")  # numbers of nodes or at nodes: of the mesh
+NODE_COUNTS = ("in_contact", "contacts", "contact_count")  # numbers of nodes or at nodes: of the mesh
 
 
 @dataclass
@@ -70,7 +70,7 @@ def compare(one: Result, other: Result) -> Iterator[Difference]:
     different kinds.
     """
     both = one, other
-    kinds = [result.attrs.get("kind", LINE) for result in both]
+    kinds = [result.attrs.get("kind", LINE_KIND) for result in both]
     if kinds[0] != kinds[1]:
         raise OutputError(f"a {kinds[0]} and a {kinds[1]} contact: {other.path}: allowed: two of one kind")
     for result in both:
@@ -79,7 +79,7 @@ def compare(one: Result, other: Result) -> Iterator[Difference]:
     nodes, frames = common_nodes(one, other), common(one.time, other.time, "times")
     x, y = (axis[nodes[0]] for axis in positions(one))
     time = one.time[frames[0]]
-    skipped = () if one.contact_count.size == other.contact_count.size == len(x) else OF_NODES
+    skipped = () if one.contact_count.size == other.contact_count.size == len(x) else NODE_COUNTS
     for name in [name for name in FIELDS if name in one.fields and name in other.fields]:
         if name not in skipped:
             first, second = (

@@ -133,11 +133,11 @@ def ensemble_table(results: list[Result]) -> list[Sequence]:
 
 EXCLUDED_SCALARS = ("step", "time", "dt", "wall", "approach")
 PERCENTILES = (5.0, 50.0, 95.0)
-COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
+CSV_COLUMNS = tuple("result case scalar unit mean p5 median p95 min max last from_s steps".split())
 
 
 def statistics(result: Result) -> list[tuple]:
-    """Statistics of each scalar of a result: values of `COLUMNS` from "scalar" on."""
+    """Statistics of each scalar of a result: values of `CSV_COLUMNS` from "scalar" on."""
     time, dt = result.steps("time"), np.nan_to_num(result.steps("dt"))
     weights = filled_weights(result, or_whole_run=True)
     rows = []
@@ -157,7 +157,7 @@ def statistics(result: Result) -> list[tuple]:
 def table(results: list[Result]) -> list[tuple]:
     """Names of the columns, then the rows of all results."""
     cases = distinguishing_names(results) or [str(result.attrs["title"]) for result in results]
-    rows = [COLUMNS]
+    rows = [CSV_COLUMNS]
     for result, case in zip(results, cases, strict=True):
         rows += [(result.path.name, case, *row) for row in statistics(result)]
     return rows

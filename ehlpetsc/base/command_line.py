@@ -108,8 +108,8 @@ def exit_status(
 
 SECONDS_IN_PLACE = 0.2  # between two updates of a line
 MIN_SECONDS = 1.0  # before a remaining time is shown
-WIDTH = 70
-ERASE = "\r" + " " * WIDTH + "\r"
+LINE_WIDTH = 70
+ERASE = "\r" + " " * LINE_WIDTH + "\r"
 
 
 def on_terminal(stream: TextIO) -> bool:
@@ -149,7 +149,7 @@ class ProgressLine:
         is_known = spent > MIN_SECONDS and share > 0.0
         remaining = duration(spent * (1.0 - share) / share) if is_known else "?"
         text = f"{self._label}: {100.0 * share:.0f} %, {remaining} remaining"
-        print(f"\r{text:{WIDTH}s}", end="", file=self._stream, flush=True)
+        print(f"\r{text:{LINE_WIDTH}s}", end="", file=self._stream, flush=True)
         self._shown = now
 
     def clear(self) -> None:

@@ -53,7 +53,7 @@ FIELDS = {
 }
 """Fields over (stored frame, node), in the order in which files list them."""
 
-STORED = list(FIELDS)
+DEFAULT_FIELDS = list(FIELDS)
 """Fields that a case stores unless it names its own."""
 
 Count = partial(StepScalar, "1", dtype="i4", over_run="sum")
@@ -242,7 +242,7 @@ def register(kind: type[HasQuantities]) -> None:
     """Add the quantities of an effect to the tables."""
     SCENES[kind.name] = kind.is_in
     FIELDS.update({name: replace(field, only=kind.name) for name, field in kind.fields.items()})
-    STORED.extend(name for name in kind.fields if name not in STORED)
+    DEFAULT_FIELDS.extend(name for name in kind.fields if name not in DEFAULT_FIELDS)
     STEP_SCALARS.update({name: replace(scalar, only=kind.name) for name, scalar in kind.scalars.items()})
     OTHERS.update(_on_surfaces(kind))
 

@@ -26,7 +26,7 @@ PREFIXED = {  # units that take a prefix, by others
     "Nmm": "0.001 N m",
     "Pas": "Pa s",
 }
-OTHERS = {
+FURTHER = {
     "min": "60 s",
     "minutes": "60 s",
     "h": "3600 s",
@@ -49,7 +49,7 @@ OTHERS = {
     "%": "0.01",
 }
 ZEROS = {"degC": 273.15, "°C": 273.15, "C": 273.15, "degF": 459.67 * 5 / 9}  # K
-SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*"} | {"²": "^2", "³": "^3"})
+UNIT_SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*"} | {"²": "^2", "³": "^3"})
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
 COMMA = re.compile(r"\s*[-+]?[\d.]*,[\d.,]*\d.*|\s*[-+]?\d[\d.]*,.*")
 TOKEN = r"\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?)|([A-Za-z%°]+)(?:(?:\^|\*\*)?([-+]?\d))?|([*/()]))"
@@ -120,7 +120,7 @@ def factor(text: str, unit: str, number: float = 1.0) -> float:
 @cache
 def _unit(text: str) -> tuple[float, tuple[int, ...]]:
     """SI size and exponents of `BASE` of a product of units, read from left to right."""
-    text = text.translate(SIGNS).strip()
+    text = text.translate(UNIT_SIGNS).strip()
     if re.sub(TOKEN, "", text):
         raise KeyError(text)
     size, exponents, sign, outer = 1.0, [0] * len(BASE), 1, [1]
@@ -145,7 +145,7 @@ def _named(name: str) -> tuple[float, tuple[int, ...]]:
     """Unit of a symbol, also with a prefix."""
     if name in BASE:
         return 1.0, tuple(int(name == base) for base in BASE)
-    if name in OTHERS or name in PREFIXED:
-        return _unit((OTHERS | PREFIXED)[name])
+    if name in FURTHER or name in PREFIXED:
+        return _unit((FURTHER | PREFIXED)[name])
     size, dimensions = _unit(PREFIXED[name[1:]]) if name[1:] in PREFIXED else _unit(f"[{name}")
     return PREFIXES[name[0]] * size, dimensions

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
 
 OF_GEARS = {"contact": ("load", "radius"), "motion": ("entrainment_speed", "slide_roll_ratio")}
-MAX_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
+MAX_PLANE_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 
 
 def given_by_gears(data: Tables, kind: str) -> list[Fault]:
@@ -84,8 +84,8 @@ def _size_faults(case: Case) -> list[Fault]:
     geometry, contact = KINDS[case.kind].part("geometry"), case.contact
     dry = geometry.dry(contact, reduced_modulus(contact.youngs_modulus, contact.poisson_ratio))
     rows = geometry.rows(case.mesh, dry)
-    if rows * case.mesh.nodes <= MAX_NODES:
+    if rows * case.mesh.nodes <= MAX_PLANE_NODES:
         return []
-    size = f"{case.mesh.nodes} x {rows} nodes; allowed: {MAX_NODES} in all"
+    size = f"{case.mesh.nodes} x {rows} nodes; allowed: {MAX_PLANE_NODES} in all"
     cure = "a smaller mesh.width or mesh.points_per_half_width (two: along and across) has fewer"
     return [Fault("mesh", f"mesh: {size}; {cure}")]

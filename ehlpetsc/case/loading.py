@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.topography import Topography
 
 DICT_NAME = "case"  # name of a case without a file in messages
-SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
+NO_SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
 OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
 Overrides = Tables | Iterable[str] | str | None
 __all__ = ["Case", "CaseError", "load", "members", "stored_case"]
@@ -164,7 +164,7 @@ def _checked(
     if not unsound:
         data = with_reference_state(data, conditions, kind)
     if "motion" not in data and ("fluid" in data or "time" in data):
-        faults.append(Fault("motion", SPEEDS, bool(unsound) or "gears" in data or "operation" in data))
+        faults.append(Fault("motion", NO_SPEEDS, bool(unsound) or "gears" in data or "operation" in data))
     case, found = check(in_kind(CASE, kind), data, known=known, is_sound=not unsound and not faults)
     if case:
         case = with_layer_stiffness(case.copy({"_kind": kind, "_conditions": conditions}))

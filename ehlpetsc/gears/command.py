@@ -28,7 +28,7 @@ from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
 from ehlpetsc.results.reader import read_result
 
 MAX_RUNS = 6
-MAX_CHANGE = 1.0  # K, of the bulk temperatures by the last run
+MAX_BULK_CHANGE = 1.0  # K, of the bulk temperatures by the last run
 
 
 def arguments() -> CommandParser:
@@ -134,7 +134,7 @@ def _iterate(chosen: argparse.Namespace, file: Path) -> None:
         found = bulk_temperatures(run.rating, run.friction_on_path(), case.gears.heat_transfer)
         used = ", ".join(f"{value:.1f}" for value in bulk)
         print(f"run {number}: bulk temperatures {used} K; by its losses {found[0]:.1f}, {found[1]:.1f} K")
-        if max(abs(new - old) for new, old in zip(found, bulk, strict=True)) < MAX_CHANGE:
+        if max(abs(new - old) for new, old in zip(found, bulk, strict=True)) < MAX_BULK_CHANGE:
             break
         bulk = found
     print(chosen.run)

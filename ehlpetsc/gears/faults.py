@@ -8,7 +8,7 @@ import numpy as np
 
 from ehlpetsc.gears.geometry import GearPair, involute
 
-TOLERANCE = 0.02  # of the module: given centre distance and tip diameters against those of the profile shift
+SHIFT_TOLERANCE = 0.02  # of the module: centre distance, tip diameters against those of the profile shift
 MAX_CONTACT_RATIO = 3  # above it four pairs would share the load
 MIN_TIP_THICKNESS = 0.2  # of the module: thinner tips chip
 LOAD_RATIO = 2 / 3, 3 / 2  # of given loads to that of the torque: room for dynamic and face load factors
@@ -139,10 +139,10 @@ def _faults_of_the_shift(pair: GearPair) -> list[str]:
     """The first given length that is not that of the profile shift."""
     for name in pair.given:
         given, free = (np.abs(np.atleast_1d(getattr(pair, key))) for key in (name, f"play_free_{name}"))
-        if not np.abs(given - free).max() <= TOLERANCE * pair.module:
+        if not np.abs(given - free).max() <= SHIFT_TOLERANCE * pair.module:
             own, lengths = (", ".join(f"{value:.5g}" for value in of) for of in (given, free))
             reason = f"the play-free pair of this profile_shift has {lengths} m"
-            return [f"{name} = {own}: {reason}; allowed: within {TOLERANCE:g} modules, or left out"]
+            return [f"{name} = {own}: {reason}; allowed: within {SHIFT_TOLERANCE:g} modules, or left out"]
     return []
 
 

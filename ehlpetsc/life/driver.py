@@ -27,8 +27,8 @@ from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.surfaces.motion.profile_checks import mesh_warnings
 
-MAX_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
-NEEDED = ("pressure", "shear_stress_1", "shear_stress_2")
+MAX_LIFE_UNRESOLVED = 0.1  # of the height variance: more makes passes to failure those of the mesh
+NEEDED_FIELDS = ("pressure", "shear_stress_1", "shear_stress_2")
 
 
 def check_case(case: Case) -> None:
@@ -44,8 +44,8 @@ def check_case(case: Case) -> None:
         faults.append("[life] needs a rough surface: jumps are a share of its Rq")
     if case.conditions is not None and 0 in case.conditions.directions():
         faults.append("[life] needs surfaces that move one way: points would pass the contact several times")
-    if case.output.every != 1 or not set(NEEDED) <= set(case.output.fields):
-        faults.append(f"[life] needs output.every = 1 and the fields {', '.join(NEEDED)}")
+    if case.output.every != 1 or not set(NEEDED_FIELDS) <= set(case.output.fields):
+        faults.append(f"[life] needs output.every = 1 and the fields {', '.join(NEEDED_FIELDS)}")
     if faults:
         raise CaseError([f"{case.path}: {fault}" for fault in faults])
 
@@ -141,7 +141,7 @@ class _Life:
         self.jumps = Jumps(case.life, self.positions.rq)
         self.ranks, self.file = Ranks(comm, self.positions.count), LifeFile(path)
         self._scene = self.positions.scenes[0]
-        faults = mesh_warnings(self._scene.roughness, self.scales, MAX_UNRESOLVED)
+        faults = mesh_warnings(self._scene.roughness, self.scales, MAX_LIFE_UNRESOLVED)
         if faults and not unresolved:
             advice = "the life would depend on the mesh; allowed also: a longer short_cutoff, --unresolved"
             raise CaseError([f"{case.path}: {fault}; {advice}" for fault in faults])

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.run.ranks import StopRequest
 
-FIGURES = [f"{name}_{k}" for name in ("damaged_share", "pitted_share", "pits", "wear_volume") for k in (1, 2)]
-FIGURES += ["friction"]
+OF_BODIES = ("damaged_share", "pitted_share", "pits", "wear_volume")
+OF_SEEDS = [*(f"{name}_{k}" for name in OF_BODIES for k in (1, 2)), "friction"]
 Lives = dict[str, list[LifeHistory]]
 
 
@@ -103,8 +103,8 @@ def read_lives(path: Path) -> Lives:
 
 
 def bands(lives: list[LifeHistory]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """`band` of each of the `FIGURES`."""
-    return {name: band(lives, name) for name in FIGURES}
+    """`band` of each of the `OF_SEEDS`."""
+    return {name: band(lives, name) for name in OF_SEEDS}
 
 
 def band(lives: list[LifeHistory], name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -128,7 +128,7 @@ def lines_of_ensembles(lives: Lives) -> Iterator[str]:
     """Lines with the mean of each figure over the lives of an ensemble and its bounds (90 %), at the end."""
     for others, members in lives.items():
         begin = f"{others}: " if others else ""
-        for name in FIGURES:
+        for name in OF_SEEDS:
             passes, (mean, low, high) = band(members, name)
             yield (
                 f"{begin}{name} after {passes[-1]:.4g} passes, {len(members)} lives: "

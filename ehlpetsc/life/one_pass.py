@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
+from ehlpetsc.case.tables.surface import SIDES
 from ehlpetsc.post.loads import Loads, Prepared, prepare
 from ehlpetsc.post.run import Job, solve
 from ehlpetsc.results.means import means
@@ -56,7 +57,6 @@ class Pass(NamedTuple):
     yielded: float
 
 
-SIDES = ("1", "2")
 NO_DEPTH = BodyField(1e-6, 0, np.zeros(0))
 
 
@@ -137,7 +137,7 @@ def damage_of_pass(prepared: Prepared, side: str, settings: tuple[str, ...] = ()
     return values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
 
 
-CRITERIA = {  # name: post.criterion, post.mean_stress
+LIFE_CRITERIA = {  # name: post.criterion, post.mean_stress
     "von-mises": ("von-mises", "none"),
     "morrow": ("von-mises", "morrow"),
     "goodman": ("von-mises", "goodman"),
@@ -155,7 +155,7 @@ def passes_to_failure(file: Path, settings: tuple[str, ...] = ()) -> tuple[float
 
 
 def band(file: Path) -> dict[str, tuple[float, float]]:
-    """`passes_to_failure` by each of the `CRITERIA`, of one solved pass, without wear.
+    """`passes_to_failure` by each of the `LIFE_CRITERIA`, of one solved pass, without wear.
 
     The criteria are fitted to the same strain-life tests and differ by the stresses that they count; none is
     tested for rolling contact. The band is the least uncertainty of a life; ratios of lives by one criterion
@@ -163,7 +163,7 @@ def band(file: Path) -> dict[str, tuple[float, float]]:
     """
     return {
         name: passes_to_failure(file, (f"post.criterion={criterion}", f"post.mean_stress={mean}"))
-        for name, (criterion, mean) in CRITERIA.items()
+        for name, (criterion, mean) in LIFE_CRITERIA.items()
     }
 
 

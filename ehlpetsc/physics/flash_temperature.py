@@ -46,7 +46,7 @@ class Solid(NamedTuple):
 STEEL = Solid(46.0, 7850.0, 470.0)
 OIL_CONDUCTIVITY = 0.25  # W/(m K), of a mineral oil at about 0.6 GPa
 MAX_ISOTHERMAL_RISE = 20.0  # K, of the film over the bodies: above it a case should not be isothermal
-TINY = 1e-300  # surfaces at rest do not slide
+MIN_SLIDING = 1e-300  # surfaces at rest do not slide
 MAX_FRICTION = 0.1  # coefficient: isothermal Newtonian estimates have no bound
 
 
@@ -78,7 +78,7 @@ def blok_flash_temperature(
         [W s^(1/2)/(m^2 K)]
     """
     carried = sum(e * abs(u) ** 0.5 for e, u in zip(effusivities, (u1, u2), strict=True))
-    return 1.11 * friction * load * abs(sliding) / (np.maximum(carried, TINY) * (2.0 * a) ** 0.5)
+    return 1.11 * friction * load * abs(sliding) / (np.maximum(carried, MIN_SLIDING) * (2.0 * a) ** 0.5)
 
 
 def expected_friction(fluid: Fluid, load: float, a: float, sliding: float, film: float) -> float:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
 
 MIN_SAMPLES = 4096  # points at which a table is evaluated for time steps and extremes
-END_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
+TIME_TOLERANCE = 1e-9  # of the duration: times nearer to the end count as the end
 MIN_ENTRAINMENT_RATIO = 1e-3  # of the faster surface's speed: smaller entrainment speeds are no scale
 SPEED_ROUNDING = 1e-12  # of the maximum speed: less is rest or rolling, where solids have no friction
 MAX_SPEED_CHANGE = 0.02  # in a time step, of the maximum speed, for a Courant number of 1
@@ -113,7 +113,7 @@ class ConditionsTable(NamedTuple):
 
     def directions(self) -> tuple[int, ...]:
         """Direction of each body's motion: 1, -1, or 0 if it reverses or rests."""
-        signs = [np.sign(u[np.abs(u) > END_TOLERANCE * self.speed.max()]) for u in (self.u1, self.u2)]
+        signs = [np.sign(u[np.abs(u) > TIME_TOLERANCE * self.speed.max()]) for u in (self.u1, self.u2)]
         return tuple(int(s[0]) if len(s) and (s == s[0]).all() else 0 for s in signs)
 
     def swept_length(self) -> float:
@@ -193,7 +193,7 @@ class VariableOperation:
     def is_reversing(self) -> bool:
         """Whether the entrainment speed changes its sign."""
         u = self.table.sampled().entrainment
-        scale = END_TOLERANCE * np.abs(u).max()
+        scale = TIME_TOLERANCE * np.abs(u).max()
         return bool(u.min() < -scale and u.max() > scale)
 
     def _local(self, time: float) -> tuple[int, float]:
@@ -201,7 +201,7 @@ class VariableOperation:
         period = self.period
         done = min(max(int(time // period), 0), self.table.repeat - 1)
         local = min(max(time - done * period, 0.0), period)
-        is_at_end = period - local < END_TOLERANCE * period
+        is_at_end = period - local < TIME_TOLERANCE * period
         if is_at_end and done < self.table.repeat - 1:  # the next repetition, except for rounding
             done, local = done + 1, 0.0
         return done, local
@@ -239,13 +239,13 @@ class VariableOperation:
     def remaining(self, time: float, travelled: tuple[float, float]) -> float:
         """Time to the end of the run [s]."""
         left = self.duration - time
-        return left if left > END_TOLERANCE * self.duration else 0.0
+        return left if left > TIME_TOLERANCE * self.duration else 0.0
 
     @cached_property
     def duration(self) -> float:
         """Length of the whole run [s]."""
         table_duration = self.table.repeat * self.period
-        if self.travel is None or self.travel >= self.table.swept_length() * (1.0 - END_TOLERANCE):
+        if self.travel is None or self.travel >= self.table.swept_length() * (1.0 - TIME_TOLERANCE):
             return table_duration
         fine = self.table.sampled()
         swept = cumulative(fine.speed, fine.time)
@@ -304,4 +304,4 @@ class VariableOperation:
         fraction = level - np.floor(level + LEVEL_TOLERANCE)
         left = (1.0 - fraction) * step if fraction > LEVEL_TOLERANCE else step
         end = self.duration - time
-        return min(left, end) if end > END_TOLERANCE * self.duration else left
+        return min(left, end) if end > TIME_TOLERANCE * self.duration else left

@@ -20,7 +20,7 @@ from ehlpetsc.surfaces.motion.profile_checks import entry_times
 from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
 
 PROFILE_SIZE = (9.0, 3.3)  # inches, for each profile
-WIDTH, MAP_WIDTH, MARGIN = 7.0, 5.3, 1.1  # inches: of the figure, of a map, above and below a map
+CASE_WIDTH, CASE_MAP, CASE_MARGIN = 7.0, 5.3, 1.1  # inches: of the figure, of a map, above and below a map
 MAX_LENGTH = 4.0  # shown length of a map over the width of the mesh
 
 
@@ -34,7 +34,7 @@ def draw_case(path: Path | str, overrides: Iterable[str] = ()) -> Figure:
     if KINDS[case.kind].is_areal:
         width = scales.grid.spacings[0] * scales.grid.shape[0]
         lengths = [min(surface.given.length, MAX_LENGTH * width) for surface in rough.sides.values()]
-        size = WIDTH, len(lengths) * (MAP_WIDTH * width / max(lengths) + MARGIN) + 0.5
+        size = CASE_WIDTH, len(lengths) * (CASE_MAP * width / max(lengths) + CASE_MARGIN) + 0.5
         draw = draw_map
     else:
         size, draw = (PROFILE_SIZE[0], PROFILE_SIZE[1] * len(rough.sides) + 0.5), draw_profile

@@ -45,7 +45,7 @@ MAPS = {  # of a point contact or strip
     "fringes": "film as interference fringes, of a point or strip",
     "contacts": "share of the steps in which nodes are in contact, of a point or strip",
 }
-OTHERS = {  # that are no pictures: endings of their files, help
+NOT_DRAWN = {  # that are no pictures: endings of their files, help
     "report": (PAGES, "one result as one HTML page with slider and zoom"),
     "movie": ((".gif",), "pressure and film over time, as a GIF"),
 }
@@ -71,7 +71,7 @@ def arguments() -> CommandParser:
     parser.add_argument("--size", type=float, nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches")
     parser.add_argument("--no-title", action="store_true", help="without the title above the panels")
     kind = parser.add_mutually_exclusive_group()
-    for name, (*_, text) in (FIGURES | {name: (text,) for name, text in MAPS.items()} | OTHERS).items():
+    for name, (*_, text) in (FIGURES | {name: (text,) for name, text in MAPS.items()} | NOT_DRAWN).items():
         option = f"--{name.replace('_', '-')}"
         kind.add_argument(option, dest="kind", action="store_const", const=name, help=text)
     return parser
@@ -80,7 +80,7 @@ def arguments() -> CommandParser:
 def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     options = arguments().parse_args(words)
-    allowed = OTHERS[options.kind][0] if options.kind in OTHERS else PICTURES
+    allowed = NOT_DRAWN[options.kind][0] if options.kind in NOT_DRAWN else PICTURES
     kind = f".{options.kind}" if options.kind in FIGURES | MAPS else ""
     kind = kind or ("" if options.section is None else ".section")
     kind += f".{options.field}" if options.field else ""

@@ -28,7 +28,7 @@ QUANTITIES = {
     "contact_share": "share of the load\non the solids",
     "mean_gap_ratio": "mean gap over\nthe combined Rq",
 }
-MIN_LOAD_FRACTION = 1e-5  # of the solids, lower end of the axis
+MIN_SHOWN_SHARE = 1e-5  # of the solids, lower end of the axis
 MIN_LOGARITHMIC_RATIO = 100.0  # of slide/roll ratios: a larger span is drawn on a logarithmic axis
 
 
@@ -90,7 +90,7 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
     for panel in axes[1:]:
         panel.set_yscale("log" if panel.dataLim.y1 > 0.0 else "linear")
     axes[2].yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes[1].set_ylim(bottom=max(axes[1].get_ylim()[0], MIN_LOAD_FRACTION))
+    axes[1].set_ylim(bottom=max(axes[1].get_ylim()[0], MIN_SHOWN_SHARE))
     loads = [Scales.of(r.case).load_per_length for r in results]
     conditions = {
         (r.case.fluid and r.case.fluid.viscosity, load) for r, load in zip(results, loads, strict=True)
@@ -99,7 +99,7 @@ def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) ->
         [(viscosity, load)] = conditions
         hersey = "Hersey number: viscosity × speed over load per length"
         style.scale_above(axes[0], viscosity / load, hersey)
-    axes[2].set_xlabel(style.UNITS[SPEED])
+    axes[2].set_xlabel(style.LABELS[SPEED])
     early = ", ".join(result.path.name for result in results if not filled_weights(result).any())
     note = f"not shown, ended too early: {early}" if early else ""
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results), note)
@@ -123,7 +123,7 @@ def draw_traction(results: list[Result], _options: argparse.Namespace | None) ->
         published = correlations(results[0], ratios).items()
         for (label, friction), dashes in zip(published, (":", "-."), strict=True):
             axes.plot(ratios, friction, dashes, color="0.35", lw=1.0, label=label)
-    axes.set(xlabel=style.UNITS[RATIO], ylabel="friction coefficient", xlim=(0.0, None))
+    axes.set(xlabel=style.LABELS[RATIO], ylabel="friction coefficient", xlim=(0.0, None))
     if ratios.size and ratios[-1] > MIN_LOGARITHMIC_RATIO * ratios[0]:
         axes.set(xscale="log", xlim=(ratios[0], ratios[-1]))
     axes.set_ylim(bottom=0.0)

@@ -20,10 +20,10 @@ from ehlpetsc.gears.path import hertz
 from ehlpetsc.gears.standards import Rating, values_of
 from ehlpetsc.pictures import style
 
-WIDTH, PANEL, DPI = 3.35, 0.95, 300  # inches, dots per inch: one column
-TEXT = {"font.size": 8, "figure.titlesize": 8, "legend.fontsize": 7, "legend.frameon": False}
+COLUMN, PANEL, COLUMN_DPI = 3.35, 0.95, 300  # inches, dots per inch: one column
+FONTS = {"font.size": 8, "figure.titlesize": 8, "legend.fontsize": 7, "legend.frameon": False}
 GRID = {"axes.grid": True, "grid.alpha": 0.3}
-ABOVE = dict(loc="lower center", bbox_to_anchor=(0.5, 1.1), handlelength=1.2)  # the names of the points
+LEGEND = dict(loc="lower center", bbox_to_anchor=(0.5, 1.1), handlelength=1.2)  # the names of the points
 POSITION = "position from the pitch point [mm]"
 LINES = ("-", "--", ":")  # of the curves of a panel
 COLOURS = {"pinion": style.SURFACES["1"], "wheel": style.SURFACES["2"]}
@@ -90,7 +90,7 @@ def draw_runs(runs: list[GearRun], target: Path, *, names: Sequence[str]) -> Non
             axis.set_ylabel(label)
             _mark(axis, runs[0].path.pair, with_names=axis is axes[0])
         if len(runs) > 1:
-            axes[0].legend(**ABOVE)
+            axes[0].legend(**LEGEND)
 
 
 def _draw_standard(axis: Axes, run: GearRun, name: str) -> None:
@@ -115,7 +115,7 @@ def draw_damage(runs: list[GearRun], target: Path) -> None:
             places = {name: float(pair.flank_arcs(rho)[k]) for name, rho in pair.points_on_path.items()}
             _mark(axis, pair, places)
             axis.set_ylabel(f"damage of an\nengagement, {FLANKS[k]}")
-        axes[0].legend(**ABOVE)
+        axes[0].legend(**LEGEND)
 
 
 def draw_stages(runs: list[GearRun], target: Path) -> None:
@@ -143,15 +143,15 @@ def _column(
     count: int, target: Path, title: str, label: str = POSITION, height: float = PANEL, sharex: bool = True
 ) -> Iterator[np.ndarray]:
     """Panels of a column, which are saved at the end."""
-    with rc_context(TEXT | GRID):
-        size = (WIDTH, 0.6 + height * count)
+    with rc_context(FONTS | GRID):
+        size = (COLUMN, 0.6 + height * count)
         figure, axes = style.new_figure(count, 1, size, sharex=sharex, squeeze=False)
         if title:
             figure.suptitle(title)
         yield axes[:, 0]
         figure.align_ylabels(list(axes[:, 0]))
         axes[-1, 0].set_xlabel(label)
-        style.save(figure, target, dpi=DPI)
+        style.save(figure, target, dpi=COLUMN_DPI)
 
 
 def _mark(

@@ -24,16 +24,16 @@ from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import damage_beside
 from ehlpetsc.results.reader import Result
 
-MAX_FRAMES, MAX_NODES, MAX_ROWS, MAX_POINTS = 200, 1200, 2000, 2000  # on a page
+PAGE_FRAMES, PAGE_NODES, PAGE_ROWS, PAGE_POINTS = 200, 1200, 2000, 2000  # on a page
 MIN_CHANGE = 1e-9  # relative change over a run below which a scalar counts as constant
 MINIMUM_SCALARS = {"h_min", "film_central", "mean_gap_ratio"}  # of several steps; of others the maximum
 HIDDEN_SCALARS = set("step time dt newton retries load wall load_error mass_error".split())
-EXTREMES = """h_min p_max film_temperature_max temperature_1_max temperature_2_max load_error
+AT_TOP = """h_min p_max film_temperature_max temperature_1_max temperature_2_max load_error
 mass_error""".split()  # of the run, in the table at the top
 MAX_MAP_NODES = 160  # of a map along either side
 MAX_VALUES = 2_000_000  # of all maps of a field on a page
 LEVELS = 65535  # of a stored value, over the maximum of its field
-FILM_ROOM = 10.0  # largest stored film over the upper end of its axis
+MAX_STORED_FILM = 10.0  # largest stored film over the upper end of its axis
 
 
 def binned(values: np.ndarray, width: int, reduce: Callable[..., np.ndarray]) -> np.ndarray:
@@ -72,7 +72,7 @@ def plane_maps(result: Result, shown: list[Frame]) -> dict:
         "highest": limits.brightest,
         "ends": limits[2:],
     }
-    highest = FILM_ROOM * limits.high if first.is_film else np.inf
+    highest = MAX_STORED_FILM * limits.high if first.is_film else np.inf
     fields = {
         "pressure": (np.max, [frame.pressure for frame in shown]),
         "values": (reduction(first), [np.minimum(frame.values, highest) for frame in shown]),
@@ -126,10 +126,10 @@ def save_report(result: Result, path: Path, field: str | None = None) -> None:
 
 def report_data(result: Result, field: str | None = None) -> dict:
     """Data of the page, for JSON; of a point contact or strip maps, and frames of the section at y = 0."""
-    line, chosen, maps, window = result, chosen_frames(result, MAX_FRAMES), {}, view([result])
+    line, chosen, maps, window = result, chosen_frames(result, PAGE_FRAMES), {}, view([result])
     if result.y is not None:
         line = result.section()
-        chosen = chosen_frames(result, min(MAX_FRAMES, frames_on_page(result, window)))
+        chosen = chosen_frames(result, min(PAGE_FRAMES, frames_on_page(result, window)))
         maps = {"maps": plane_maps(result, [Frame.of(result, k, window, field) for k in chosen])}
     shown = [Frame.of(line, k, window, field) for k in chosen]
     return maps | {
@@ -151,7 +151,7 @@ def facts(result: Result) -> list[tuple[str, str]]:
         ("contact", f"{result.case.contact.model} contact, {style.conditions([result])}"),
         ("nodes, steps", f"{nodes}, {len(result.steps('time')) - 1}"),
     ]
-    for name in EXTREMES:
+    for name in AT_TOP:
         if name in result.scalars and np.isfinite(values := result.steps(name)).any():
             extreme = np.nanmin(values) if name in MINIMUM_SCALARS else np.nanmax(values)
             rows.append((STEP_SCALARS[name].long_name, _with_unit(result, name, extreme)))
@@ -178,7 +178,7 @@ def chosen_frames(result: Result, most: int) -> np.ndarray:
 
 def frames(result: Result, chosen: np.ndarray, shown: list[Frame]) -> dict:
     """Pressure, film or another field, contacts and Hertz contact of chosen frames in view."""
-    first, width = shown[0], -(-len(shown[0].x) // MAX_NODES)
+    first, width = shown[0], -(-len(shown[0].x) // PAGE_NODES)
     fields = {"pressure": np.max, "values": reduction(first)}
     if "contact_pressure" in result:
         fields["solids"] = np.max
@@ -207,7 +207,7 @@ def scalars_over_time(result: Result) -> dict:
     time = result.steps("time")
     if len(time) < 2:
         return {"time": packed([]), "figures": []}
-    width, figures = -(-len(time) // MAX_ROWS), []
+    width, figures = -(-len(time) // PAGE_ROWS), []
     for name in (name for name in STEP_SCALARS if name in result.scalars and name not in HIDDEN_SCALARS):
         values = result.steps(name).astype(float)[1:]
         finite = values[np.isfinite(values)]
@@ -225,7 +225,7 @@ def damage(result: Result) -> dict | None:
     post = damage_beside(result)
     if post is None:
         return None
-    width = -(-len(post.s) // MAX_POINTS)
+    width = -(-len(post.s) // PAGE_POINTS)
     decades = {side: np.log10(np.where(values > 0.0, values, np.nan)) for side, values in post.damage.items()}
     return {
         "s": packed(binned(post.s / post.a, width, np.mean)),

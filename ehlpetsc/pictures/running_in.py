@@ -18,8 +18,8 @@ from ehlpetsc.results.reader import Result
 
 RUNNING_IN_SIZE, SIZE_WITH_DAMAGE = (11.0, 7.0), (15.0, 7.0)  # inches
 PROFILE_WIDTH = 0.6  # half-widths of profile around the deepest indentation
-LENGTH, AREA, VOLUME = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
-MEASURES = (LENGTH, AREA), (AREA, VOLUME)  # of contact and of its depths, per width and of the whole contact
+SPAN, AREA, VOLUME = (1e6, "length", "µm"), (1e12, "area", "µm²"), (1e18, "volume", "µm³")
+MEASURES = (SPAN, AREA), (AREA, VOLUME)  # of contact and of its depths, per width and of the whole contact
 FIRST, LAST = style.FAINT, style.SECOND  # colours of the passes
 
 

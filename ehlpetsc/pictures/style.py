@@ -25,7 +25,7 @@ from ehlpetsc.results.reader import Result
 SURFACES = {"1": "#b35806", "2": "#1f4e79"}  # orange and blue, in every picture; pinion and wheel of gears
 SINGLE = "#1f4e79"  # one curve, of the contact
 FILM = "#228833"  # of film and surfaces, the film
-CONTACT = "#d62728"  # nodes in contact
+CONTACTS = "#d62728"  # nodes in contact
 SOLIDS = "#e08214"  # pressure of the solids
 SECOND = "#cc3311"  # a second curve beside `SINGLE`
 DARK = "#222222"
@@ -142,7 +142,7 @@ def reach_across(result: Result, window: Sequence[float]) -> float:
     return 0.5 * (window[1] - window[0]) * float(b if np.isfinite(b) else result.attrs["a"])
 
 
-UNITS = {
+LABELS = {
     "fluid.viscosity": "viscosity [Pa s]",
     "motion.entrainment_speed": "entrainment speed [m/s]",
     "motion.slide_roll_ratio": "slide/roll ratio",

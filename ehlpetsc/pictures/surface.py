@@ -30,7 +30,7 @@ from ehlpetsc.surfaces.files.exports import WRITERS, GridField
 from ehlpetsc.surfaces.motion.profile_checks import doubts
 from ehlpetsc.surfaces.parameters import (
     CORRELATION_THRESHOLD,
-    MIN_POINTS,
+    MIN_PARAMETER_POINTS,
     PARAMETERS,
     autocorrelation,
     binned,
@@ -42,18 +42,18 @@ from ehlpetsc.surfaces.samples import measured_samples
 from ehlpetsc.surfaces.topography import Topography, difference
 
 TABLE = "surface.1."
-SIZE, MAP_SIZE = (9.0, 6.0), (13.0, 4.2)  # inches
+SURFACE_SIZE, MAP_SIZE = (9.0, 6.0), (13.0, 4.2)  # inches
 HEADING = "wavelength [m],wavenumber [rad/m],power spectral density [m^3]"
 FACTORS = {"um": 1e6, "%": 100.0}  # of the shown units
-REASONS = {
+NO_LENGTH = {
     "R": "stays above 1/e up to half the profile",
     "S": f"stays above {CORRELATION_THRESHOLD:g} up to half the map in some direction",
 }  # of parameters that are not numbers, how the autocorrelation behaves
 MAX_PIXELS = 1500  # of the picture of a map, along either side
 EXTREME_SHARE = 0.001  # of the heights, beyond the ends of the colours
-COLOURS = "viridis"
+HEIGHT_COLOURS = "viridis"
 SHOWN_DENSITY = 1e-12  # over the highest: below it is the rounding of synthetic waves
-CORRELATION_LENGTHS = 5  # of the slowest decay that the picture shows
+SHOWN_DECAYS = 5  # of the slowest decay that the picture shows
 
 Spectra = dict[str, tuple[np.ndarray, np.ndarray]]
 
@@ -130,8 +130,9 @@ def _used(file: str, spec: Values, is_for_difference: bool) -> Topography:
             return surface
         if is_for_difference:
             raise ProfileError("a profile; allowed for --minus: maps")
-        if surface.X.size < MIN_POINTS:
-            raise ProfileError(f"{surface.X.size} points; allowed for parameters: at least {MIN_POINTS}")
+        if surface.X.size < MIN_PARAMETER_POINTS:
+            allowed = f"allowed for parameters: at least {MIN_PARAMETER_POINTS}"
+            raise ProfileError(f"{surface.X.size} points; {allowed}")
     except ProfileError as error:
         raise CaseError([f"{file}: {error}"]) from None
     X, z, is_interpolated = equally_spaced(surface.X, surface.z[0])
@@ -169,7 +170,7 @@ def rows(found: dict[str, float]) -> list[str]:
     """Parameters with unit and meaning, a line each, with the reason for one that is not a number."""
     letter = "R" if "Ra" in found else "S"
     is_smooth = np.isnan(found[f"{letter}ku"])
-    reason = "no height differs" if is_smooth else f"the autocorrelation {REASONS[letter]}"
+    reason = "no height differs" if is_smooth else f"the autocorrelation {NO_LENGTH[letter]}"
     core = {ratio: found[letter + ratio] for ratio in ("mr1", "mr2")}
     lines = []
     for pattern, unit, meaning in PARAMETERS:
@@ -200,7 +201,7 @@ def csv(spectra: Spectra) -> str:
 
 def draw_profile(name: str, profile: Topography, found: dict[str, float], spectra: Spectra) -> Figure:
     """Profile, power spectral density and material ratio curve."""
-    figure = Figure(figsize=SIZE, layout="constrained")
+    figure = Figure(figsize=SURFACE_SIZE, layout="constrained")
     axes = figure.subplot_mosaic([["profile", "profile"], ["spectrum", "material"]])
     style.set_title(figure, name, shown_parameters(found, "R"))
     axes["profile"].plot(1e3 * profile.X, 1e6 * profile.z[0], color=style.SINGLE, lw=0.7)
@@ -242,7 +243,7 @@ def draw_heights(axes: Axes, z: np.ndarray, edges: tuple[float, ...], **options:
     """Draw heights [m] between edges [m] in x and y as colours, with their bar; extremes are cut off."""
     low, high = 1e6 * np.quantile(z, (EXTREME_SHARE, 1 - EXTREME_SHARE))
     place = dict(extent=1e3 * np.array(edges), origin="lower")
-    image = axes.imshow(1e6 * z, COLOURS, vmin=low, vmax=high, **place, **options)
+    image = axes.imshow(1e6 * z, HEIGHT_COLOURS, vmin=low, vmax=high, **place, **options)
     axes.figure.colorbar(image, ax=axes, label="height [µm]", extend="both")
 
 
@@ -285,5 +286,5 @@ def _draw_correlation(axes: Axes, surface: Topography, found: dict[str, float]) 
     axes.set(xlabel="lag [µm]", ylabel="autocorrelation", ylim=(min(-0.3, along.min(), across.min()), 1.05))
     if np.isfinite(found["Sal"]):
         longest = found["Sal"] / np.nan_to_num(found["Str"], nan=1.0)
-        axes.set_xlim(0.0, 1e6 * CORRELATION_LENGTHS * longest)
+        axes.set_xlim(0.0, 1e6 * SHOWN_DECAYS * longest)
     axes.legend(frameon=False, **style.SMALL)

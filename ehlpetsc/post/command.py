@@ -14,12 +14,12 @@ import numpy as np
 from ehlpetsc.base.command_line import CommandParser, ProgressLine, exit_status
 from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
+from ehlpetsc.case.tables.outputs import MEAN_STRESSES
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.mean_stress import MEAN_STRESSES
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import check_output_path
-from ehlpetsc.results.post_result import SURFACES, PostResult, post_path
+from ehlpetsc.results.post_result import UPPER_FIRST, PostResult, post_path
 
 DESCRIPTION = (
     "Stress histories of body points, rainflow cycles, fatigue damage and its statistics from result files. "
@@ -34,7 +34,7 @@ def _parser() -> CommandParser:
     add("results", nargs="+", metavar="RESULT.h5", help=several)
     output = "result, of a single input (default: RESULT.post.h5 beside it)"
     add("-o", "--output", metavar="FILE", help=output)
-    add("--surface", choices=("both", *SURFACES), default="both", help="processed surface (default both)")
+    add("--surface", choices=("both", *UPPER_FIRST), default="both", help="processed surface (default both)")
     add("--depths", nargs="+", type=float, metavar="Z/A", help="instead of those of [post]")
     key = "a key of [post], or contact.material, instead of that of the case; may be repeated"
     add("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
@@ -87,7 +87,7 @@ def _job(path: str, chosen: argparse.Namespace) -> Job:
     return Job(
         path,
         chosen.output or str(post_path(path)),
-        SURFACES if chosen.surface == "both" else (chosen.surface,),
+        UPPER_FIRST if chosen.surface == "both" else (chosen.surface,),
         jobs=chosen.jobs,
         criteria=tuple(sorted(chosen.criterion)),
         settings=(*chosen.set, *_settings(chosen)),

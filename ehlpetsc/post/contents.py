@@ -21,10 +21,10 @@ from ehlpetsc.post.fatigue.statistics import (
 )
 from ehlpetsc.post.loads import Loads, Passage, Prepared
 from ehlpetsc.results.output_guard import atomic_write
-from ehlpetsc.results.post_result import SURFACES, PointTemperatures, WeibullFit, stored_names
+from ehlpetsc.results.post_result import UPPER_FIRST, PointTemperatures, WeibullFit, stored_names
 
-FORMAT_VERSION = 1
-SCALES = {"s": "damage/s", "z": "damage/z_over_a", "y": "damage/y"}
+POST_FORMAT_VERSION = 1
+POST_SCALES = {"s": "damage/s", "z": "damage/z_over_a", "y": "damage/y"}
 
 
 def datasets_of(
@@ -143,14 +143,14 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
 
 def write_result(path: str | Path, datasets: Mapping[str, Any], attributes: Mapping[str, Any]) -> None:
     """Write datasets by name, with units, texts and axes of their table; replaces `path` at once."""
-    table = {name: dataset for surface in SURFACES for name, dataset in stored_names(surface).items()}
+    table = {name: dataset for surface in UPPER_FIRST for name, dataset in stored_names(surface).items()}
     image = io.BytesIO()  # HDF5 crashes on a full disk, a plain write does not
     with h5py.File(image, "w") as file:
-        file.attrs.update({"format_version": FORMAT_VERSION, **attributes})
+        file.attrs.update({"format_version": POST_FORMAT_VERSION, **attributes})
         for name, values in datasets.items():
             file[name] = values
             file[name].attrs.update(units=table[name].unit, long_name=table[name].text)
-        scales = {axis: name for axis, name in SCALES.items() if name in datasets}
+        scales = {axis: name for axis, name in POST_SCALES.items() if name in datasets}
         for axis, name in scales.items():
             file[name].make_scale(axis)
         for name in datasets.keys() - scales.values():

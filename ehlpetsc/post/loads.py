@@ -21,7 +21,7 @@ from ehlpetsc.post.criteria.planes import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.stresses.body_stress import limited_slopes
 from ehlpetsc.post.stresses.half_plane import spacing
-from ehlpetsc.results.post_result import SURFACES
+from ehlpetsc.results.post_result import UPPER_FIRST
 from ehlpetsc.results.reader import Result, open_result
 
 CACHE_BYTES = 32 << 20  # of chunks of each dataset
@@ -52,8 +52,8 @@ class Loads(Result):
         self.is_periodic = self.attrs.get("kind") == "strip"
         b = np.inf if self.is_periodic else float(self.attrs.get("b", np.inf))
         self.rows_in_contact = None if self.y is None else np.abs(self.y) < b
-        self.travelled = {surface: self._travelled(surface) for surface in SURFACES}
-        self.profiles = {surface: self._sorted_profile(surface) for surface in SURFACES}
+        self.travelled = {surface: self._travelled(surface) for surface in UPPER_FIRST}
+        self.profiles = {surface: self._sorted_profile(surface) for surface in UPPER_FIRST}
 
     def __enter__(self) -> Loads:
         return self
@@ -113,7 +113,7 @@ class Loads(Result):
 
 DEPTHS = (0.0, 0.01, 0.03, 0.05, 0.1, 0.2, 0.5, 0.7, 1.0)  # z/a: down to the stresses of the smooth contact
 MIN_REPRESENTATIVE_POINTS = 30  # of a surface
-END_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
+LAST_FRAME_TOLERANCE = 0.01  # of the duration: a last frame nearer to the end counts as at the end
 
 
 class Prepared(NamedTuple):
@@ -180,7 +180,7 @@ def _flank(loads: Loads, surface: str) -> tuple[float, float]:
         return NO_FLANK
     pair, begin = case.gears.pair, case.conditions.profile_offsets[number]
     arc = pair.flank_arcs(pair.points["E"])[number]
-    ended = loads.time[-1] > (1.0 - END_TOLERANCE) * loads.operation.duration
+    ended = loads.time[-1] > (1.0 - LAST_FRAME_TOLERANCE) * loads.operation.duration
     return begin - arc if ended else np.inf, begin
 
 

@@ -23,7 +23,7 @@ from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.loads import Loads, Prepared, prepare
 from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress
 from ehlpetsc.post.stresses.histories import histories, runs_of_points
-from ehlpetsc.results.post_result import SURFACES, PostResult
+from ehlpetsc.results.post_result import UPPER_FIRST, PostResult
 
 if TYPE_CHECKING:
     from ehlpetsc.post.stresses.block_stress import BlockStress
@@ -42,7 +42,7 @@ class Job(NamedTuple):
 
     path: str
     output: str
-    surfaces: tuple[str, ...] = SURFACES
+    surfaces: tuple[str, ...] = UPPER_FIRST
     jobs: int = 1
     criteria: tuple[str, ...] = ()
     settings: tuple[str, ...] = ()

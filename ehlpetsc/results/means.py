@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.declarations import StepScalar
     from ehlpetsc.results.reader import Result
 
-RESAMPLINGS, CONFIDENCE, RESAMPLING_SEED = 4000, 0.9, 1  # of the bootstrap
+RESAMPLINGS, MEAN_CONFIDENCE, RESAMPLING_SEED = 4000, 0.9, 1  # of the bootstrap
 SERIES_REDUCTIONS = ("sum", "min", "max")  # reductions that are meaningful over several runs
 
 
@@ -80,7 +80,7 @@ def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: S
 
 
 def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
-    """Bounds of the mean of values (n,): between them lies a share `CONFIDENCE` of the means of n values
+    """Bounds of the mean of values (n,): between them lies a share `MEAN_CONFIDENCE` of the means of n values
     that are drawn from them with replacement; nan of fewer than two.
 
     Efron, Annals of Statistics 7 (1979) 1: percentile method. Of few values it is too narrow: of ten by 15 %.
@@ -88,7 +88,7 @@ def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
     if values.size < 2:
         return np.nan, np.nan
     chosen = np.random.default_rng(RESAMPLING_SEED).integers(values.size, size=(RESAMPLINGS, values.size))
-    tails = (1.0 - CONFIDENCE) / 2.0, (1.0 + CONFIDENCE) / 2.0
+    tails = (1.0 - MEAN_CONFIDENCE) / 2.0, (1.0 + MEAN_CONFIDENCE) / 2.0
     low, high = np.quantile(values[chosen].mean(axis=1), tails)
     return float(low), float(high)
 

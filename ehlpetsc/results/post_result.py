@@ -14,9 +14,9 @@ from ehlpetsc.results.hdf5_file import attributes, open_for_reading
 if TYPE_CHECKING:
     from ehlpetsc.results.reader import Result
 
-SURFACES = ("2", "1")
+UPPER_FIRST = ("2", "1")
 DAMAGED = 0.1  # damage from which a point counts as damaged
-CRITERIA = {  # name in files: quantity that compares points
+COMPARED = {  # name in files: quantity that compares points
     "fatemi_socie": "damage",
     "dang_van": "utilisation",
 }
@@ -96,7 +96,7 @@ def stored_names(surface: str) -> dict[str, Dataset]:
     return {
         key.format(n=surface, criterion=criterion): dataset
         for key, dataset in DATASETS.items()
-        for criterion in (CRITERIA if "{criterion}" in key else ("",))
+        for criterion in (COMPARED if "{criterion}" in key else ("",))
     }
 
 
@@ -134,7 +134,7 @@ class PostResult:
             if "damage/s" not in file:
                 raise OutputError(f"{path}: not a result of post-processing")
             self.attrs = attributes(file)
-            names = [name for surface in SURFACES for name in stored_names(surface)]
+            names = [name for surface in UPPER_FIRST for name in stored_names(surface)]
             self._arrays = {name: file[name][:] for name in names if name in file}
         named = ("a", "slide_roll_ratio", "surface")
         self.a, self.ratio, self.main = (self.attrs.get(name) for name in named)
@@ -155,13 +155,13 @@ class PostResult:
         }
         self.criteria = {
             name.replace("_", "-"): found
-            for name, kind in CRITERIA.items()
+            for name, kind in COMPARED.items()
             if (found := self._of_surfaces(f"criteria/{name}/{{n}}_{kind}"))
         }
 
     def _of_surfaces(self, name: str) -> dict[str, np.ndarray]:
         """Stored arrays of a name with {n} by surface."""
-        names = {side: name.format(n=side) for side in SURFACES}
+        names = {side: name.format(n=side) for side in UPPER_FIRST}
         return {side: self._arrays[key] for side, key in names.items() if key in self._arrays}
 
     @property

@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape, quoteattr
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.reader import Result, read_result
 
-HEAD = '<?xml version="1.0"?>\n<Xdmf Version="2.0">\n<Domain>\n'
+XDMF_HEAD = '<?xml version="1.0"?>\n<Xdmf Version="2.0">\n<Domain>\n'
 COLLECTION = '<Grid Name="frames" GridType="Collection" CollectionType="Temporal">\n'
 FOOT = "</Grid>\n</Domain>\n</Xdmf>\n"
 
@@ -18,7 +18,7 @@ def write_xdmf(path: Path) -> Path:
     with read_result(path) as result:
         frames = "".join(_frame(result, k) for k in range(len(result.time)))
     target = Path(path).with_suffix(".xdmf")
-    atomic_write(target, (HEAD + COLLECTION + frames + FOOT).encode())
+    atomic_write(target, (XDMF_HEAD + COLLECTION + frames + FOOT).encode())
     return target
 
 

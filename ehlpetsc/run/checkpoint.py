@@ -25,6 +25,7 @@ from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
+from ehlpetsc.run.simulation import NODE_TOLERANCE
 from ehlpetsc.stepping.state import State, TimeLevel
 
 if TYPE_CHECKING:
@@ -37,9 +38,8 @@ TOTAL, RECORD = "total ", "record "  # prefixes of the names of totals and of ef
 EARLIER = "earlier {}"  # prefix of the values of an earlier level
 OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
-NODE_TOLERANCE = 1e-9  # of the domain: difference in x/a of equal nodes
 SCALE_TOLERANCE = 1e-12  # relative
-SCALES = ("a", "p0", "h")  # of load, radius and elasticity
+SCALE_NAMES = ("a", "p0", "h")  # of load, radius and elasticity
 SPEEDS = ("motion", "operation", "gears")  # tables
 
 
@@ -69,7 +69,7 @@ def save(path: Path, simulation: Simulation, contact_count: np.ndarray, totals: 
     values |= {name: nodes * scales.a for name, nodes in axes_of(scales).items()}
     values |= {"baseline_q": baseline_q, "baseline_w": baseline_w, "pass_number": simulation.pass_number}
     values |= {"case": case.text, "digests": json.dumps(case.digests), "contact_law": case.contact.law}
-    values |= {name: getattr(scales, name) for name in SCALES} | flat(state.unknowns, "unknowns")
+    values |= {name: getattr(scales, name) for name in SCALE_NAMES} | flat(state.unknowns, "unknowns")
     values |= {name: value for name in OF_STATE if (value := getattr(state, name)) is not None}
     for number, level in enumerate(state.earlier):
         values |= flat(level, EARLIER.format(number))
@@ -125,7 +125,7 @@ def _checkpoint(values: dict[str, Any]) -> Checkpoint:
 def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -> str | None:
     """Reason why a file does not fit the case; None if it fits."""
     now_table = tomllib.loads(case.text)
-    if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALES):
+    if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALE_NAMES):
         changes = changed_keys(*({"contact": tables.get("contact", {})} for tables in (earlier, now_table)))
         return (
             f"of another load, radius or elasticity{': ' * bool(changes)}{', '.join(changes)}; "

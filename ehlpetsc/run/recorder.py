@@ -180,7 +180,7 @@ class Recorder(Output):
         if solved:
             friction = float(np.max(solved.inputs.boundary_friction))
             self._boundary_friction = max(self._boundary_friction, friction)
-        with events.OUTPUT:
+        with events.WRITING:
             on_root(self.comm, self._append, state)
         if state.step and self._next_save(self.comm):
             self.checkpoint()

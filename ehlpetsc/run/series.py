@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from ehlpetsc.run.ranks import StopRequest
     from ehlpetsc.run.simulation import AcceptedState
 
-MAX_NAME_LENGTH = 60  # characters
+MAX_VALUE_LENGTH = 60  # characters
 WAITING = "waiting"  # state of a member that is not computed yet
 VARIED = ("key", "keys")  # of [series], in the index
 
@@ -57,7 +57,7 @@ def named(settings: list[Settings]) -> list[str]:
         ",".join(f"{key}={values[n]}" for key, values in differing or columns) for n in range(len(settings))
     ]
     is_plain = not any(isinstance(value, list | dict) for _, values in columns for value in values)
-    if is_plain and len(set(names)) == len(names) and max(map(len, names)) <= MAX_NAME_LENGTH:
+    if is_plain and len(set(names)) == len(names) and max(map(len, names)) <= MAX_VALUE_LENGTH:
         return names
     label = columns[0][0] if len(columns) == 1 else "member"
     return [f"{label}={number}" for number in range(1, len(names) + 1)]

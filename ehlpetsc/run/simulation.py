@@ -34,12 +34,12 @@ from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.time_stepping import LAST_OF_RAMP, TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
-NODE_TOLERANCE = 1e-9  # relative: half-widths nearer than this are equal
+NODE_TOLERANCE = 1e-9  # relative: half-widths, and x/a of nodes, nearer than this are equal
 MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one that fails without
 MIN_HEATED_POINTS = 8  # on the half-width of the start: coarsest mesh of one with heat
 FINEST_NODES = 60_000  # of a mesh whose rough start takes one coarser mesh alone
 MANY_NODES = 20_000  # from here on a start on a coarser mesh costs less than it saves
-MIN_STEP_RATIO = 1e-9  # smallest time step over the nominal one
+LAST_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
 @dataclass(frozen=True)
@@ -251,7 +251,7 @@ class Simulation:
             return
         if self.dimensionless is None:
             raise UsageError(f"dt = {dt!r}: the first state is the steady start, which has no time step")
-        left, shortest = self._time_left(), MIN_STEP_RATIO * self.scales.dt
+        left, shortest = self._time_left(), LAST_STEP_RATIO * self.scales.dt
         if not shortest <= dt <= left * (1.0 + NODE_TOLERANCE):
             raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")
 
@@ -335,7 +335,7 @@ class Simulation:
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.dimensionless.step + 1} from {1e6 * self.dimensionless.time:.4f} us")
-        with events.STEPS:
+        with events.TIME_STEPS:
             return self.stepper.advance(self.dimensionless, dt, watch)
 
     def _print_heading(self, text: str) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ehlpetsc.run.simulation import AcceptedState, Simulation
 
 
-STEPS = 100  # after the first state, before which code is compiled
+WATCHED_STEPS = 100  # after the first state, before which code is compiled
 MAX_WAITING = 0.5  # waiting time over processor time of the rank that waits most
 
 
@@ -39,7 +39,7 @@ class BusyCores(Output):
         times = clock.monotonic(), clock.process_time()
         if self._count == 1:
             self._begin = times
-        if self._count != STEPS + 1 or self._comm.size == 1:
+        if self._count != WATCHED_STEPS + 1 or self._comm.size == 1:
             return
         wall, computing = (now - begin for now, begin in zip(times, self._begin, strict=True))
         waiting = self._comm.allreduce(wall / max(computing, 1e-9) - 1.0, MPI.MAX)

@@ -22,7 +22,7 @@ MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform 
 AMBIENT_PRESSURE = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
 MAX_ITERATIONS = 1000  # of the projected gradient method
 STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
-BISECTIONS = 60  # of an interval, down to rounding
+FILM_BISECTIONS = 60  # of an interval, down to rounding
 
 
 def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
@@ -116,7 +116,7 @@ def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarra
 def project(p: np.ndarray, limit: float, total: float) -> np.ndarray:
     """Projection of p onto pressures between 0 and `limit` with the sum `total`: shifted and clipped."""
     low, high = -p.max(), limit - p.min()
-    for _ in range(BISECTIONS):
+    for _ in range(FILM_BISECTIONS):
         shift = 0.5 * (low + high)
         low, high = (shift, high) if np.clip(p + shift, 0.0, limit).sum() < total else (low, shift)
     return np.clip(p + high, 0.0, limit)

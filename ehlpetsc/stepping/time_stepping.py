@@ -23,7 +23,7 @@ from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 
 REST_SPEED = 1e-9  # of the scales' speed: a slower film is at rest
-RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
+REST_RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
 LAST_OF_RAMP = 0.15  # of it: what a mesh does itself that takes its state from a coarser one
 MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the effects
 MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
@@ -162,7 +162,7 @@ class TimeStepping:
 
         Roughness at rest is under the film from the start, where Newton's method may not converge; the
         roughness of a moving body enters through the inlet. The ramp ends after an entrained distance of
-        `RAMP_LENGTH`.
+        `REST_RAMP_LENGTH`.
         """
         state = self.ramped(records, watch, guess, begun)
         at_zero: dict[str, Any] = {"time": 0.0, "travelled": (0.0, 0.0), "step": 0}
@@ -179,7 +179,7 @@ class TimeStepping:
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
-        self.ramp_time = np.ceil(RAMP_LENGTH * self.scales.a / self.scales.u / dt) * dt
+        self.ramp_time = np.ceil(REST_RAMP_LENGTH * self.scales.a / self.scales.u / dt) * dt
         moved = self.operation.displacement(0.0, -self.ramp_time)
         frozen = {e.name: records[e.name] for e in self.effects if e.frozen_before_start}
         state = replace(state, time=-self.ramp_time, travelled=moved, records=state.records | frozen)

@@ -10,7 +10,7 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 
 SPACING_TOLERANCE = 0.01  # relative rounding of the abscissas of equally spaced points in a file
-ROUNDING = 1e-12  # of the largest height
+HEIGHT_ROUNDING = 1e-12  # of the largest height
 MIN_SPACINGS = 2  # of the shortest wave in a profile
 
 
@@ -21,7 +21,7 @@ def deviations(z: np.ndarray, given: np.ndarray | None = None) -> np.ndarray:
     """
     largest = np.abs(z if given is None else given).max()
     z = z - z.mean()
-    return z if np.ptp(z) > ROUNDING * largest else np.zeros_like(z)
+    return z if np.ptp(z) > HEIGHT_ROUNDING * largest else np.zeros_like(z)
 
 
 def levelled(x: np.ndarray, z: np.ndarray) -> np.ndarray:

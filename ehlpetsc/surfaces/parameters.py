@@ -10,13 +10,13 @@ from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations
 SECTIONS = 5  # section lengths of a profile without a cut-off
 CORE_FRACTION = 0.4  # of the material ratio, over which the core has its smallest slope
 SLOPE_WEIGHTS = np.array([-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]) / 60.0  # at seven points
-MIN_POINTS = 50
+MIN_PARAMETER_POINTS = 50
 BINS_PER_DECADE = 12  # of the averaged spectrum
 CORRELATION_THRESHOLD = 0.2  # of the autocorrelation, for Sal and Str
-DIRECTIONS = 360  # of half a turn, in which the autocorrelation is followed
+LAY_DIRECTIONS = 360  # of half a turn, in which the autocorrelation is followed
 PRUNED = 0.05  # of Sz: lower hills and dales belong to their neighbours (Wolf pruning)
 PEAK_RATIO, VALLEY_RATIO = 0.1, 0.8  # material ratios of Vmp and Vvv
-EXTREMES = 5  # peaks, and pits, of S10z
+S10Z_PEAKS = 5  # peaks, and pits, of S10z
 
 PARAMETERS = (
     ("?a", "um", "arithmetic mean height"),
@@ -220,7 +220,7 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
 
     correlation = autocorrelation(z)
     middle = [n // 2 for n in correlation.shape]
-    angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    angle = np.pi * np.arange(LAY_DIRECTIONS) / LAY_DIRECTIONS
     step = 0.5 * min(dx, dy)
     lag = step * np.arange(int(np.hypot(middle[0] * dy, middle[1] * dx) / step) + 1)
     places = [
@@ -229,7 +229,7 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
     ]
     followed = map_coordinates(correlation, places, order=1, cval=np.nan)
     below = followed < CORRELATION_THRESHOLD
-    fallen, falls = np.full(DIRECTIONS, np.nan), np.flatnonzero(below.any(axis=0))
+    fallen, falls = np.full(LAY_DIRECTIONS, np.nan), np.flatnonzero(below.any(axis=0))
     first = below.argmax(axis=0)[falls]
     after, before = followed[first, falls], followed[first - 1, falls]
     fallen[falls] = lag[first] - step * (CORRELATION_THRESHOLD - after) / (before - after)
@@ -267,7 +267,7 @@ def texture_direction(z: np.ndarray, dx: float, dy: float) -> float:
     steps = [1.0 / (n * step) for n, step in zip(z.shape, (dy, dx), strict=True)]  # of frequencies
     middle = [n // 2 for n in z.shape]
     radius = min(steps) * np.arange(1, int(0.5 / max(dx, dy) / min(steps)) + 1)
-    angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    angle = np.pi * np.arange(LAY_DIRECTIONS) / LAY_DIRECTIONS
     places = [
         middle[0] + np.outer(radius, np.sin(angle)) / steps[0],
         middle[1] + np.outer(radius, np.cos(angle)) / steps[1],
@@ -279,7 +279,7 @@ def texture_direction(z: np.ndarray, dx: float, dy: float) -> float:
 def ten_point_height(z: np.ndarray) -> float:
     """S10z [m] of heights of mean 0."""
     least = PRUNED * np.ptp(z)
-    return float(sum(np.sort(peaks(side, least))[-EXTREMES:].mean() for side in (z, -z)))
+    return float(sum(np.sort(peaks(side, least))[-S10Z_PEAKS:].mean() for side in (z, -z)))
 
 
 def peaks(z: np.ndarray, least: float) -> np.ndarray:

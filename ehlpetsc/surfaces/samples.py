@@ -12,7 +12,7 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.files import areal, profiles
 from ehlpetsc.surfaces.files.areal import Map, is_map, read_map
-from ehlpetsc.surfaces.files.profiles import KEYS, UNITS, Layout, read_profile
+from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, UNITS, Layout, read_profile
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations, levelled, smoothed, without_form
 from ehlpetsc.surfaces.synthetic import POINTS_PER_WAVE
 from ehlpetsc.surfaces.topography import Topography
@@ -52,7 +52,7 @@ def measured_samples(folder: Path, spec: Values) -> Topography:
 
 def layout_of(spec: Values) -> Layout:
     """Layout of the file of a surface."""
-    values = {key: getattr(spec, key) for key in KEYS}
+    values = {key: getattr(spec, key) for key in LAYOUT_KEYS}
     return Layout(**values | {"columns": spec.columns and tuple(spec.columns)})
 
 
@@ -192,9 +192,9 @@ def inscribed(length: float, width: float, c: float, s: float) -> tuple[float, f
     return (length * c - width * s) / cos_2, (width * c - length * s) / cos_2
 
 
-GROUND_POINTS, GROUND_LENGTH = 5, 60  # points a correlation length, correlation lengths along x
-CUTOFF_POINTS, ROLL_OFFS = 6, 20  # points of the shortest wave, longest self-affine waves along x
-MAX_POINTS = 16_000_000  # of a map
+LAY_POINTS, LAY_LENGTH = 5, 60  # points a correlation length, correlation lengths along x
+CUTOFF_POINTS, MAP_ROLL_OFFS = 6, 20  # points of the shortest wave, longest self-affine waves along x
+MAX_MAP_POINTS = 16_000_000  # of a map
 RANDOM = ("ground", "self-affine")  # may have any direction
 
 
@@ -253,7 +253,7 @@ def _self_affine(spec: Values, direction: float, width: float) -> Topography:
     spectrum = synthetic.Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff, spec.peklenik)
     finest = np.array([spec.short_cutoff, spec.short_cutoff / spec.peklenik]) / CUTOFF_POINTS
     shape, steps = _grid(
-        finest, ROLL_OFFS * spec.roll_off / spec.short_cutoff * CUTOFF_POINTS, direction, width
+        finest, MAP_ROLL_OFFS * spec.roll_off / spec.short_cutoff * CUTOFF_POINTS, direction, width
     )
     return _periodic(synthetic.random_heights(shape, steps, spectrum, spec.seed, direction), steps)
 
@@ -264,7 +264,7 @@ def _ground(spec: Values, direction: float, width: float) -> Topography:
     Along and across the rows; otherwise as :func:`.synthetic.ground`.
     """
     lengths = np.array([spec.correlation, spec.correlation_across])
-    shape, steps = _grid(lengths / GROUND_POINTS, GROUND_LENGTH * GROUND_POINTS, direction, width)
+    shape, steps = _grid(lengths / LAY_POINTS, LAY_LENGTH * LAY_POINTS, direction, width)
     along, across = synthetic.turned_wavenumbers(shape, steps, direction)
     noise = np.fft.rfft2(np.random.default_rng(spec.seed).standard_normal(shape))
     # the square root of the transform of the autocorrelation
@@ -286,9 +286,9 @@ def _grid(
     dx, dy = finest if turn[1] < 1e-9 else finest[::-1] if turn[0] < 1e-9 else np.full(2, finest.min())
     length = columns * np.hypot(finest[0] * turn[0], finest[1] * turn[1])
     shape = max(int(np.ceil(width / dy)), 4), int(np.ceil(length / dx))
-    if shape[0] * shape[1] > MAX_POINTS:
+    if shape[0] * shape[1] > MAX_MAP_POINTS:
         raise ProfileError(
-            f"{shape[1]} x {shape[0]} points; allowed: at most {MAX_POINTS} in all, so make its shortest "
+            f"{shape[1]} x {shape[0]} points; allowed: at most {MAX_MAP_POINTS} in all, so make its shortest "
             "waves longer, its longest shorter, or mesh.width smaller"
         )
     return shape, (width / shape[0], dx)

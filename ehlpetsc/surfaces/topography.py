@@ -15,7 +15,7 @@ from ehlpetsc.surfaces.motion.moving_surface import WAVE_NODES
 from ehlpetsc.surfaces.parameters import areal_parameters, moments, rms_gradient
 
 RIDGE_ROWS = 4  # of a map of ridges, for its parameters
-BLOCK = 256  # columns whose splines across are in memory at a time
+BLOCK_COLUMNS = 256  # columns whose splines across are in memory at a time
 MIN_CORRELATION = 0.5  # of two maps for a difference: less is chance
 MIN_OVERLAP = 0.25  # of the points of the smaller map
 
@@ -127,7 +127,7 @@ class Topography:
         """
         if self.is_ridge:
             return self.z[0]
-        blocks = np.array_split(self.z, range(BLOCK, len(self.X), BLOCK), axis=1)
+        blocks = np.array_split(self.z, range(BLOCK_COLUMNS, len(self.X), BLOCK_COLUMNS), axis=1)
         return np.concatenate([ContinuedSpline(self.Y, z, self.across).means(faces).T for z in blocks])
 
     def periodic_over(self, width: float) -> Topography:
@@ -142,7 +142,7 @@ class Topography:
         part = width / (2 * np.ceil(width / (2 * extent) * (1 - 1e-9)))
         begin = np.clip(self.middle - 0.5 * part, self.Y[0], max(self.Y[-1] - part, self.Y[0]))
         Y = np.linspace(begin, begin + part, max(round(part / self.dy), 3) + 1)
-        blocks = np.array_split(self.z, range(BLOCK, len(self.X), BLOCK), axis=1)
+        blocks = np.array_split(self.z, range(BLOCK_COLUMNS, len(self.X), BLOCK_COLUMNS), axis=1)
         z = np.concatenate([ContinuedSpline(self.Y, block, "mirrored")(Y) for block in blocks], axis=1)
         return replace(self, Y=Y, z=z, middle=begin + 0.5 * part)
 

@@ -9,9 +9,9 @@ from ehlpetsc.nonlinear.line.block_lu import (
     FROM_RIGHT,
     LEFT,
     RIGHT,
+    ROW_WIDTH,
     SIZE,
     STRIDE,
-    WIDTH,
     BlockLU,
     backward_transposed,
     forward,
@@ -19,7 +19,7 @@ from ehlpetsc.nonlinear.line.block_lu import (
 
 
 def by_columns(rows):
-    columns = np.zeros((len(rows), WIDTH, STRIDE))
+    columns = np.zeros((len(rows), ROW_WIDTH, STRIDE))
     columns[:, :, :SIZE] = rows.transpose(0, 2, 1)
     return columns
 
@@ -55,7 +55,7 @@ def test_compiled_sizes_equal_group_sizes():
 def test_block_lu_solves(groups, sparse):
     """Without dominance of the diagonal, so that rows are exchanged; `sparse`: with zeros there too."""
     rng = np.random.default_rng(groups)
-    rows = rng.standard_normal((groups, SIZE, WIDTH))
+    rows = rng.standard_normal((groups, SIZE, ROW_WIDTH))
     if sparse:
         rows[rng.random(rows.shape) < 0.6] = 0.0
         rows[:, np.arange(SIZE), LEFT + (np.arange(SIZE) + 1) % SIZE] = 3.0
@@ -80,7 +80,7 @@ def test_block_lu_solves(groups, sparse):
 
 def test_singular_blocks_leave_finite_solutions():
     """A node whose rows know nothing of it: the preconditioner may be off, not infinite."""
-    rows = np.random.default_rng(3).standard_normal((4, SIZE, WIDTH))
+    rows = np.random.default_rng(3).standard_normal((4, SIZE, ROW_WIDTH))
     rows[2, 5] = 0.0
     rows[1, :, LEFT + 4] = 0.0
     rows[0, :, LEFT + SIZE + 4 - FROM_RIGHT] = rows[2, :, 4 - FROM_LEFT] = 0.0

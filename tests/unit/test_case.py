@@ -10,7 +10,7 @@ from support import CASES, is_line_with
 
 from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.base.quantities import STORED
+from ehlpetsc.base.quantities import DEFAULT_FIELDS
 from ehlpetsc.base.toml_file import toml_text
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
@@ -69,7 +69,7 @@ def test_omitted_sections_are_none_or_default():
     c = case.load(SMOOTH)
     assert (c.time, c.series, c.surface.body_1, c.surface.body_2) == (None,) * 4
     assert (c.mesh.near_field, c.output.every, c.output.precision) == (3, 1, "float64")
-    assert c.output.fields == STORED
+    assert c.output.fields == DEFAULT_FIELDS
     dry = case.load(CASES / "dry_hertz.toml")
     assert (dry.fluid, dry.motion) == (None, None)
     assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.1, 0.0)

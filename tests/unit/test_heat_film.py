@@ -13,7 +13,7 @@ from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.effects.heat.film import FilmHeat
-from ehlpetsc.effects.heat.film_law import MEAN, film_temperature
+from ehlpetsc.effects.heat.film_law import T_MEAN, film_temperature
 from ehlpetsc.effects.heat.film_oil import FilmLaw, film_law
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.transport import explicit_transport, heat_taken, transport
@@ -271,8 +271,8 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     solved = heat.begin()
     cold, hot = (reynolds.properties(q, h, one) for one in (oil, solved))
     found = solved.guess
-    assert found[MEAN, 20] == pytest.approx(563.0) and heat.guess[MEAN, 20] == 370.0
-    factor = np.exp(0.04 * 0.5 * (found[MEAN, 19] + found[MEAN, 20] - 2.0 * 363.0))
+    assert found[T_MEAN, 20] == pytest.approx(563.0) and heat.guess[T_MEAN, 20] == 370.0
+    factor = np.exp(0.04 * 0.5 * (found[T_MEAN, 19] + found[T_MEAN, 20] - 2.0 * 363.0))
     found = np.array(volumes.fluidities(hot, 19, 20))
     np.testing.assert_allclose(found, factor * cold[volumes.FLUIDITY, 19:21], rtol=1e-9)
     own = hot[volumes.THINNING, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]

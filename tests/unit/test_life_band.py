@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_loads import Scene, write
 
-from ehlpetsc.life.one_pass import CRITERIA, band, lines_of, passes_to_failure
+from ehlpetsc.life.one_pass import LIFE_CRITERIA, band, lines_of, passes_to_failure
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult
 
@@ -25,7 +25,7 @@ def test_passes_are_those_of_the_worst_point(result, tmp_path):
 
 def test_lines_give_ratios_and_the_factor_of_the_band(result):
     found = band(result)
-    assert found.keys() == CRITERIA.keys()
+    assert found.keys() == LIFE_CRITERIA.keys()
     assert found["morrow"][0] > found["von-mises"][0]  # benefit of compression
     lines = list(lines_of({"one": (2e6, 3e6), "two": (5e6, 1e6)}, (2e6, 2e6)))
     assert lines[0].endswith("over 2e+06 passes: one 1, two 2.5 (band of a factor 2.5)")

@@ -81,7 +81,7 @@ def test_maps_show_fields_contacts_and_the_ellipse(point):
         touching = film.images[1]
         np.testing.assert_array_equal(touching.get_array(), r["in_contact"][2][part])
         opaque, clear = map(touching.get_cmap(), (1.0, 0.0))
-        assert opaque == (*to_rgb(style.CONTACT), 1.0) and clear[3] == 0.0
+        assert opaque == (*to_rgb(style.CONTACTS), 1.0) and clear[3] == 0.0
         assert [text.get_text() for text in film.get_legend().texts] == ["dry contact", "in contact"]
         assert [axes.get_xlabel() for axes in (pressure, film)] == 2 * ["x/a, flow →"]
         np.testing.assert_allclose(np.hypot(*(film.lines[0].get_xydata() / (1.0, 2.0)).T), 1.0)

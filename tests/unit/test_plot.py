@@ -204,7 +204,7 @@ def test_movie_has_every_frame_on_fixed_axes(tmp_path, monkeypatch):
             super().grab_frame(**keys)
 
     monkeypatch.setattr(drawing, "PillowWriter", Writer)
-    monkeypatch.setattr(drawing, "MAX_FRAMES", 4)
+    monkeypatch.setattr(drawing, "MOVIE_FRAMES", 4)
     monkeypatch.setattr(drawing, "MOVIE_DPI", 40)
     assert draw(reversing(tmp_path / "one.h5"), "--movie") == 0
     with image.open(tmp_path / "one.gif") as shown:

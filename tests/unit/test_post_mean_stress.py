@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.case.tables.outputs import POST_KEYS
+from ehlpetsc.case.tables.outputs import MEAN_STRESSES, POST_KEYS
 from ehlpetsc.post import Material, cycles_to_failure, damage
 from ehlpetsc.post.fatigue.cycles import RESIDUALS
-from ehlpetsc.post.fatigue.mean_stress import CORRECTIONS, MEAN_STRESSES, reversed_range
+from ehlpetsc.post.fatigue.mean_stress import CORRECTIONS, reversed_range
 
 STEEL = Material(tensile_strength=1.5e9, walker_exponent=0.6)
 ROOT = np.sqrt(1 - 0.3 + 0.09)  # equivalent range of a range of sz in plane strain
@@ -64,7 +64,7 @@ def test_estimates_of_a_steel():
 
 
 def test_keys_list_what_is_computed():
-    assert POST_KEYS["mean_stress"].choices == MEAN_STRESSES
+    assert ("none", "morrow", *CORRECTIONS) == MEAN_STRESSES
     assert POST_KEYS["residual"].choices == RESIDUALS
 
 

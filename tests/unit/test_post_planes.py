@@ -258,7 +258,7 @@ def test_far_kernels_are_those_of_the_cubics():
     """From eight elements on, nine hats on the nodes replace the 127 of a cubic."""
     from ehlpetsc.post.stresses import block_stress
 
-    reach, y = block_stress.REACH, np.arange(3.0)
+    reach, y = block_stress.HAT_REACH, np.arange(3.0)
     distance = np.arange(block_stress.NEAR_ELEMENTS, 20)
     wider = np.arange(distance[0] - reach, distance[-1] + reach + 1.0)
     for z, offset in ((0.0, 0.345), (4.0, 0.095)):

@@ -13,7 +13,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.surface import main as surface
 from ehlpetsc.run.forecast.cost import banner
-from ehlpetsc.surfaces.files.profiles import KEYS, TEXT
+from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, TEXT_ENDINGS
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
 PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))
@@ -77,8 +77,8 @@ def test_every_committed_picture_is_on_a_page():
 
 def test_every_key_of_a_profile_file_is_on_its_page():
     table = TEXTS["cases/surfaces"]
-    assert [key for key in KEYS if f"`{key}" not in table] == []
-    assert [ending for ending in TEXT if f"`{ending}`" not in table] == []
+    assert [key for key in LAYOUT_KEYS if f"`{key}" not in table] == []
+    assert [ending for ending in TEXT_ENDINGS if f"`{ending}`" not in table] == []
 
 
 def test_parameters_on_the_page_are_current(capsys):

@@ -96,8 +96,8 @@ def plot_first(result):
 
 
 def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
-    monkeypatch.setattr(report, "MAX_NODES", 40)
-    monkeypatch.setattr(report, "MAX_ROWS", 9)
+    monkeypatch.setattr(report, "PAGE_NODES", 40)
+    monkeypatch.setattr(report, "PAGE_ROWS", 9)
     path = make_result(tmp_path / "r.h5", nodes=321)
     _, data = page(path)
     with read_result(path) as r:

@@ -6,9 +6,9 @@ from scipy.integrate import cumulative_trapezoid, trapezoid
 from scipy.special import erf
 
 from ehlpetsc.physics.contact.asperities import (
-    EXPONENTIAL,
     FULL_CONTACT,
     GAMMA,
+    MAX_DECAYS,
     LayerLaw,
     asperity_pressures,
     asperity_separations,
@@ -85,7 +85,7 @@ def hardness(law):
 def test_law_is_exponential_far_out(name):
     law = LAWS[name]
     h = law.full_contact + law.decay * np.array(
-        [14.0, EXPONENTIAL * (1 - 1e-9), EXPONENTIAL * (1 + 1e-9), 200.0]
+        [14.0, MAX_DECAYS * (1 - 1e-9), MAX_DECAYS * (1 + 1e-9), 200.0]
     )
     found, slope = asperity_pressures(h, law)
     expected = law.prefactor * np.exp(-(h - law.full_contact) / law.decay)

@@ -59,7 +59,7 @@ CASE = KeyTable(
 )
 
 
-BUILT_IN: dict[str, dict[str, object]] = {
+RESERVED: dict[str, dict[str, object]] = {
     "a viscosity law": dict(LAWS),
     "a density law": dict(DENSITY_LAWS),
     "a shear law": dict(SHEAR_LAWS),
@@ -97,7 +97,7 @@ def extend(
     }
     for kind, entries in own.items():
         for name, entry in entries.items():
-            if BUILT_IN[kind].get(name, entry) is not entry:
+            if RESERVED[kind].get(name, entry) is not entry:
                 raise CaseError([f'"{name}": {kind} of this name is built in; allowed: another name'])
     LAWS.update(laws)
     DENSITY_LAWS.update(density_laws)
@@ -124,13 +124,13 @@ def key_of(name: object, table: KeyTable | None = CASE) -> Key | None:
     return key
 
 
-OWN = ("LAWS", "DENSITY_LAWS", "EFFECTS", "SHEAR_LAWS")  # in the order of `extend`
+OWN_NAMES = ("LAWS", "DENSITY_LAWS", "EFFECTS", "SHEAR_LAWS")  # in the order of `extend`
 
 if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, also in this folder
     sys.path.append(os.getcwd())
     try:
         own = importlib.import_module(name)
     except ImportError as error:
-        allowed = f"a module in this folder or on Python's path, with {', '.join(OWN)}"
+        allowed = f"a module in this folder or on Python's path, with {', '.join(OWN_NAMES)}"
         raise UsageError(f"EHLPETSC_OWN = {name}: {error}; allowed: {allowed}") from None
-    extend(*(getattr(own, name, {}) for name in OWN))
+    extend(*(getattr(own, name, {}) for name in OWN_NAMES))

@@ -8,14 +8,14 @@ from typing import Any
 from ehlpetsc.base.case import Contact, Fluid
 from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.materials import GRADES, STEELS
-from ehlpetsc.physics.oil.laws import DENSITY_LAWS, LAWS, TABLES, completed
+from ehlpetsc.physics.oil.laws import DENSITY_LAWS, LAW_TABLES, LAWS, completed
 from ehlpetsc.physics.oil.oils import OILS
 
 BOUNDARY_FILM = 10e-9  # m: an adsorbed or reacted layer has 2 to 50 nm
 ASPERITY_SLOPE = 0.1  # ground and superfinished steel
 LAYER_NODES = 8  # longest wave of a layer whose surfaces have no short_cutoff, in nodes
 MIXED = 'contact.model = "mixed"'
-CONDITIONS = ("[gears]", "[operation]")
+VARYING = ("[gears]", "[operation]")
 LAYER = "contact.asperity_height"
 
 
@@ -29,19 +29,19 @@ def _complete(contact: Contact) -> dict[str, Any]:
     return values
 
 
-KEYS = {
+SOLIDS = {
     "radius": Required(
         "reduced radius, `1/R = 1/R1 + 1/R2`; two, along and across the motion: a point contact",
         *("m", 1e-9, 100),
         many="axes",
-        replaced_by=CONDITIONS,
+        replaced_by=VARYING,
     ),
     "load": Required(
         "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`; "
         "of a point contact its load [N]",
         *("N/m", 1e-3, 1e10),
         point_unit="N",
-        replaced_by=(*CONDITIONS, "approach"),
+        replaced_by=(*VARYING, "approach"),
     ),
     "approach": Key(
         "of a point contact in place of its load: rigid-body approach `delta` from the first touch of the "
@@ -124,11 +124,11 @@ KEYS = {
         equation="`p <= p_y`, `d >= 0`, `(p_y - p) d = 0`, `d` the increment of plastic deformation",
     ),
 }
-CONTACT = KeyTable("contact", "solids and load", KEYS, required=True, values=Contact, complete=_complete)
+CONTACT = KeyTable("contact", "solids and load", SOLIDS, required=True, values=Contact, complete=_complete)
 
 
 _equations = [{name: law.equation for name, law in laws.items()} for laws in (LAWS, DENSITY_LAWS)]
-VISCOSITY, DENSITY = ("; ".join(f"{name}: {text}" for name, text in laws.items()) for laws in _equations)
+VISCOSITIES, DENSITIES = ("; ".join(f"{name}: {text}" for name, text in laws.items()) for laws in _equations)
 
 GRADE = KeyTable(
     "fluid.grade",
@@ -146,7 +146,7 @@ GRADE = KeyTable(
         ),
     },
 )
-KEYS = {
+FLUID_KEYS = {
     "viscosity": Required("at ambient pressure", "Pa s", 1e-6, 1e4, replaced_by=("grade", "oil")),
     "grade": replace(GRADE.key, words=tuple(GRADES)),
     "oil": Key(
@@ -155,10 +155,10 @@ KEYS = {
         needs=("fluid.grade left out",),
     ),
     "temperature": Key("at which grade, oil or law gives the viscosity; left out: of [heat]", "K", 200, 700),
-    "law": Required("viscosity law", choices=LAWS, equation=VISCOSITY, replaced_by=("oil",)),
+    "law": Required("viscosity law", choices=LAWS, equation=VISCOSITIES, replaced_by=("oil",)),
     "pressure_viscosity": Key("`alpha`; left out: of grade, or of a law that has it", "1/Pa", 1e-12, 1e-6),
-    "density": Required("density law", choices=DENSITY_LAWS, equation=DENSITY, replaced_by=("oil",)),
-    **{name: key for laws in TABLES for law in laws.values() for name, key in law.keys.items()},
+    "density": Required("density law", choices=DENSITY_LAWS, equation=DENSITIES, replaced_by=("oil",)),
+    **{name: key for laws in LAW_TABLES for law in laws.values() for name, key in law.keys.items()},
     "limiting_shear": Key(
         "limiting shear stress over pressure",
         *("", 1e-4, 1),
@@ -172,5 +172,5 @@ KEYS = {
     "inlet_film": Key("`h (1 - theta)` at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
 }
 FLUID = KeyTable(
-    "fluid", "left out: dry contact", KEYS, values=Fluid, complete=lambda fluid: completed(vars(fluid))
+    "fluid", "left out: dry contact", FLUID_KEYS, values=Fluid, complete=lambda fluid: completed(vars(fluid))
 )

@@ -6,13 +6,13 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.case.tables.contact import VARYING
 from ehlpetsc.gears.load_sharing import RULES
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.geometry import GearPair
 
-CONDITIONS = ("[gears]", "[operation]")
-MAX_NODES = 200_000  # with more a time step would take hours; more likely a typing error
+MAX_NODES_ALONG = 200_000  # with more a time step would take hours; more likely a typing error
 COLUMNS = {  # allowed names of the columns of a file, by key
     "time": ("time", "t"),
     "load": ("load", "w"),
@@ -23,7 +23,7 @@ COLUMNS = {  # allowed names of the columns of a file, by key
 
 MOTION_KEYS = {
     "entrainment_speed": Required(
-        "mean speed `u = (u1 + u2)/2`, not zero", "m/s", 1e-9, 1e3, replaced_by=CONDITIONS
+        "mean speed `u = (u1 + u2)/2`, not zero", "m/s", 1e-9, 1e3, replaced_by=VARYING
     ),
     "slide_roll_ratio": Key(
         "`xi = (u1 - u2)/u`; `u1 = u (1 + xi/2)`, `u2 = u (1 - xi/2)`", "", -100, 100, default=0.0
@@ -168,7 +168,7 @@ def _complete_mesh(mesh: Mesh) -> dict[str, Any]:
     points = mesh.points_per_half_width
     along, across = points if isinstance(points, tuple) else (points, None)
     values = {"points_per_half_width": along, "points_across": across}
-    if mesh.copy(values).nodes > MAX_NODES + 1:
+    if mesh.copy(values).nodes > MAX_NODES_ALONG + 1:
         raise Refused(key="points_per_half_width")
     return values
 
@@ -194,7 +194,7 @@ MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete
 
 TIME_KEYS = {
     "travel": Required(
-        "travel of the faster surface, `travel a = u_max t`", "half-widths", 1e-6, 1e5, replaced_by=CONDITIONS
+        "travel of the faster surface, `travel a = u_max t`", "half-widths", 1e-6, 1e5, replaced_by=VARYING
     ),
     "start": Key(
         "smooth: profiles enter the contact from time 0; rough: they fill it, after a ramp before time 0",

@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
-from ehlpetsc.base.quantities import FIELDS, STORED
+from ehlpetsc.base.quantities import DEFAULT_FIELDS, FIELDS
 
 DOTTED_KEY = re.compile(r"[A-Za-z_]+(\.[A-Za-z_0-9]+)+")
 MAX_MEMBERS = 10_000  # of a series
@@ -17,7 +17,7 @@ MAX_DEPTH, MAX_RESIDUAL = 100.0, 1e10  # z/a, Pa
 
 OUTPUT_KEYS = {
     "every": Key("steps between stored fields", "", 1, 10**9, kind=int, default=1),
-    "fields": Key("stored fields", choices=FIELDS, many="list", default=STORED),
+    "fields": Key("stored fields", choices=FIELDS, many="list", default=DEFAULT_FIELDS),
     "precision": Key("of the stored fields", choices=("float64", "float32"), default="float64"),
     "xdmf": Key(
         "of a point or strip: RESULT.xdmf for ParaView, beside the result file",

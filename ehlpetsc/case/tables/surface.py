@@ -12,7 +12,7 @@ from ehlpetsc.base.errors import CaseError
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
 
-UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
+HEIGHT_UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
@@ -109,10 +109,10 @@ def _check_source(profile: Values) -> dict[str, Any]:
     return {}
 
 
-KEYS = {
+PROFILE_KEYS = {
     "file": Key("profile file, beside the case file", kind=str),
-    "unit": Key("of the heights in the file; left out: m", choices=UNITS),
-    "x_unit": Key("of x in the file; left out: as unit", choices=UNITS),
+    "unit": Key("of the heights in the file; left out: m", choices=HEIGHT_UNITS),
+    "x_unit": Key("of x in the file; left out: as unit", choices=HEIGHT_UNITS),
     "spacing": Key("distance of points without x in the file", *LENGTH),
     "spacing_across": Key("distance of the rows of a map; left out: as spacing", *LENGTH, contacts=AREAL),
     "columns": Key("of x and z, or of z, counted from 1", "", 1, 1000, kind=int, many="list", max_items=2),
@@ -157,7 +157,7 @@ KEYS = {
 PROFILE = KeyTable(
     "surface.1",
     "measured or synthetic profile; surface 1 moves at u (1 + xi/2), surface 2 at u (1 - xi/2)",
-    KEYS,
+    PROFILE_KEYS,
     complete=_check_source,
 )
 

@@ -22,7 +22,7 @@ from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScala
 from ehlpetsc.base.quantities import AtEnd, Error
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.heat.mixing import mixed_record
-from ehlpetsc.effects.heat.record import HeatRecord, interpolated
+from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, interpolated
 
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
@@ -46,7 +46,7 @@ def _of_bodies(text: str, unit: str, ge: float, le: float, default: float) -> Ke
     return Key(f"{text} of the bodies", unit, ge, le, many="both", default=(default, default))
 
 
-KEYS = {
+HEAT_KEYS = {
     "bulk_temperature": Required(
         'of the bodies far from the contact; "losses": of gears, by their losses',
         *TEMPERATURE,
@@ -85,11 +85,14 @@ KEYS = {
     ),
 }
 HEAT = KeyTable(
-    "heat", "left out: isothermal; defaults: steel, mineral oil", KEYS, needs=("[motion]",), values=HeatValues
+    "heat",
+    "left out: isothermal; defaults: steel, mineral oil",
+    HEAT_KEYS,
+    needs=("[motion]",),
+    values=HeatValues,
 )
 
 STEADY = 2e-5  # of the maximum temperature rise: change between two solutions that ends the steady start
-MIN_TEMPERATURE_RISE = 1e-3  # K
 
 
 def _temperature(name: str, over_run: str) -> StepScalar:

@@ -31,8 +31,8 @@ from ehlpetsc.discretisation.finite_volumes import (
 )
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, last_before
-from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, A, B, G, film_temperature, fixed_at
-from ehlpetsc.effects.heat.film_oil import MIN_SLOPE, FilmLaw
+from ehlpetsc.effects.heat.film_law import T_BASE, T_MEAN, T_SHAPE, A, B, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_oil import MIN_VISCOSITY_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
 from ehlpetsc.effects.heat.record import in_rows
@@ -44,7 +44,7 @@ from ehlpetsc.physics.scales import Scales
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid
 
-TINY = 1e-6  # y whose sinh(y)/y is 1
+LINEAR_Y = 1e-6  # y whose sinh(y)/y is 1
 
 
 class FilmHeat(NamedTuple):
@@ -131,7 +131,7 @@ def heated_nodal(
     zero = law.viscosity[2]
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
-        start, node = (state[BASE, i], state[PROFILE, i]), (p, at[H, i], 1.0 + min(q[i], 0.0))
+        start, node = (state[T_BASE, i], state[T_SHAPE, i]), (p, at[H, i], 1.0 + min(q[i], 0.0))
         balance, (last, walls) = (of_nodes[A, i], of_nodes[B, i], of_nodes[G, i]), fixed_at(i, of_nodes)
         found, oil = film_temperature(start, node, balance, last, walls, law)
         t = found.mean
@@ -141,11 +141,11 @@ def heated_nodal(
         else:
             viscosity, at_zero = ln_viscosities(law.viscosity, p, t, zero)
         _fill_fluidity(i, viscosity, at_zero, found.by_p, found.by_h, law, p0, film, at)
-        state[BASE, i], state[PROFILE, i], state[MEAN, i] = found.base, found.profile, t
+        state[T_BASE, i], state[T_SHAPE, i], state[T_MEAN, i] = found.base, found.profile, t
     for i in range(nodes, at.shape[1]):
         end = last_before(i, nodes, at)
         p = fill_mass(i, 0.0, h[end], density, p0, film, unit, at)
-        viscosities = ln_viscosities(law.viscosity, p, state[MEAN, end], zero)
+        viscosities = ln_viscosities(law.viscosity, p, state[T_MEAN, end], zero)
         _fill_fluidity(i, *viscosities, 0.0, 0.0, law, p0, film, at)
 
 
@@ -187,13 +187,13 @@ def last_profile(
     for i in range(len(profile)):
         y, at = profile[i], middle[i]
         value, _, slope = ln_viscosity(law.viscosity, pressure[i], at)
-        slope = min(slope, -MIN_SLOPE)
-        between[i] = 1.0 / wall_exchange(max(y, TINY), min(-0.5 * slope * walls_apart[i], y))
+        slope = min(slope, -MIN_VISCOSITY_SLOPE)
+        between[i] = 1.0 / wall_exchange(max(y, LINEAR_Y), min(-0.5 * slope * walls_apart[i], y))
         if not law.is_linear:
             bottom = value - 2.0 * np.log(np.cosh(0.5 * y))
             at += (bottom - value) / slope
             value, _, slope = ln_viscosity(law.viscosity, pressure[i], at)
-            middle[i] = at + (bottom - value) / min(slope, -MIN_SLOPE)
+            middle[i] = at + (bottom - value) / min(slope, -MIN_VISCOSITY_SLOPE)
 
 
 @compiled

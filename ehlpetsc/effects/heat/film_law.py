@@ -34,9 +34,9 @@ from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
 from ehlpetsc.physics.oil.rheology import flow_stress
 from ehlpetsc.physics.oil.viscosity_laws import ROELANDS_ZERO
 
-ITERATIONS = 30  # of Newton's method, before bisection
+NEWTON_ITERATIONS = 30  # of Newton's method, before bisection
 BISECTIONS = 200
-MAX_CHANGE = 60.0  # K in an iteration
+MAX_TEMPERATURE_CHANGE = 60.0  # K in an iteration
 QUADRATIC = 1e-3  # K: change in an iteration of Newton's method, after which it is accurate to 1e-7 K
 QUADRATIC_Y = 1e-4  # the same of y
 MAX_SPLIT_CHANGE = 1e-6  # of d
@@ -44,7 +44,7 @@ MIN_HEATING = 1e-12  # of b: less does not heat the film
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
 A, B, G, SPREAD, W1, W2, R1, R2, BETWEEN, MIDDLE, REFERENCE = range(11)  # rows of FilmHeat.of_nodes
-BASE, PROFILE, MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
+T_BASE, T_SHAPE, T_MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
 
 
 class FilmTemperature(NamedTuple):
@@ -172,9 +172,9 @@ def _unsheared(balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperat
 def _sheared(t: float, y: float, balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperature:
     """Film with heat of shear, by Newton's method for both equations."""
     energy, low, high, is_heated, change, change_y = t, ROELANDS_ZERO + 1.0, 1e5, False, 0.0, 0.0
-    for k in range(ITERATIONS + BISECTIONS):
+    for k in range(NEWTON_ITERATIONS + BISECTIONS):
         d, x = split(energy, oil.beta, exchange), oil.ln_rate + oil.ln_eta - oil.beta * (t - oil.reference)
-        if k >= ITERATIONS:  # the stress by itself, and the temperature between bounds
+        if k >= NEWTON_ITERATIONS:  # the stress by itself, and the temperature between bounds
             y = resolved_stress(y, x, oil.heating, d, oil.flow, oil.limit)[0]
         shear = _shear_equation(x, y, d, is_heated, oil)
         heat = _heat_equation(t, shear, balance, oil, exchange)
@@ -182,8 +182,8 @@ def _sheared(t: float, y: float, balance: tuple, oil: NodeOil, exchange: Exchang
         over_det = _over_determinant(shear, heat)
         change = (shear.f * heat.f_y - shear.f_y * heat.f) * over_det
         change_y = (shear.f_t * heat.f - heat.f_t * shear.f) * over_det
-        change = min(max(change, -MAX_CHANGE, 0.5 * (ROELANDS_ZERO - t)), MAX_CHANGE)
-        if k >= ITERATIONS:
+        change = min(max(change, -MAX_TEMPERATURE_CHANGE, 0.5 * (ROELANDS_ZERO - t)), MAX_TEMPERATURE_CHANGE)
+        if k >= NEWTON_ITERATIONS:
             low, high = (low, min(high, t)) if heat.f > 0.0 else (max(low, t), high)
             if not low <= t + change <= high:
                 change = 0.5 * (low + high) - t

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
-MIN_SLOPE = 1e-12  # 1/K
+MIN_VISCOSITY_SLOPE = 1e-12  # 1/K
 MIN_RISE = 0.1  # K of the secant
 MIN_STRESS = 0.1  # of the shear law's and the limiting stress, over those at the reference temperature
 
@@ -187,9 +187,9 @@ def _line(p: float, middle: float, reference: float, law: FilmLaw) -> tuple[floa
     """ln(eta/eta0) at `reference`, its secant to the temperature `middle`, -d/dT [1/K]; both by p."""
     if law.is_linear:
         value, by_p, slope = ln_viscosity(law.viscosity, p, reference)
-        return value, max(-slope, MIN_SLOPE), by_p, 0.0
+        return value, max(-slope, MIN_VISCOSITY_SLOPE), by_p, 0.0
     rise = max(middle - reference, MIN_RISE)
     (value, by_p, _), (further, further_by_p, _) = ln_viscosities(
         law.viscosity, p, reference, reference + rise
     )
-    return value, max((value - further) / rise, MIN_SLOPE), by_p, (by_p - further_by_p) / rise
+    return value, max((value - further) / rise, MIN_VISCOSITY_SLOPE), by_p, (by_p - further_by_p) / rise

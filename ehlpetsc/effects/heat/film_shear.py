@@ -40,11 +40,11 @@ import numpy as np
 from ehlpetsc.base.compiled import inlined
 from ehlpetsc.physics.oil.rheology import FlowLaw, flow_stress
 
-MIN_HEATING = 1e-280
-SERIES_LIMIT = 0.2  # y below which the series of :func:`across` are exact to 1e-12
+MIN_SHEAR_HEATING = 1e-280
+MAX_SERIES_Y = 0.2  # y below which the series of :func:`across` are exact to 1e-12
 MEAN_SERIES_LIMIT = 0.2  # y/2 below which the series of the mean rise is exact to 1e-14
-ITERATIONS = 200
-ACCURACY = 1e-7  # relative change of y in an iteration of Newton's method, after which it is exact to 1e-14
+Y_ITERATIONS = 200
+Y_ACCURACY = 1e-7  # relative change of y in an iteration of Newton's method, after which it is exact to 1e-14
 
 
 @inlined
@@ -58,7 +58,7 @@ def across(y: float, d: float) -> tuple[float, float, float, float, float]:
     heating, heating_by_y, heating_by_d
         :math:`y(\cosh y-\cosh d)/(2\sinh y)` and its derivatives.
     """
-    if y.real < SERIES_LIMIT:
+    if y.real < MAX_SERIES_Y:
         less = -np.expm1(-y)  # 1 - exp(-y)
         e, t = 1.0 - less, y * y
         ln_rate = t * (1 / 6 - t * (1 / 180 - t * (1 / 2835 - t * (1 / 37800 - t / 467775))))
@@ -114,7 +114,7 @@ def resolved_stress(
     isothermal, slope, _ = flow_stress(x, flow, limit)
     b = (heating * isothermal).real
     half = np.sinh(0.5 * d.real)
-    low = 2.0 * np.arcsinh(np.sqrt(b + half * half + MIN_HEATING))
+    low = 2.0 * np.arcsinh(np.sqrt(b + half * half + MIN_SHEAR_HEATING))
     high = abs(d.real) + 2.0 * np.sqrt(b * (1.0 + b)) + low * 1e-12
     guess = start.real if start.real > 0.0 else high / (1.0 + 2.0 * (heating * slope).real)
     y = min(max(guess, low), high) + 0.0 * (x + heating + d)
@@ -122,7 +122,7 @@ def resolved_stress(
     last = False
     tau, by_x, by_limit = flow_stress(x, flow, limit)
     rate_by_y, by_y, by_d = y, y, y
-    for _ in range(ITERATIONS):
+    for _ in range(Y_ITERATIONS):
         ln_rate, rate_by_y, value, by_y, by_d = across(y, d)
         tau, by_x, by_limit = flow_stress(x - ln_rate, flow, limit)
         if last:
@@ -134,7 +134,7 @@ def resolved_stress(
             low = max(low, y.real)
         new = y - residual / (by_y + heating * by_x * rate_by_y)
         if low <= new.real <= high:
-            last = abs(new.real - y.real) <= ACCURACY * y.real
+            last = abs(new.real - y.real) <= Y_ACCURACY * y.real
         else:
             new = np.sqrt(low) * np.sqrt(high) + 0.0 * new
             last = high - low <= 1e-14 * high

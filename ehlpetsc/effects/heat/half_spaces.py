@@ -26,8 +26,8 @@ from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.flash_temperature import Solid
 
 STEP = 1.2  # of the trapezoidal rule in y: its relative error is 2 |Gamma(1/2 + 2 pi i/STEP)|/sqrt(pi) = 8e-4
-FASTEST = 30.0  # rate of the fastest term times the time step
-SLOWEST = 0.2  # rate of the slowest term but the lumped one times the longest time
+FASTEST_RESPONSE = 30.0  # rate of the fastest term times the time step
+SLOWEST_RESPONSE = 0.2  # rate of the slowest term but the lumped one times the longest time
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
 RENUMBERED = 2.0  # cells between the distance travelled and the step by the speed
@@ -44,7 +44,7 @@ def exponentials(shortest: float, longest: float) -> tuple[tuple[float, ...], tu
 
     `shortest`, `longest`: range of t [s].
     """
-    high, low = np.log(FASTEST / shortest), np.log(SLOWEST / longest)
+    high, low = np.log(FASTEST_RESPONSE / shortest), np.log(SLOWEST_RESPONSE / longest)
     count = max(int(np.ceil((high - low) / STEP)), 1) + 1
     y = high - STEP * np.arange(count)
     rates, weights = np.exp(y), STEP / np.pi * np.exp(0.5 * y)

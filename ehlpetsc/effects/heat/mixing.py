@@ -12,8 +12,8 @@ import numpy as np
 from ehlpetsc.effects.heat.record import HeatRecord
 
 DEPTH = 6  # changes of x and g that are combined
-ITERATIONS = 200
-ACCURACY = 1e-11  # of the maximum
+MIXING_ITERATIONS = 200
+MIXING_ACCURACY = 1e-11  # of the maximum
 MIN_SINGULAR_VALUE = 1e-12  # of the maximum, in the least squares of fluxes
 MIN_SINGULAR_VALUE_OF_RECORDS = 1e-8
 FAR = 0.3  # of the maximum rise of temperature: after a larger change a record is taken as it is
@@ -34,12 +34,12 @@ def mixing(
     steps: list[np.ndarray] = []
     residuals: list[np.ndarray] = []
     least = 0.0
-    for _ in range(ITERATIONS):
+    for _ in range(MIXING_ITERATIONS):
         new = function(x)
         f = new - x
         change = np.abs(f).max()
         least = least or of_change * change
-        if change <= max(ACCURACY * max(np.abs(new).max(), 1e-300), least):
+        if change <= max(MIXING_ACCURACY * max(np.abs(new).max(), 1e-300), least):
             return x
         steps, residuals = [*steps, x][-DEPTH:], [*residuals, f][-DEPTH:]
         x = combined(steps, residuals, 1.0, MIN_SINGULAR_VALUE)

@@ -8,7 +8,8 @@ import numpy as np
 
 from ehlpetsc.physics.contact.grid import Grid
 
-GROWTH = 1.5  # of the widths of rows beyond the sides of the mesh
+MIN_TEMPERATURE_RISE = 1e-3  # K
+WIDENING = 1.5  # of the widths of rows beyond the sides of the mesh
 
 
 class BodyHeat(NamedTuple):
@@ -117,9 +118,9 @@ class Across:
         of_mesh = grid.n // grid.shape[-1]
         beyond = 0
         if len(grid.axes) > 1 and not grid.periodic:
-            beyond = int(np.ceil(np.log1p(reach / grid.spacings[0] * (GROWTH - 1.0)) / np.log(GROWTH)))
+            beyond = int(np.ceil(np.log1p(reach / grid.spacings[0] * (WIDENING - 1.0)) / np.log(WIDENING)))
         self.rows, self.inner = of_mesh + 2 * beyond, slice(beyond, beyond + of_mesh)
-        widths = GROWTH ** np.maximum(
+        widths = WIDENING ** np.maximum(
             np.abs(np.arange(self.rows) - 0.5 * (self.rows - 1)) - 0.5 * (of_mesh - 1), 0
         )
         widths *= grid.spacings[0]

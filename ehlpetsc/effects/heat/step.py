@@ -19,11 +19,11 @@ from ehlpetsc.discretisation.step_inputs import (
 from ehlpetsc.discretisation.transport import carried, carried_with
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows, last_profile
-from ehlpetsc.effects.heat.film_law import MEAN, R1, R2, SPREAD, W1, W2, G
+from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, T_MEAN, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.mixing import mixing
-from ehlpetsc.effects.heat.record import HeatRecord
+from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord
 from ehlpetsc.effects.heat.transport import (
     Film,
     explicit_transport,
@@ -38,8 +38,7 @@ NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the maximum
-MIN_TEMPERATURE_RISE = 1e-3  # K
-TINY = 1e-30  # m^2 K/W: bodies without response share equally
+NO_RESPONSE = 1e-30  # m^2 K/W: bodies without response share equally
 OF_CHANGE = 1e-3  # of the change between two solutions
 
 
@@ -59,7 +58,7 @@ class Temperatures(NamedTuple):
     @property
     def film(self) -> np.ndarray:
         """Mean temperature of the film [K]."""
-        return self.state[MEAN]
+        return self.state[T_MEAN]
 
 
 class HeatStep:
@@ -153,7 +152,7 @@ class HeatStep:
         temperatures = (
             self._steady(record, heat, film, step) if heat.bodies is None else self._moving(heat, film)
         )
-        return temperatures, film, source, spread, heat.guess[MEAN]
+        return temperatures, film, source, spread, heat.guess[T_MEAN]
 
     def _flow(
         self, solution: Solution, heat: FilmHeat
@@ -312,6 +311,6 @@ def _rubbed(
     walls: Sequence[np.ndarray], responses: Sequence[np.ndarray], rubbing: np.ndarray
 ) -> tuple[list[np.ndarray], tuple[np.ndarray, np.ndarray]]:
     """Walls [K] with the heat of the solids, which warms both by the same, and the parts in either."""
-    first = (responses[1] + TINY) / (responses[0] + responses[1] + 2.0 * TINY)
+    first = (responses[1] + NO_RESPONSE) / (responses[0] + responses[1] + 2.0 * NO_RESPONSE)
     rise = responses[0] * first * rubbing
     return [wall + rise for wall in walls], (first, 1.0 - first)

@@ -26,12 +26,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined
-from ehlpetsc.effects.heat.film_law import BASE, MEAN, PROFILE, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import T_BASE, T_MEAN, T_SHAPE, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import FilmLaw
 from ehlpetsc.effects.heat.record import in_rows, joined
 
 SWEEPS = 50
-PRESSURE, THICKNESS, LEFT, OLD, STORED, CHANGE, EXTRAPOLATED = range(7)  # rows: fields of a Film
+P, THICKNESS, ON_LEFT, OLD, STORED, CHANGE, EXTRAPOLATED = range(7)  # rows: fields of a Film
 IN_SPACE, IN_TIME = 0, 1  # rows of the limiters
 SWEEP_TOLERANCE = 1e-11  # relative change of the temperatures that ends the sweeps
 
@@ -128,16 +128,16 @@ def transport(
     """
     nodes, law = len(flow) - 1, FilmLaw(*law)
     limiters = np.empty((2, nodes))
-    _limiters(state[MEAN], film, flow, limiters)
+    _limiters(state[T_MEAN], film, flow, limiters)
     backward = flow[nodes // 2] < 0.0  # with the flow; the limiters need what is upstream
     for sweep in range(SWEEPS):
         largest, turned = 0.0, False
         for k in range(nodes):
             i = nodes - 1 - k if backward else k
             turned = turned or (flow[i] if backward else -flow[i + 1]) > 0.0
-            before = state[MEAN, i]
+            before = state[T_MEAN, i]
             _solve_node(i, state, film, flow, limiters, ambient, law, of_nodes, out)
-            largest = max(largest, abs(state[MEAN, i] - before))
+            largest = max(largest, abs(state[T_MEAN, i] - before))
         if not turned or largest < SWEEP_TOLERANCE * ambient[0]:
             return sweep + 1
         backward = not backward
@@ -159,18 +159,18 @@ def _solve_node(
     """Temperature and fluxes of node i, between neighbours whose temperatures are given."""
     (inlet, coldest), old = ambient, film[OLD, i]
     carried, before, after = _carried_in(i, state, film, flow, limiters, inlet)
-    node, (last, walls) = (film[PRESSURE, i], film[THICKNESS, i], film[LEFT, i]), fixed_at(i, of_nodes)
+    node, (last, walls) = (film[P, i], film[THICKNESS, i], film[ON_LEFT, i]), fixed_at(i, of_nodes)
     for _ in range(2):
         a, b, beyond = _balance(i, carried, before, after, film, flow, limiters)
-        start, balance = (state[BASE, i], state[PROFILE, i]), (a, b, of_nodes[G, i])
+        start, balance = (state[T_BASE, i], state[T_SHAPE, i]), (a, b, of_nodes[G, i])
         found, _ = film_temperature(start, node, balance, last, walls, law)
-        state[BASE, i], state[PROFILE, i] = found.base, found.profile
+        state[T_BASE, i], state[T_SHAPE, i] = found.base, found.profile
         upstream = before if flow[i + 1] >= 0.0 else after
         drop = max(limiters[IN_SPACE, i] * (upstream - found.mean), limiters[IN_TIME, i] * (old - found.mean))
         if drop <= max(found.mean - coldest, 0.0):
             break
         limiters[IN_SPACE, i] = limiters[IN_TIME, i] = 0.0
-    state[MEAN, i] = found.mean
+    state[T_MEAN, i] = found.mean
     out[0, i], out[1, i], out[2, i] = found.q1, found.q2, found.shear_heat
     out[3, i], out[4, i] = beyond * (found.mean - old), found.stress
 
@@ -181,14 +181,14 @@ def _carried_in(
 ) -> tuple[float, float, float]:
     """Heat of the old level and of the flow from both neighbours [W/m^2], and their temperatures [K]."""
     last, from_left, from_right = len(flow) - 2, max(flow[i], 0.0), max(-flow[i + 1], 0.0)
-    before = state[MEAN, i - 1] if i > 0 else inlet
-    after = state[MEAN, i + 1] if i < last else inlet
+    before = state[T_MEAN, i - 1] if i > 0 else inlet
+    after = state[T_MEAN, i + 1] if i < last else inlet
     carried = film[STORED, i] * film[OLD, i] + film[EXTRAPOLATED, i]
     if from_left > 0.0:
-        drawn = limiters[IN_SPACE, i - 1] * (before - state[MEAN, i - 2]) if i > 1 else 0.0
+        drawn = limiters[IN_SPACE, i - 1] * (before - state[T_MEAN, i - 2]) if i > 1 else 0.0
         carried += from_left * (before + drawn)
     if from_right > 0.0:
-        drawn = limiters[IN_SPACE, i + 1] * (after - state[MEAN, i + 2]) if i < last - 1 else 0.0
+        drawn = limiters[IN_SPACE, i + 1] * (after - state[T_MEAN, i + 2]) if i < last - 1 else 0.0
         carried += from_right * (after + drawn)
     return carried, before, after
 

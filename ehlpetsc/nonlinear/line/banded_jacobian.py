@@ -17,7 +17,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.finite_volumes import OWN
 from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE
-from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, SIZE, STRIDE, WIDTH
+from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, ROW_WIDTH, SIZE, STRIDE
 from ehlpetsc.nonlinear.line.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 GROUP = 4  # nodes; wider bands cost more than they save iterations, narrower ones need more exponentials
 TERMS = 3  # exponentials; a fourth would save iterations of GMRES, and cost more in the band
-REACH = 0.1  # half-widths within which the relative error counts; beyond it counts less
+ERROR_REACH = 0.1  # half-widths within which the relative error counts; beyond it counts less
 SLOWEST, FASTEST = 0.4, 1.4  # rates: over the reach, and over a group
 
 
@@ -56,7 +56,7 @@ def exponentials(kernel: np.ndarray, nodes_per_half_width: float) -> tuple[np.nd
     The kernel at a distance of d groups is about ``weights @ exp(-rates * d)``, both of shape (TERMS,).
     """
     far = grouped_kernel(kernel)[2:]
-    reach = max(REACH * nodes_per_half_width / GROUP, 1.0)
+    reach = max(ERROR_REACH * nodes_per_half_width / GROUP, 1.0)
     rates = np.geomspace(SLOWEST / reach, FASTEST, TERMS)
     distance = 2.0 + np.arange(len(far))
     weight = 1.0 / (far * (1.0 + distance / reach))
@@ -92,8 +92,8 @@ class BandedJacobian:
         self.size = self.groups * STRIDE
         self.dofs = np.stack([self._pressure(self.nodes), self._film(self.nodes)], axis=1).ravel()
         self.end_groups = np.stack([np.arange(STRIDE), np.arange(self.size - STRIDE, self.size)])
-        self.values = np.zeros(self.size * WIDTH + 1)  # the last one: entries that do not exist
-        self.columns = self.values[:-1].reshape(self.groups, WIDTH, STRIDE)
+        self.values = np.zeros(self.size * ROW_WIDTH + 1)  # the last one: entries that do not exist
+        self.columns = self.values[:-1].reshape(self.groups, ROW_WIDTH, STRIDE)
         self._recurrences()
         self._padding()
         self._under_films()
@@ -133,7 +133,7 @@ class BandedJacobian:
         starts = np.choose(
             np.where(coupled, other - group + 1, 1), [-FROM_LEFT, LEFT, LEFT + SIZE - FROM_RIGHT]
         )
-        return np.where(coupled, (group * WIDTH + starts + c) * STRIDE + r, self.values.size - 1)
+        return np.where(coupled, (group * ROW_WIDTH + starts + c) * STRIDE + r, self.values.size - 1)
 
     def _recurrences(self) -> None:
         p, groups = self.problem, np.arange(self.groups)

@@ -25,10 +25,10 @@ SIZE = 11  # unknowns of a group
 STRIDE = 12  # room for them
 LEFT, FROM_LEFT = 9, 2  # unknowns of the group before that the rows contain, and the first of them
 RIGHT, FROM_RIGHT = 9, 0  # those of the group behind: one more than it has, for the mirrored order
-WIDTH, CUT = LEFT + SIZE + RIGHT, LEFT + RIGHT
+ROW_WIDTH, CUT = LEFT + SIZE + RIGHT, LEFT + RIGHT
 AT_LEFT, AT_RIGHT = slice(FROM_RIGHT, FROM_RIGHT + RIGHT), slice(FROM_LEFT, SIZE)  # what cuts there take
 FAST = {"contract", "nsz", "reassoc"}
-ONE, TWO, THREE, FOUR = (unsigned(k) for k in (1, 2, 3, 4))
+U1, U2, U3, U4 = (unsigned(k) for k in (1, 2, 3, 4))
 
 
 class BlockLU:
@@ -69,24 +69,24 @@ def subtract_product(
 
     The columns start at `matrix[j]`. Four sums at a time stay in a register of the processor.
     """
-    for chunk in range(THREE):
-        here, column = i + chunk * FOUR, j + chunk * FOUR
-        a, b, c, d = y[here], y[here + ONE], y[here + TWO], y[here + THREE]
+    for chunk in range(U3):
+        here, column = i + chunk * U4, j + chunk * U4
+        a, b, c, d = y[here], y[here + U1], y[here + U2], y[here + U3]
         for n in range(unsigned(count)):
             value, at = x[k + n], column + n * unsigned(STRIDE)
-            a, b = a - value * matrix[at], b - value * matrix[at + ONE]
-            c, d = c - value * matrix[at + TWO], d - value * matrix[at + THREE]
-        y[here], y[here + ONE], y[here + TWO], y[here + THREE] = a, b, c, d
+            a, b = a - value * matrix[at], b - value * matrix[at + U1]
+            c, d = c - value * matrix[at + U2], d - value * matrix[at + U3]
+        y[here], y[here + U1], y[here + U2], y[here + U3] = a, b, c, d
 
 
 @compiled(fastmath=FAST)
 def subtract_column(y: np.ndarray, i: int, column: np.ndarray, factor: float) -> None:
     """Subtract a column times a factor from `y[i : i + STRIDE]`."""
-    for chunk in range(THREE):
-        k = chunk * FOUR
-        a, b = y[i + k] - factor * column[k], y[i + k + ONE] - factor * column[k + ONE]
-        c, d = y[i + k + TWO] - factor * column[k + TWO], y[i + k + THREE] - factor * column[k + THREE]
-        y[i + k], y[i + k + ONE], y[i + k + TWO], y[i + k + THREE] = a, b, c, d
+    for chunk in range(U3):
+        k = chunk * U4
+        a, b = y[i + k] - factor * column[k], y[i + k + U1] - factor * column[k + U1]
+        c, d = y[i + k + U2] - factor * column[k + U2], y[i + k + U3] - factor * column[k + U3]
+        y[i + k], y[i + k + U1], y[i + k + U2], y[i + k + U3] = a, b, c, d
 
 
 @compiled(fastmath=FAST)
@@ -102,7 +102,7 @@ def factor(
     """Fill in the inverses of S and W; see :class:`BlockLU`."""
     line, size, right = unsigned(STRIDE), unsigned(SIZE), unsigned(RIGHT)
     for i in range(unsigned(len(inverses) // (SIZE * STRIDE))):
-        left = i * unsigned(WIDTH * STRIDE)
+        left = i * unsigned(ROW_WIDTH * STRIDE)
         diagonal_block, inverse, upper_block = (
             left + unsigned(LEFT * STRIDE),
             i * size * line,
@@ -164,7 +164,7 @@ def forward(factors: tuple, b: np.ndarray, first: int) -> None:
         here = i * line
         if i > first:
             before = here - line + unsigned(FROM_LEFT)
-            subtract_product(b, here, columns, i * unsigned(WIDTH) * line, b, before, LEFT)
+            subtract_product(b, here, columns, i * unsigned(ROW_WIDTH) * line, b, before, LEFT)
         for k in range(line):
             minus_b[k], b[here + k] = -b[here + k], 0.0
         subtract_product(b, here, inverses, i * unsigned(SIZE) * line, minus_b, unsigned(0), SIZE)
@@ -175,9 +175,9 @@ def backward(factors: tuple, b: np.ndarray) -> None:
     """Replace y by x, in place: the last group is left as it is."""
     upper, line = factors[2], unsigned(STRIDE)
     groups = unsigned(len(b) // STRIDE)
-    for done in range(ONE, groups):
-        i = groups - ONE - done
-        behind = (i + ONE) * line + unsigned(FROM_RIGHT)
+    for done in range(U1, groups):
+        i = groups - U1 - done
+        behind = (i + U1) * line + unsigned(FROM_RIGHT)
         subtract_product(b, i * line, upper, i * unsigned(RIGHT) * line, b, behind, RIGHT)
 
 
@@ -185,8 +185,8 @@ def backward(factors: tuple, b: np.ndarray) -> None:
 def backward_transposed(upper: np.ndarray, b: np.ndarray) -> None:
     """Replace the coefficients `b` of x (3, groups * STRIDE) by the equivalent ones of y, in place."""
     line, (first, second, third) = unsigned(STRIDE), (b[0], b[1], b[2])
-    for i in range(unsigned(b.shape[1] // STRIDE) - ONE):
-        here, behind = i * line, (i + ONE) * line + unsigned(FROM_RIGHT)
+    for i in range(unsigned(b.shape[1] // STRIDE) - U1):
+        here, behind = i * line, (i + U1) * line + unsigned(FROM_RIGHT)
         for c in range(unsigned(RIGHT)):
             column, k = (i * unsigned(RIGHT) + c) * line, behind + c
             x, y, z = first[k], second[k], third[k]

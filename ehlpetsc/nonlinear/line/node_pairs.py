@@ -18,7 +18,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.node_state import NodeState
 
-STIFF_SLOPE = 1.0  # p0 per a^2/R: from this slope of pressure over film on, solids are stiff
+STIFF_LINE_SLOPE = 1.0  # p0 per a^2/R: from this slope of pressure over film on, solids are stiff
 
 
 class BandEntries(NamedTuple):
@@ -80,7 +80,7 @@ def choose_pairs(state: tuple, depth: tuple, compliance: float, found: tuple) ->
     for i in range(len(p_qs)):
         p_q, p_w, h_w, yields, by_oil = p_qs[i], p_ws[i], h_ws[i], yielding[i], depth_q[i] > 0.0
         is_full = p_q > 0.0 and not yields
-        film = h_w > 0.0 and (yields or is_full or p_w >= -STIFF_SLOPE)
+        film = h_w > 0.0 and (yields or is_full or p_w >= -STIFF_LINE_SLOPE)
         w_by_pressure = 1.0 if film or yields else 1.0 / p_w
         film_first = 0.0 if film or yields else h_w * w_by_pressure
         q_by_film = reynolds_w[i] if yields else (-p_w if is_full else 0.0)

@@ -65,13 +65,13 @@ from ehlpetsc.base.compiled import compiled
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Contact
 
-EXPONENTIAL = 30.0  # separation over the decay length beyond which the law is an exponential in all digits
+MAX_DECAYS = 30.0  # separation over the decay length beyond which the law is an exponential in all digits
 MAX_RATIO = 1e10  # of prefactor to pressure up to which the law differs from it
 FULL_CONTACT = 1e-3  # film of full contact at the hardness over the decay length: 5 pm, as films are positive
 STIFFNESS = 1.0  # beta over the slope 2 pi sigma/L of the longest wave of the layer
 GAMMA = 0.5  # decay length of the pressure over the rms height
 CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
-MIN_HARDNESS = 0.2  # over the width of the stresses: below it all contact is plastic
+MIN_RELATIVE_HARDNESS = 0.2  # over the width of the stresses: below it all contact is plastic
 PERCOLATION, CLOSING = 0.3, 0.9  # film over rms height below which no oil passes; decay above it
 CHANNELS = 1.33e-4  # 4 w^2: a flow factor of 1e-4 at a film of zero
 KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, at light load
@@ -104,7 +104,7 @@ def asperity_pressure(
     Beyond full contact, at the hardness, the pressure rises steeply with what is left of `FULL_CONTACT`.
     """
     ratio = (h - full_contact) / decay
-    if ratio > EXPONENTIAL:
+    if ratio > MAX_DECAYS:
         pressure = prefactor * math.exp(-ratio)
         return pressure, -pressure / decay
     if ratio <= 0.0 and closed > 0.0:
@@ -219,7 +219,7 @@ def real_area_fraction(pressure: np.ndarray, slope_modulus: float, hardness: flo
     width = 2.0 * slope_modulus / (math.sqrt(math.pi) * KAPPA)
     if hardness == np.inf:
         return erf(pressure / width)
-    if hardness < MIN_HARDNESS * width:
+    if hardness < MIN_RELATIVE_HARDNESS * width:
         return np.minimum(pressure / hardness, 1.0)
     apart = np.zeros_like(pressure)
     for k in range(math.ceil(3.0 * width / hardness) + 1):  # beyond six widths erfc vanishes

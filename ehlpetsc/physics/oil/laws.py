@@ -276,13 +276,13 @@ def incompressible(p: Numbers) -> Derivatives:
 
 # the density law is (1 + gamma p)/(1 + lambda p): gamma is the sum of both constants as textbooks print them
 TEXTBOOKS = "the density `1 + 0.6e-9 p/(1 + 1.7e-9 p)` of textbooks is gamma = 2.3e-9 and lambda = 1.7e-9"
-DENSITY = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
+DENSITY_CONSTANTS = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
 
 
 def _complete_density(fluid: FluidValues) -> dict[str, float]:
     values = {
         name: default if getattr(fluid, name) is None else getattr(fluid, name)
-        for name, default in DENSITY.items()
+        for name, default in DENSITY_CONSTANTS.items()
     }
     if values["lambda_"] > values["gamma"]:  # the density would fall with pressure
         raise Refused("", "lambda")
@@ -333,11 +333,11 @@ def density(p: np.ndarray, fluid: FluidValues) -> tuple[np.ndarray, np.ndarray]:
 # ---- all tables ----
 
 
-TABLES: tuple[Mapping[str, Law], ...] = (LAWS, DENSITY_LAWS, SHEAR_LAWS)
+LAW_TABLES: tuple[Mapping[str, Law], ...] = (LAWS, DENSITY_LAWS, SHEAR_LAWS)
 
 
 def names_in_use(fluid: FluidValues) -> tuple[str, ...]:
-    """Name of the law that a case has of each of `TABLES`."""
+    """Name of the law that a case has of each of `LAW_TABLES`."""
     return fluid.law, fluid.density, shear_law(fluid)
 
 
@@ -350,6 +350,6 @@ def completed(fluid: Mapping[str, Any]) -> dict[str, Any]:
             "needs fluid.grade or oil; the temperature of a given viscosity is heat.reference_temperature",
             "temperature",
         )
-    for laws, name in zip(TABLES, names_in_use(SimpleNamespace(**values)), strict=True):
+    for laws, name in zip(LAW_TABLES, names_in_use(SimpleNamespace(**values)), strict=True):
         values |= laws[name].complete(SimpleNamespace(**values))
     return values

@@ -18,7 +18,7 @@ from ehlpetsc.physics.oil.law import Derivatives, FluidValues, Law, n_constants,
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid
 
-SERIES_LIMIT = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
+MAX_SERIES_STRESS = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 NEWTON, EYRING, CARREAU = range(3)  # positions in `SHEAR_LAWS`
 MAX_LN_SINH = 20.0  # above it asinh(exp(x)) is x + ln 2 to 1e-17, below its negative exp(x) to 1e-17
 MAX_EXPONENT = 600.0
@@ -123,8 +123,8 @@ SHEAR_LAWS = {  # a law is that of the case whose first key, its stress, is give
         _complete_carreau,
     ),
 }
-BUILT_IN = tuple(SHEAR_LAWS.values())
-N_BUILT_IN = len(BUILT_IN)  # positions; larger numbers are addresses
+KNOWN_SHEAR = tuple(SHEAR_LAWS.values())
+N_SHEAR_LAWS = len(KNOWN_SHEAR)  # positions; larger numbers are addresses
 _shear_stress = switched(SHEAR_LAWS, 1)
 
 
@@ -172,7 +172,7 @@ def flow_stress(x: float, flow: FlowLaw, limit: float) -> tuple[float, float, fl
     stress, by_x, by_limit
     """
     constants = (flow.stress, flow.n, flow.a)
-    if flow.kind >= N_BUILT_IN:
+    if flow.kind >= N_SHEAR_LAWS:
         tau, by_x, _ = call_at(flow.kind, x, 0.0, constants)
     else:
         tau, by_x = _shear_stress(flow.kind, (x,), constants)
@@ -186,8 +186,8 @@ def flow_law(fluid: Fluid) -> FlowLaw:
     """Shear law of a case with its constants."""
     law = SHEAR_LAWS[shear_law(fluid)]
     constants = map(float, law.constants(fluid, None))
-    built_in = law in BUILT_IN
-    kind = BUILT_IN.index(law) if built_in else address_of(law.function, n_constants(law.function, 1), 1)
+    built_in = law in KNOWN_SHEAR
+    kind = KNOWN_SHEAR.index(law) if built_in else address_of(law.function, n_constants(law.function, 1), 1)
     return FlowLaw(kind, *constants)
 
 
@@ -212,7 +212,7 @@ def flow_factors(sigma: float) -> tuple[float, float, float, float]:
         :math:`S_0`, L and their derivatives.
     """
     s = sigma
-    if abs(s.real) < SERIES_LIMIT:
+    if abs(s.real) < MAX_SERIES_STRESS:
         t = s * s
         return (
             1.0 + t * (1 / 10 + t * (1 / 280 + t * (1 / 15120 + t / 1330560))),

@@ -11,11 +11,11 @@ from functools import cache
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined, unsigned
-from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, SERIES_LIMIT, FlowLaw, flow_stress
+from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, MAX_SERIES_STRESS, FlowLaw, flow_stress
 
 MIN_RATE = 1e-30  # shear rate and stress difference of a film at rest, over those of its law
 NO_FLOW = 0.0, 0.0, 0.0, 0.0
-STEPS = 0.25, 0.1  # of ln(Gamma) and ln(s), over the width of the bend in Carreau's law
+TABLE_STEPS = 0.25, 0.1  # of ln(Gamma) and ln(s), over the width of the bend in Carreau's law
 RANGE = 14.0  # of both: exp(-14) is the error of the asymptotes beyond
 NEWTONIAN = 1e-8  # accuracy to which it is below some Gamma and s
 SHALLOW = 1e-4  # stress difference across the film over the law's stress, below which there is none
@@ -122,7 +122,7 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
 
     law, sharpness = FlowLaw(kind, 1.0, n, a), a if kind == CARREAU else 1.0
     bend = max(sharpness, 2.0) / 2.0
-    step_x, step = STEPS[0] / bend, STEPS[1] / bend
+    step_x, step = TABLE_STEPS[0] / bend, TABLE_STEPS[1] / bend
     if kind == CARREAU:
         last = RANGE / min(a, 2.0)
         x, ln_drop = np.arange(-last, last, step_x), np.arange(-last, n * last + 1.0, step)
@@ -240,7 +240,7 @@ def stress_spread(sigma: float, x: float, table: np.ndarray) -> float:
             return _cubic(u, p)
         lower = _cubic(u, p) - (1.0 - n) * beyond
         return x - np.log(rate_of_stress(np.exp(x + lower), FlowLaw(CARREAU, 1.0, n, a))[0])
-    if sigma < SERIES_LIMIT:
+    if sigma < MAX_SERIES_STRESS:
         square = sigma * sigma
         return square * (1 / 6 - square * (1 / 180 - square / 2835))
     return sigma + np.log(0.5 * (1.0 - np.exp(-2.0 * sigma)) / sigma)

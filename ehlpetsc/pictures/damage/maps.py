@@ -26,7 +26,7 @@ SECTION_LENGTH = 2.0  # half-widths of profile where several maps are compared, 
 FIELD_DEPTH = 1.5  # half-widths
 STRESSES = (r"$\sigma_x$", r"$\sigma_z$", r"$\tau_{xz}$", r"$\sigma_{vM}$")
 MIN_TICK_DISTANCE = 0.09  # of the depth axis
-CRITERIA = {"fatemi-socie": "Fatemi-Socie", "dang-van": "Dang Van: share of the fatigue limit; line: 1"}
+SHOWN_CRITERIA = {"fatemi-socie": "Fatemi-Socie", "dang-van": "Dang Van: share of the fatigue limit; line: 1"}
 MAP_COLUMNS = 3
 
 
@@ -136,7 +136,7 @@ def damage_picture(result: PostResult, surface: str) -> Figure:
 def criteria_picture(result: PostResult, surface: str) -> Figure:
     """Damage by all criteria on one scale, and the utilisation of the fatigue limit."""
     maps = [Map("von Mises ranges", result, result.damage[surface])]
-    for name, label in CRITERIA.items():
+    for name, label in SHOWN_CRITERIA.items():
         if name in result.criteria:
             maps.append(Map(label, result, result.criteria[name][surface], name != "dang-van"))
     return draw_maps(maps, surface, [_conditions(result, surface)], SECTION_LENGTH)

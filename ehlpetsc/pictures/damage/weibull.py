@@ -22,7 +22,7 @@ from ehlpetsc.results.post_result import PostResult, WeibullFit
 
 EXCEEDANCE_DECADES = 12  # of damage below the maximum in distributions
 GOOD_FIT = 0.9  # r^2 of a Weibull line that needs no word
-COLUMNS = 3
+PANEL_COLUMNS = 3
 FRACTIONS = (0.01, 0.05, 0.1, 0.2, 0.5, 0.8, 0.95)
 STRETCH = 1.3  # of the lives shown
 
@@ -60,9 +60,9 @@ def draw_distributions(curves: list[tuple[str, np.ndarray, WeibullFit]], title: 
 
 def weibull_picture(result: PostResult) -> Figure:
     """Fraction of asperities over -log10 D on Weibull's axes, one panel a depth."""
-    rows = -(-result.z.size // COLUMNS)
+    rows = -(-result.z.size // PANEL_COLUMNS)
     size = (8.0, 0.8 + 2.4 * rows)
-    figure, panels = style.new_figure(rows, COLUMNS, size, sharex=True, sharey=True, squeeze=False)
+    figure, panels = style.new_figure(rows, PANEL_COLUMNS, size, sharex=True, sharey=True, squeeze=False)
     for axes, z, under, fit in zip(panels.flat, result.z, result.under, result.fits, strict=False):
         no_fit = "" if fit.beta > 0.0 else f", {fitted_asperities(under)} with damage: no fit"
         axes.set_title(f"z/a = {z:g}{no_fit}", fontsize="small", loc="left")

@@ -22,7 +22,7 @@ from ehlpetsc.results.reader import Result
 
 WINDOW = (-1.6, 1.4)  # limits of x/a by default
 MIN_LOAD_ON_SOLIDS = 0.005  # of the load: with less the pressure determines the instant
-MAX_FRAMES, RATE, MOVIE_DPI = 150, 15, 80  # of a movie: frames, frames per second, dots per inch
+MOVIE_FRAMES, RATE, MOVIE_DPI = 150, 15, 80  # of a movie: frames, frames per second, dots per inch
 
 
 class Choice(NamedTuple):
@@ -173,11 +173,11 @@ def instant(results: list[Result], indices: Sequence[int]) -> str:
 
 
 def save_movie(results: list[Result], options: argparse.Namespace, path: Path) -> None:
-    """Write at most `MAX_FRAMES` frames of the first result, of others those at the same travel."""
+    """Write at most `MOVIE_FRAMES` frames of the first result, of others those at the same travel."""
     window, first = view(results, options.window), results[0]
     chosen = [
         Choice(results, choose_frames(results, time=first.time[k]), window, options.field)
-        for k in style.spread(len(first.time), MAX_FRAMES)
+        for k in style.spread(len(first.time), MOVIE_FRAMES)
     ]
     limits = common(frame.limits for choice in chosen for frame in choice.frames)
     figure, kind = Figure(layout="constrained"), chosen[0].module

@@ -14,8 +14,8 @@ from ehlpetsc.physics.contact.hertz import hertz_pressure
 from ehlpetsc.pictures import style
 from ehlpetsc.results.reader import Result
 
-PRESSURE = "pressure [GPa]"
-FILM = "film_thickness"
+PRESSURE_LABEL = "pressure [GPa]"
+FILM_FIELD = "film_thickness"
 FILM_LABEL, GAP_LABEL = "film thickness [µm]", "gap [µm]"  # the latter of a dry contact
 SHOWN_UNITS = {"m": ("µm", 1e6), "Pa": ("GPa", 1e-9), "s": ("µs", 1e6), "N/m": ("N/mm", 1e-3), "1": ("", 1.0)}
 LABEL_WIDTH = 26  # letters of a line beside an axis
@@ -74,7 +74,7 @@ class Frame:
         if "contact_pressure" in result:
             solids = 1e-9 * result["contact_pressure"][key].astype(float)
         word, label, factor = described(result, field)
-        values = factor * result[field or FILM][key].astype(float)
+        values = factor * result[field or FILM_FIELD][key].astype(float)
         half_widths = width, np.inf if y is None else width * aspect(result)
         share = contact_share(result, key)
         return cls(x, y, pressure, solids, values, share, half_widths, 1e-9 * p0, word, label)
@@ -118,7 +118,7 @@ class Frame:
 
 def described(result: Result, field: str | None) -> tuple[str, str, float]:
     """Short name and label of a stored field, by default of the film, and the factor to its unit."""
-    if field in (None, FILM):
+    if field in (None, FILM_FIELD):
         return ("film", FILM_LABEL, 1e6) if result.case.fluid else ("gap", GAP_LABEL, 1e6)
     if field not in result.fields:
         raise OutputError(f"{result.path}: --field {field}: not stored; allowed: {', '.join(result.fields)}")

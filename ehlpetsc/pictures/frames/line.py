@@ -11,20 +11,20 @@ from matplotlib.figure import Figure
 from ehlpetsc.physics.contact.hertz import hertz_pressure
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames.choice import Choice
-from ehlpetsc.pictures.frames.data import MOSTLY, PRESSURE, Frame, Limits, common, contact_word
+from ehlpetsc.pictures.frames.data import MOSTLY, PRESSURE_LABEL, Frame, Limits, common, contact_word
 from ehlpetsc.pictures.style import ACROSS
 from ehlpetsc.results.reader import Result
 
-SIZE = (8.4, 5.6)  # inches
+LINE_SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
-FAR = 1e3  # µm, to which solids are filled
+FILL_DEPTH = 1e3  # µm, to which solids are filled
 
 
 def draw_frame(figure: Figure, choice: Choice) -> None:
     """Draw pressure and film or another field into an empty figure, of one rough result the surfaces."""
     first, *others = choice.results
     rough = not (choice.field or others) and any(first.profile(side) for side in "12")
-    figure.set_size_inches(SIZE[0], HEIGHT_WITH_SURFACES if rough else SIZE[1])
+    figure.set_size_inches(LINE_SIZE[0], HEIGHT_WITH_SURFACES if rough else LINE_SIZE[1])
     axes = figure.subplots(3 if rough else 2, 1, sharex=True)
     fill(axes[:2], choice)
     if rough:
@@ -34,7 +34,7 @@ def draw_frame(figure: Figure, choice: Choice) -> None:
 
 def movie_panels(figure: Figure, frame: Frame, limits: Limits) -> Sequence[Axes]:
     """Axes of a movie in an empty figure."""
-    figure.set_size_inches(SIZE)
+    figure.set_size_inches(LINE_SIZE)
     return figure.subplots(2, 1, sharex=True)
 
 
@@ -52,12 +52,12 @@ def fill(axes: Sequence[Axes], choice: Choice, limits: Limits | None = None) -> 
     dry = {(frame.half_widths[0], frame.p0): frame for frame in shown}
     for number, frame in enumerate(dry.values()):
         draw_hertz(upper, frame, choice.window, "_" * number + "Hertz")
-    style.legend_beside(upper, title=style.UNITS.get(key, key))
+    style.legend_beside(upper, title=style.LABELS.get(key, key))
     style.legend_beside(lower)
     limits = limits or common(frame.limits for frame in shown)
     label = next((frame.label for frame in shown if frame.word == "film"), shown[0].label)
     lower.set(xlabel=ACROSS, xlim=choice.window, ylim=limits[2:], ylabel=label)
-    upper.set(ylabel=PRESSURE, ylim=(0.0, limits.pressure))
+    upper.set(ylabel=PRESSURE_LABEL, ylim=(0.0, limits.pressure))
     if len({float(result.attrs["a"]) for result in results}) == 1:
         style.scale_above(upper, 1e3 * results[0].attrs["a"], "x [mm]")
     if choice.flow:
@@ -73,7 +73,7 @@ def draw_curves(axes: Sequence[Axes], frame: Frame, contact: str) -> None:
     upper.plot(frame.x, frame.pressure, color=style.SINGLE, lw=1.1, label="pressure")
     lower.plot(frame.x, frame.values, color=style.SINGLE, lw=1.1, label=frame.word)
     if frame.is_film and (touching := frame.share > MOSTLY).any():
-        marks = dict(color=style.CONTACT, ms=4, clip_on=False, zorder=3, label=contact)
+        marks = dict(color=style.CONTACTS, ms=4, clip_on=False, zorder=3, label=contact)
         lower.plot(frame.x[touching], frame.values[touching], "v", **marks)
 
 
@@ -111,7 +111,7 @@ def deformed_surfaces(axes: Axes, result: Result, index: int, window: Sequence[f
     lower, upper = (1e6 * height for height in deformed_heights(result, index))
     bottom, top = lower[inside].min(), upper[inside].max()
     room = 0.15 * (top - bottom)
-    for height, end, side in ((upper, FAR, "1"), (lower, -FAR, "2")):
+    for height, end, side in ((upper, FILL_DEPTH, "1"), (lower, -FILL_DEPTH, "2")):
         axes.fill_between(x, height, end, color="0.85", lw=0)
         axes.plot(x, height, color=style.SURFACES[side], lw=0.9, label=f"surface {side}")
     axes.set(xlabel=ACROSS, ylabel="surfaces [µm]", ylim=(bottom - room, top + room))

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.physics.oil.viscosity_laws import KELVIN
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames import choice as frames
 from ehlpetsc.pictures.frames import line
@@ -26,7 +27,6 @@ TEMPERATURES = {
 }
 HEIGHTS = (1, 1, 1, 1.5)  # of the panels of temperatures, the last one over time
 TEMPERATURE_SIZE, STEADY_SIZE = (8.4, 10.0), (8.4, 6.6)  # inches
-KELVIN = 273.15
 LOADS = {"N/m": ("load [N/mm]", 1e-3), "N": ("load [N]", 1.0)}  # label and factor of its panel by its unit
 COURSES = {  # panels over time: factor from SI units, scalars with their labels and colours
     "speed [m/s]": (1.0, {f"speed_{k}": (f"surface {k}", colour) for k, colour in style.SURFACES.items()}),
@@ -42,7 +42,7 @@ COURSE_HEIGHT = 1.5  # inches of a panel
 def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
     """Pressure or another field of one result over x and time, contacts outlined."""
     [result] = results
-    figure, axes = style.new_figure(1, 1, line.SIZE)
+    figure, axes = style.new_figure(1, 1, line.LINE_SIZE)
     window, name = frames.view(results, options.window), options.field or "pressure"
     _, label, factor = described(result, name)
     lowest = dict(vmin=0.0) if name == "pressure" else {}
@@ -52,8 +52,8 @@ def draw_map(results: list[Result], options: argparse.Namespace) -> Figure:
     columns = style.in_view(x, window)
     share = contact_share(result, (slice(0, len(result.time)), columns))
     if share.max() > MOSTLY:
-        axes.contour(x[columns], 1e6 * result.time, share, [MOSTLY], colors=style.CONTACT, linewidths=0.7)
-        axes.plot([], [], color=style.CONTACT, lw=1.0, label=contact_word(result))
+        axes.contour(x[columns], 1e6 * result.time, share, [MOSTLY], colors=style.CONTACTS, linewidths=0.7)
+        axes.plot([], [], color=style.CONTACTS, lw=1.0, label=contact_word(result))
         axes.legend(loc="upper left", fontsize="small")
     style.set_title(figure, str(result.attrs["title"]), style.conditions(results))
     return figure

@@ -18,7 +18,7 @@ from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames.choice import Choice, view
 from ehlpetsc.pictures.frames.data import (
     COLOUR_PERCENTILE,
-    PRESSURE,
+    PRESSURE_LABEL,
     Frame,
     Limits,
     aspect,
@@ -33,8 +33,8 @@ WIDTH, SECTION_HEIGHT, MARGIN = 7.0, 1.6, 2.0  # inches: of the figure, of a row
 MAP_WIDTH = 2.9  # inches
 PANEL_RATIOS = (0.4, 1.6)  # height over width of the panel of a map
 TO_SCALE = (0.2, 5.0)  # height over width of a map: beyond, lengths along and across are not to one scale
-PRESSURE_COLOURS, FILM_COLOURS, COLOURS = "viridis", "Blues", "cividis"  # the last one of other fields
-SHARES = LinearSegmentedColormap.from_list("share", [to_rgba(style.CONTACT, 0.0), to_rgba(style.CONTACT)])
+PRESSURE_COLOURS, FILM_COLOURS, OTHER_COLOURS = "viridis", "Blues", "cividis"  # the last one of other fields
+SHARES = LinearSegmentedColormap.from_list("share", [to_rgba(style.CONTACTS, 0.0), to_rgba(style.CONTACTS)])
 CONTACTS_WIDTH, CONTACTS_MARGIN = 4.6, 1.9  # inches
 MOVIE_MARGIN = 1.6  # inches above and below the maps
 
@@ -60,7 +60,7 @@ def draw_frame(figure: Figure, choice: Choice) -> None:
         ends = float(section.x[0]), float(section.x[-1])
         draw_curves(panels, section, contact)
         draw_hertz(panels[0], section, ends)
-        panels[0].set(xlim=ends, xlabel=label, ylim=(0.0, limits.pressure), ylabel=PRESSURE)
+        panels[0].set(xlim=ends, xlabel=label, ylim=(0.0, limits.pressure), ylabel=PRESSURE_LABEL)
         panels[1].set(xlim=ends, xlabel=label, ylim=limits[2:], ylabel=frame.label)
         marks = [line for line in panels[1].lines if line.get_marker() == "v"]
         if marks:
@@ -83,7 +83,7 @@ def map_height(frame: Frame) -> float:
 
 def colours_of(frame: Frame, limits: Limits) -> tuple[dict, dict]:
     """Colour maps of pressure and values with their ends."""
-    of_values = FILM_COLOURS if frame.is_film else COLOURS
+    of_values = FILM_COLOURS if frame.is_film else OTHER_COLOURS
     return (
         dict(cmap=PRESSURE_COLOURS, vmin=0.0, vmax=limits.brightest),
         dict(cmap=of_values, vmin=limits.low, vmax=limits.high),
@@ -92,7 +92,7 @@ def colours_of(frame: Frame, limits: Limits) -> tuple[dict, dict]:
 
 def add_bars(figure: Figure, panels: Sequence[Axes], frame: Frame, limits: Limits) -> None:
     """Add bars of the colours above the maps."""
-    labels, extends = (PRESSURE, frame.label), ("max", "max" if frame.is_film else "neither")
+    labels, extends = (PRESSURE_LABEL, frame.label), ("max", "max" if frame.is_film else "neither")
     for panel, colours, label, extend in zip(panels, colours_of(frame, limits), labels, extends, strict=True):
         shown = ScalarMappable(Normalize(colours["vmin"], colours["vmax"]), colours["cmap"])
         figure.colorbar(shown, ax=panel, label=label, location="top", extend=extend, aspect=30)
@@ -120,7 +120,7 @@ def fill(panels: Sequence[Axes], choice: Choice, limits: Limits) -> None:
 
 def contact_handles(result: Result) -> list[Line2D]:
     """Squares for a legend of the nodes in contact, of a compliant layer of three shares of the pressure."""
-    square = dict(ls="", marker="s", ms=5, color=style.CONTACT, mec="0.5", mew=0.3)
+    square = dict(ls="", marker="s", ms=5, color=style.CONTACTS, mec="0.5", mew=0.3)
     if not has_layer(result):
         return [Line2D([], [], label="in contact", **square)]
     return [
@@ -223,7 +223,7 @@ def draw_fringes(results: list[Result], options: argparse.Namespace) -> Figure:
         shades = dict(cmap="gray", vmin=0.0, vmax=1.0, interpolation="antialiased")
         draw_map(column[0], x, y, colours(film, n), **shades)
         column[0].set_xlabel(choice.along)
-        outline(column[0], frame.half_widths, style.CONTACT)
+        outline(column[0], frame.half_widths, style.CONTACTS)
         lengths = ", ".join(f"{1e9 * WAVELENGTHS[name]:.0f}" for name in names)
         column[0].set_title(f"{word} {lengths} nm", fontsize="small")
         draw_chart(column[1], colours, n, frame)

@@ -33,7 +33,7 @@ MAX_SOUGHT = 3  # shares
 PAIRS = 3, 2  # of samples, whose planes of maximum shear are tried: far ones, those of extreme shear
 FIRST_PAIRS, FIRST_SHARE = (2, 0), 0.2  # for all points; share of the worst by them, for which all are tried
 MIN_ANGLE_STEP = pi / 180 * 0.9  # rad; 1 - cos(2 x 0.9 degrees) is 0.05 % of a stress range
-ROUNDING = 1e-9  # of a bound
+BOUND_ROUNDING = 1e-9  # of a bound
 NEGLIGIBLE_RANGE = 0.2  # of the widest: smaller cycles, which the search ignores, have < 1e-7 of its damage
 
 
@@ -66,7 +66,7 @@ def _bound(width: float, way: float, highest: float, law: tuple) -> float:
     Ranges of the cycles sum up to half the path, and damage rises faster than the range.
     """
     cycles = max(0.5 * way / width, 1.0) if width > 0.0 else 1.0
-    return (1 + ROUNDING) * (cycles * cycle_damage(width, highest, law))
+    return (1 + BOUND_ROUNDING) * (cycles * cycle_damage(width, highest, law))
 
 
 @compiled(error_model="python", nogil=True)

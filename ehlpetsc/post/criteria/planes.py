@@ -38,6 +38,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import PostError
+from ehlpetsc.base.materials import PLASTIC_STRAIN
 from ehlpetsc.post.fatigue.strain_life import Material, interpolate
 
 JACOBI_SWEEPS = 4
@@ -146,9 +147,6 @@ def shear_planes(stress: np.ndarray, begin: int, end: int, angles: np.ndarray) -
         along = cos(theta) * tz - sin(theta) * tx
         across = cos(phi) * ty - sin(phi) * (cos(theta) * tx + sin(theta) * tz)
         angles[turn] = theta, phi, atan2(across, along)
-
-
-PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 
 
 @dataclass(frozen=True)

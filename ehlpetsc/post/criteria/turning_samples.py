@@ -15,7 +15,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
 
-TOLERANCE = 0.02  # of the widest of the three axes
+AXIS_TOLERANCE = 0.02  # of the widest of the three axes
 
 
 def _directions(axes: int) -> np.ndarray:
@@ -76,7 +76,7 @@ def turning_samples(points: np.ndarray, size: int, indices: np.ndarray) -> int:
     extent = 0.0
     for k in range(points.shape[0]):
         extent = max(extent, points[k, :size].max() - points[k, :size].min())
-    tolerance = TOLERANCE * extent
+    tolerance = AXIS_TOLERANCE * extent
     is_kept = np.zeros(size, np.bool_)
     is_kept[0] = is_kept[size - 1] = True
     directions = DIRECTIONS if points.shape[0] == 3 else DIRECTIONS_OF_SIX

@@ -53,7 +53,6 @@ def walker(width: float, mean: float, tensile_strength: float, exponent: float) 
 
 
 CORRECTIONS = {"goodman": goodman, "gerber": gerber, "swt": swt, "walker": walker}
-MEAN_STRESSES = ("none", "morrow", *CORRECTIONS)
 
 
 @compiled(error_model="python", nogil=True)

@@ -92,8 +92,8 @@ def log_local_range(
     return y, 2 / slope
 
 
-MAX_EXPONENT = 700.0  # exp of more overflows
-MIN_HARDNESS = 50.0  # HB, of estimates: the softest steels
+EXP_LIMIT = 700.0  # exp of more overflows
+MIN_BRINELL = 50.0  # HB, of estimates: the softest steels
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ class Material:
     def mean_stress_constants(self) -> tuple[float, float]:
         """Tensile strength [Pa] and Walker's exponent, estimated unless given (see `mean_stress`)."""
         hardness = max(self.fatigue_strength / 1e6 - 225, 0.0) / 4.25
-        tensile = self.tensile_strength or 3.45e6 * max(hardness, MIN_HARDNESS)
+        tensile = self.tensile_strength or 3.45e6 * max(hardness, MIN_BRINELL)
         estimate = min(max(0.8818 - 0.0002e-6 * tensile, 0.0), 1.0)
         return tensile, estimate if self.walker_exponent is None else self.walker_exponent
 
@@ -167,7 +167,7 @@ def cycle_damage(dsv: float, mean: float, rule: int, constants: tuple) -> float:
     if dsv == inf:
         return inf
     amplitude, _ = log_amplitude(2 * log(dsv), rule, modulus, hardening, exponent)
-    return exp(min(log_damage(amplitude, modulus, strength - mean, ductility, b, c)[0], MAX_EXPONENT))
+    return exp(min(log_damage(amplitude, modulus, strength - mean, ductility, b, c)[0], EXP_LIMIT))
 
 
 def cycles_to_failure(
@@ -262,4 +262,4 @@ def interpolate(logarithm: float, table: np.ndarray) -> float:
 @compiled(error_model="python", nogil=True)
 def look_up(squared: float, table: np.ndarray) -> float:
     """1/N at the square of a stress range > 0."""
-    return exp(min(interpolate(log(squared), table), MAX_EXPONENT))
+    return exp(min(interpolate(log(squared), table), EXP_LIMIT))

@@ -22,8 +22,8 @@ from ehlpetsc.post.stresses.body_stress import (
 )
 from ehlpetsc.post.stresses.half_space import (
     COMPONENTS,
-    IMAGES,
-    LOADS,
+    N_LOADS,
+    SUMMED_IMAGES,
     fading,
     hat_kernels,
     padded_shape,
@@ -34,7 +34,7 @@ ORDER = [0, 2, 5, 1, 3, 4]  # of the components in histories
 IS_EVEN_ACROSS = np.array([True, True, True, True, False, False])  # in this order, of both loads
 IS_EVEN_ALONG = np.array([[1, 1, 0, 1, 0, 1], [0, 0, 1, 0, 1, 0]], bool)  # under pressure, under traction
 NEAR_ELEMENTS = 8  # beyond, a kernel is smooth over an element
-REACH = 4  # nodes either side whose hats replace the cubic of a node far away
+HAT_REACH = 4  # nodes either side whose hats replace the cubic of a node far away
 ROWS_AT_ONCE = 32
 
 
@@ -50,20 +50,20 @@ def _near(distance: np.ndarray, y: np.ndarray, z: float, nu: float, offset: floa
 
 def _far_weights(offset: float) -> np.ndarray:
     """Weights (2 shapes, 9) of hats on neighbouring nodes with the moments of the cubics up to the eighth."""
-    order = np.arange(2 * REACH + 1)
+    order = np.arange(2 * HAT_REACH + 1)
     t, weights = np.polynomial.legendre.leggauss(8)
     t, weights = np.append(t - 1, t + 1) / 2, np.tile(weights / 2, 2)
     moments = (hermite_shapes(t) * weights) @ (t - offset)[:, None] ** order
-    at = order[:, None] - REACH + t
+    at = order[:, None] - HAT_REACH + t
     of_hats = np.einsum("jtn,t->nj", at[..., None] ** order, weights * (1 - np.abs(t)))
     return np.linalg.solve(of_hats, moments.T).T
 
 
 def _far(hats: np.ndarray, offset: float) -> np.ndarray:
-    """As `_near` where kernels are smooth over an element, from those of hats at the nodes, `REACH` more
+    """As `_near` where kernels are smooth over an element, from those of hats at the nodes, `HAT_REACH` more
     at each end.
     """
-    windows = sliding_window_view(hats, 2 * REACH + 1, axis=-1)
+    windows = sliding_window_view(hats, 2 * HAT_REACH + 1, axis=-1)
     return np.moveaxis(windows @ _far_weights(offset)[:, ::-1].T, -1, 0)
 
 
@@ -82,9 +82,9 @@ def _add_rows(out: np.ndarray, block: np.ndarray, first: int, period: int) -> No
 
 def hat_sums(ny: int, nx: int, width: float, z: float, nu: float, periodic: bool) -> np.ndarray:
     """Kernels (2, 6, rows, 2 nx + 2 REACH) of hats at the nodes, summed over the images of a period."""
-    count, rows = ((IMAGES + 1) * ny, ny) if periodic else (ny, 2 * ny - 1)
-    distance = np.arange(-nx - REACH, nx + REACH, dtype=float)
-    sums = np.zeros((LOADS, COMPONENTS, rows, distance.size))
+    count, rows = ((SUMMED_IMAGES + 1) * ny, ny) if periodic else (ny, 2 * ny - 1)
+    distance = np.arange(-nx - HAT_REACH, nx + HAT_REACH, dtype=float)
+    sums = np.zeros((N_LOADS, COMPONENTS, rows, distance.size))
     for first in range(0, count, ROWS_AT_ONCE):
         hats = hat_kernels(distance, width * np.arange(first, first + ROWS_AT_ONCE), z, nu)[:, ORDER]
         _add_rows(sums, hats[..., : count - first, :], first, ny if periodic else 0)
@@ -98,11 +98,11 @@ def offset_spectra(
 
     `sums`: of :func:`hat_sums`.
     """
-    rows, nx = sums.shape[-2], sums.shape[-1] // 2 - REACH
+    rows, nx = sums.shape[-2], sums.shape[-1] // 2 - HAT_REACH
     kernels = _far(sums, offset)
     if z < NEAR_ELEMENTS:
         y, reach = width * np.arange(int(NEAR_ELEMENTS / width) + 2), min(NEAR_ELEMENTS, nx - 1)
-        hats = hat_kernels(np.arange(-reach - REACH, reach + REACH + 1.0), y, z, nu)
+        hats = hat_kernels(np.arange(-reach - HAT_REACH, reach + HAT_REACH + 1.0), y, z, nu)
         refined = _near(np.arange(-reach, reach + 1), y, z, nu, offset) - _far(hats, offset)
         refined = refined[:, :, ORDER, : None if periodic else ny]
         _add_rows(kernels[..., nx - reach : nx + reach + 1], refined, 0, ny if periodic else 0)
@@ -131,7 +131,7 @@ def kernel_table(ny: int, nx: int, width: float, depth: float, nu: float, period
     signs = np.where(IS_EVEN_ALONG == IS_EVEN_ACROSS, 1, -1) * np.array([1, -1])[:, None, None]
     turn = signs[..., None, None] * np.exp(1j * along)
     shape = factor[kept].shape
-    table = np.empty((shape[0], LOADS * LOADS * COMPONENTS, OFFSETS.size, 2, shape[1]))
+    table = np.empty((shape[0], N_LOADS * N_LOADS * COMPONENTS, OFFSETS.size, 2, shape[1]))
     sums = hat_sums(ny, nx, width, depth, nu, periodic)
     for k in range(OFFSETS.size // 2):
         left = factor * offset_spectra(sums, ny, width, depth, nu, OFFSETS[k], periodic)
@@ -199,8 +199,8 @@ class BlockStress:
         loads = np.empty((len(pressure), 4, *pressure.shape[1:]))
         loads[:, 0], loads[:, 1] = pressure, shear
         for frame in loads:
-            for k in range(LOADS):
-                limited_slopes(frame[k], frame[k + LOADS])
+            for k in range(N_LOADS):
+                limited_slopes(frame[k], frame[k + N_LOADS])
         rows, columns = self.shape
         return fft.fft(fft.rfft(loads, columns), rows, axis=-2, overwrite_x=True)
 

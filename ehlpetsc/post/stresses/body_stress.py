@@ -28,9 +28,9 @@ from scipy.interpolate import BarycentricInterpolator
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.half_plane import hat, padded_length, point_kernels
 
-NEAR_ELEMENTS = 24  # beyond, a kernel is smooth over an element and quadrature is exact
+MAX_CLOSED_FORM = 24  # beyond, a kernel is smooth over an element and quadrature is exact
 HATS_PER_ELEMENT = 64  # approximate the cubics of near elements to 2e-4 of a one-node peak
-GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
+CUBIC_NODES, CUBIC_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 @compiled(error_model="python", nogil=True)
@@ -80,9 +80,9 @@ def _near(u: np.ndarray, z: float) -> np.ndarray:
 
 
 def _far(u: np.ndarray, z: float) -> np.ndarray:
-    half = (GAUSS_NODES + 1) / 2
+    half = (CUBIC_NODES + 1) / 2
     t = np.concatenate([-half, half])
-    return point_kernels(u[:, None] - t, z) @ (np.tile(GAUSS_WEIGHTS / 2, 2) * hermite_shapes(t)).T
+    return point_kernels(u[:, None] - t, z) @ (np.tile(CUBIC_WEIGHTS / 2, 2) * hermite_shapes(t)).T
 
 
 def hermite_kernels(nx: int, z: float, offset: float) -> np.ndarray:
@@ -92,7 +92,7 @@ def hermite_kernels(nx: int, z: float, offset: float) -> np.ndarray:
     values and under slopes, at distances -nx .. nx - 1, negative ones at the end.
     """
     distance = np.arange(-nx, nx)
-    near = np.abs(distance) <= NEAR_ELEMENTS
+    near = np.abs(distance) <= MAX_CLOSED_FORM
     kernels = np.zeros((2, 4, padded_length(nx)))
     for chosen, integrals in ((distance[near], _near), (distance[~near], _far)):
         kernels[:, :, chosen] = -2 / np.pi * np.moveaxis(integrals(chosen + offset, z), -1, 0)
@@ -111,7 +111,7 @@ QUANTA = {"float32": 2.0**-24, "float64": 2.0**-40}
 MAX_KZ = 21.0  # wave number times depth; exp(-21) is 1e-9
 TAPER_WIDTH = 0.45  # 1/element: wave numbers beyond the cut-off over which the spectrum falls to zero
 OFFSETS = (1 - np.cos(np.pi * np.arange(6) / 5)) / 2  # Chebyshev points, in elements
-PARITY = np.array([1, -1, 1, -1, -1, 1, -1, 1])[:, None]  # of the kernels under values, then slopes
+HERMITE_PARITY = np.array([1, -1, 1, -1, -1, 1, -1, 1])[:, None]  # of the kernels under values, then slopes
 
 
 def offset_weights(offset: np.ndarray) -> np.ndarray:
@@ -140,7 +140,7 @@ def kernel_table(nx: int, depth: float) -> np.ndarray:
     factor = low_pass(2 * np.pi / n * np.arange(n // 2 + 1), depth)
     left = np.stack([hermite_spectra(nx, depth, offset) for offset in OFFSETS[:3]])
     shift = np.exp(2j * np.pi / n * np.arange(factor.size))  # by an element: mirrored offsets
-    spectra = np.concatenate([left, PARITY * shift * left[::-1].conj()]) * factor
+    spectra = np.concatenate([left, HERMITE_PARITY * shift * left[::-1].conj()]) * factor
     return np.ascontiguousarray(np.moveaxis(spectra[..., : np.count_nonzero(factor)], -1, 0))
 
 

@@ -79,14 +79,14 @@ def hat(u: np.ndarray, z: float) -> np.ndarray:
     return half_hat(u, z) + PARITY * half_hat(-u, z)
 
 
-SPACING_TOLERANCE = 1e-6  # relative, of stored positions
+STORED_TOLERANCE = 1e-6  # relative, of stored positions
 
 
 def spacing(x: np.ndarray) -> float:
     """Spacing of nodes; ValueError for fewer than two nodes or if they are not uniform and increasing."""
     x = np.asarray(x, float)
     dx = (x[-1] - x[0]) / (x.size - 1) if x.ndim == 1 and x.size > 1 else 0.0
-    if not (dx > 0 and np.allclose(np.diff(x), dx, SPACING_TOLERANCE, 8 * np.spacing(np.abs(x).max()))):
+    if not (dx > 0 and np.allclose(np.diff(x), dx, STORED_TOLERANCE, 8 * np.spacing(np.abs(x).max()))):
         raise ValueError("x must be a row of at least two nodes, uniformly spaced and increasing")
     return dx
 

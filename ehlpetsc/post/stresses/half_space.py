@@ -32,10 +32,10 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.half_plane import hat, spacing
 
 COMPONENTS = 6
-LOADS = 2
-TINY = 1e-100  # distance from a singular line; the factor of the logarithm is zero there
+N_LOADS = 2
+MIN_DISTANCE = 1e-100  # distance from a singular line; the factor of the logarithm is zero there
 # Images of a periodic load, in periods: their sum fades out smoothly, so that it is exact but for the mean
-FADE, FADE_WIDTH, IMAGES = 4.5, 1.2, 9
+FADE, FADE_WIDTH, SUMMED_IMAGES = 4.5, 1.2, 9
 
 
 class StressTensor(NamedTuple):
@@ -54,10 +54,10 @@ def _integrate(x: float, y: float, z: float, nu: float, out: np.ndarray) -> None
     """Set out (2, 6) to the functions F of the kernels of pressure and traction, times 2 pi."""
     xx, yy, zz = x * x, y * y, z * z
     r = sqrt(xx + yy + zz)
-    log_x = asinh(x / max(sqrt(yy + zz), TINY))
-    log_y = asinh(y / max(sqrt(xx + zz), TINY))
-    log_z = log(max(r + z, TINY))
-    angle_z, turned = atan2(x * y, z * r), x * y * (xx + yy) / max(r + z, TINY)
+    log_x = asinh(x / max(sqrt(yy + zz), MIN_DISTANCE))
+    log_y = asinh(y / max(sqrt(xx + zz), MIN_DISTANCE))
+    log_z = log(max(r + z, MIN_DISTANCE))
+    angle_z, turned = atan2(x * y, z * r), x * y * (xx + yy) / max(r + z, MIN_DISTANCE)
     angle_x, angle_y = atan2(turned, xx * r + yy * z), atan2(turned, yy * r + xx * z)
     v_xx, v_yy = y * log_y - r, x * log_x - r
     v_xy = x * log_y + y * log_x - z * angle_z
@@ -120,7 +120,7 @@ def hat_kernels(x: np.ndarray, y: np.ndarray, z: float, nu: float) -> np.ndarray
     def corners(at: np.ndarray) -> np.ndarray:
         return np.concatenate([at[:1] - (at[1] - at[0]), at, at[-1:] + (at[1] - at[0])])
 
-    out = np.empty((LOADS, COMPONENTS, y.size, x.size))
+    out = np.empty((N_LOADS, COMPONENTS, y.size, x.size))
     _fill(corners(x), corners(y), float(z), nu, out)
     return out
 
@@ -151,10 +151,10 @@ def sum_images(kernels: np.ndarray, mean: np.ndarray) -> np.ndarray:
     middle; `mean` (2, 6, ...) is their sum over y, which converges too slowly.
     """
     total = kernels.shape[2]
-    ny = total // (2 * IMAGES + 1)
-    periods = np.abs(np.arange(total) - IMAGES * ny - ny // 2) / ny
+    ny = total // (2 * SUMMED_IMAGES + 1)
+    periods = np.abs(np.arange(total) - SUMMED_IMAGES * ny - ny // 2) / ny
     faded = fading(periods)
-    shape = *kernels.shape[:2], 2 * IMAGES + 1, ny, *kernels.shape[3:]
+    shape = *kernels.shape[:2], 2 * SUMMED_IMAGES + 1, ny, *kernels.shape[3:]
     one = np.einsum("lcijx,ij->lcjx", kernels.reshape(shape), faded.reshape(-1, ny))
     return one + ((mean - one.sum(axis=2)) / ny)[:, :, None]
 
@@ -162,7 +162,7 @@ def sum_images(kernels: np.ndarray, mean: np.ndarray) -> np.ndarray:
 def rows_across(ny: int, periodic: bool) -> np.ndarray:
     """Distances of rows in cells, ascending, whose kernels a load of ny rows needs."""
     if periodic:
-        return np.arange(-IMAGES * ny - ny // 2, (IMAGES + 1) * ny - ny // 2, dtype=float)
+        return np.arange(-SUMMED_IMAGES * ny - ny // 2, (SUMMED_IMAGES + 1) * ny - ny // 2, dtype=float)
     return np.arange(1.0 - ny, ny)
 
 
@@ -179,7 +179,7 @@ def _kernels(ny: int, nx: int, width: float, z: float, nu: float, periodic: bool
     if periodic:
         kernels = sum_images(kernels, plane_strain(-2 / np.pi * hat(distance, z), nu))
         rows = np.arange(ny) - ny // 2
-    out = np.zeros((LOADS, COMPONENTS, *padded_shape(ny, nx, periodic)))
+    out = np.zeros((N_LOADS, COMPONENTS, *padded_shape(ny, nx, periodic)))
     out[:, :, rows.astype(int)[:, None], distance.astype(int)] = kernels
     return out
 
@@ -219,6 +219,6 @@ def stress_plane(
     layers = []
     for depth in np.atleast_1d(z) / dx:
         spectra = fft.rfft2(_kernels(ny, nx, spacing(y) / dx, depth, poisson_ratio, periodic))
-        spectra = spectra.reshape(LOADS, COMPONENTS, *(1,) * (pressure.ndim - 2), *spectra.shape[-2:])
+        spectra = spectra.reshape(N_LOADS, COMPONENTS, *(1,) * (pressure.ndim - 2), *spectra.shape[-2:])
         layers.append(fft.irfft2((spectra * loads).sum(axis=0), shape)[..., :ny, :nx])
     return StressTensor(*(np.stack(layers, axis=-3) if z.ndim else layers[0]))

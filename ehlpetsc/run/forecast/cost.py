@@ -37,8 +37,8 @@ class Speed(NamedTuple):
     start: float
 
 
-LINE = Speed(2.4e-3, 1.5e-6, 3.6e-3, smooth=1.6, film=2.5, mixed=4.5, start=20.0)
-PLANE = Speed(0.0, 2.4e-6, 0.015, smooth=2.5, film=3.75, mixed=10.0, start=25.0)
+LINE_SPEED = Speed(2.4e-3, 1.5e-6, 3.6e-3, smooth=1.6, film=2.5, mixed=4.5, start=20.0)
+PLANE_SPEED = Speed(0.0, 2.4e-6, 0.015, smooth=2.5, film=3.75, mixed=10.0, start=25.0)
 START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 POINT_MEMORY = 70  # of a measured map, while it is read, for each point [bytes]
 COMPRESSED = 0.6  # of the size of the fields
@@ -52,7 +52,7 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
 
 def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Wall clock time of the steps [s]."""
-    speed = PLANE if KINDS[case.kind].is_areal else LINE
+    speed = PLANE_SPEED if KINDS[case.kind].is_areal else LINE_SPEED
     count, passes = (steps(case, s), case.time.passes) if case.time else (0, 1)
     each = speed.iteration + speed.node * s.grid.n
     return passes * (iterations(case, s, rough, speed) * each + count * speed.step)
@@ -65,7 +65,7 @@ def memory(s: Scales, rough: Roughness | None) -> float:
     return START_MEMORY + NODE_MEMORY * s.grid.n + POINT_MEMORY * points
 
 
-def iterations(case: Case, s: Scales, rough: Roughness | None, speed: Speed = LINE) -> float:
+def iterations(case: Case, s: Scales, rough: Roughness | None, speed: Speed = LINE_SPEED) -> float:
     """Expected Newton iterations of a pass."""
     fraction = _rough_fraction(case, s, rough)
     is_mixed = bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)

@@ -13,7 +13,7 @@ import numpy as np
 from ehlpetsc.base.quantities import MIN_CONTINUUM_FILM, STEP_SCALARS, unit_in
 from ehlpetsc.case.checking import attribute
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.oil.laws import TABLES, names_in_use, reference_temperature, viscosity
+from ehlpetsc.physics.oil.laws import LAW_TABLES, names_in_use, reference_temperature, viscosity
 from ehlpetsc.physics.oil.oils import OIL_SHEAR, OILS
 from ehlpetsc.physics.oil.rheology import shear_law
 from ehlpetsc.run.forecast.domain import domain_warnings, rolling_warnings, strip_warnings
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.motion.roughness import Roughness
 
-LOW_PRESSURE, HIGH_PRESSURE = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
+MIN_HERTZ, MAX_HERTZ = 0.1e9, 10e9  # Pa: Hertz pressures of EHL contacts, with a margin
 MAX_EHL_FILM = 0.1  # half-widths: films of EHL contacts are at most a hundredth of a half-width
 MAX_TILT_VARIANCE = 0.5  # of the height variance: a profile with more in a straight line counts as tilted
 MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
@@ -68,10 +68,10 @@ def _scene_warnings(case: Case, scales: Scales) -> Iterator[str]:
             f"{' and '.join(rough)} with [motion] but without [time]: "
             "the roughness is held still under the film; add [time] to let it move"
         )
-    if not LOW_PRESSURE <= scales.p0 <= HIGH_PRESSURE:
+    if not MIN_HERTZ <= scales.p0 <= MAX_HERTZ:
         yield (
             f"Hertz' pressure p0 = {1e-9 * scales.p0:.3g} GPa: EHL contacts have "
-            f"{1e-9 * LOW_PRESSURE:g} to {1e-9 * HIGH_PRESSURE:g} GPa; "
+            f"{1e-9 * MIN_HERTZ:g} to {1e-9 * MAX_HERTZ:g} GPa; "
             f"radius = {scales.R:g} m, load = {scales.load:g} {load_unit(case)}?"
         )
     film = expected_film(case, scales) * scales.h if case.fluid else 0.0
@@ -112,9 +112,9 @@ def _oil_warnings(case: Case) -> Iterator[str]:
                 f'fluid.oil = "{fluid.oil}": '
                 f"it is constant, and that grows by {1e9 * rise:.3g} of itself per GPa"
             )
-    of_laws = {name: key for laws in TABLES for law in laws.values() for name, key in law.keys.items()}
+    of_laws = {name: key for laws in LAW_TABLES for law in laws.values() for name, key in law.keys.items()}
     given = {name for name, key in of_laws.items() if getattr(fluid, attribute(name)) != key.default}
-    in_use = [laws[name] for laws, name in zip(TABLES, names_in_use(fluid), strict=True)]
+    in_use = [laws[name] for laws, name in zip(LAW_TABLES, names_in_use(fluid), strict=True)]
     unused = sorted(f"fluid.{name}" for name in given.difference(*(law.keys for law in in_use)))
     if unused:
         yield f'{", ".join(unused)}: not used by law = "{fluid.law}", density = "{fluid.density}"'

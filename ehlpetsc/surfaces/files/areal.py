@@ -15,17 +15,16 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.files.profiles import (
     KEYS_OF_TEXT,
     MAX_ABSCISSA,
-    TEXT,
+    TEXT_ENDINGS,
     UNITS,
     Layout,
     by_package,
     read_once,
 )
 from ehlpetsc.surfaces.files.text import text_columns
-from ehlpetsc.surfaces.files.text_maps import MIN_POINTS, in_metres, is_matrix, listed, with_axes
+from ehlpetsc.surfaces.files.text_maps import MIN_POINTS, MIN_PRESENT, in_metres, is_matrix, listed, with_axes
 from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
 
-MIN_PRESENT = 0.5  # of the heights of a map
 OF_PROFILES = {".smd"}  # besides text
 
 
@@ -46,7 +45,7 @@ class Map(NamedTuple):
 def is_map(path: str | PathLike, layout: Layout) -> bool:
     """Whether a file holds a map: by its suffix or, of text, by its numbers."""
     path = Path(path)
-    if path.suffix.lower() not in TEXT:
+    if path.suffix.lower() not in TEXT_ENDINGS:
         return path.suffix.lower() not in OF_PROFILES
     if not path.is_file():
         return False
@@ -61,7 +60,7 @@ def read_map(path: Path, layout: Layout) -> Map:
     Text: a matrix, one line a row along x, in the layouts of profile files. ``.npy``: a matrix. Other formats
     by the packages named in `READERS`, if they are installed.
     """
-    is_matrix = path.suffix.lower() in TEXT | {".npy"}
+    is_matrix = path.suffix.lower() in TEXT_ENDINGS | {".npy"}
     found = (_matrix if is_matrix else _instrument_file)(path, layout)
     if layout.mask:
         found = found._replace(z=_masked(found.z, path.parent / layout.mask))

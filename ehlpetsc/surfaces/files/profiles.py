@@ -15,7 +15,7 @@ from ehlpetsc.surfaces.files.text import UNITS, Layout, read_softgauge, text_col
 from ehlpetsc.surfaces.files.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 from ehlpetsc.surfaces.filters import groups, held, spikes, without_no_data
 
-TEXT = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
+TEXT_ENDINGS = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
 MIN_MEASURED_POINTS = 50  # profiles with fewer are made by hand, without missing points
 SPACING_VARIATION = 0.02  # relative, of equally spaced points
 MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
@@ -23,8 +23,8 @@ MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
 
 
 DETECTED = Layout()
-KEYS = tuple(Layout.__dataclass_fields__)
-KEYS_OF_TEXT = KEYS[: KEYS.index("fill_gaps")]
+LAYOUT_KEYS = tuple(Layout.__dataclass_fields__)
+KEYS_OF_TEXT = LAYOUT_KEYS[: LAYOUT_KEYS.index("fill_gaps")]
 
 
 R = TypeVar("R")
@@ -81,7 +81,7 @@ def read_profile(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray, tu
     processing of the numbers.
     """
     from_softgauge, text_keys = read_softgauge(path), [key for key in KEYS_OF_TEXT if getattr(layout, key)]
-    is_text = from_softgauge is None and path.suffix.lower() in TEXT
+    is_text = from_softgauge is None and path.suffix.lower() in TEXT_ENDINGS
     if text_keys and not is_text:
         raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
     read = from_softgauge or (

@@ -17,7 +17,7 @@ from ehlpetsc.surfaces.files.text import NUMBER, UNIT_OF_NAME, UNITS, Layout, un
 MIN_POINTS = 4  # along either side
 MIN_MATRIX_COLUMNS = 8  # of heights alike, where no spacing is stated
 LONG = 8  # points of a line that rises by chance in one of 20,000
-MIN_PRESENT = 0.5  # of the points of a grid in a list
+MIN_PRESENT = 0.5  # of the heights of a map, of the points of a grid in a list
 MAX_UNEVEN = 0.45  # steps, of positions, whose decimals are few, from equally spaced ones
 MAX_UNEVEN_OF_FEW = 0.02  # of fewer than `LONG`
 UNEVEN_RATIO, MIN_UNEVEN = 5.0, 0.05  # of heights beside positions: over the positions, and in steps
@@ -43,7 +43,7 @@ ENTRY = re.compile(
     rf"(\d+(?:[.,]\d*)?(?:e[+-]?\d+)?)\s*\"?\s*(?:[\[(]?({NAME})\b)?",
     re.IGNORECASE | re.MULTILINE,
 )  # name [unit] = number unit
-STEPS = {
+STEP_NAMES = {
     "step",
     "stepsize",
     "stepwidth",
@@ -53,8 +53,8 @@ STEPS = {
     "pixelwidth",
     "pixelspacing",
 }
-STEPS |= {"cellsize", "increment", "pitch", "d", "delta", "lateralresolution", "resolution", "sampling"}
-STEPS |= {"samplinginterval", "interval"}
+STEP_NAMES |= {"cellsize", "increment", "pitch", "d", "delta", "lateralresolution", "resolution", "sampling"}
+STEP_NAMES |= {"samplinginterval", "interval"}
 EXTENTS = {"": {"width": "x", "scanwidth": "x", "scansize": "x", "height": "y", "scanheight": "y"}}
 EXTENTS |= {axis: dict.fromkeys(("length", "range", "extent", "size", "width"), axis) for axis in "xy"}
 
@@ -206,11 +206,11 @@ def spacings_in(header: str, shape: tuple[int, ...], x_unit: str | None) -> dict
         words = re.findall("[a-z]+", re.sub("d([xy])", r"d \1", name.lower()))
         axes = [word for word in words if word in ("x", "y")]
         rest = "".join(word for word in words if word not in ("x", "y", "of", "in"))
-        unit = UNIT_OF_NAME.get((unit_before or unit_behind).lower(), x_unit if rest in STEPS else None)
+        unit = UNIT_OF_NAME.get((unit_before or unit_behind).lower(), x_unit if rest in STEP_NAMES else None)
         if unit is None or len(axes) > 1:
             continue
         value = UNITS[unit] * float(number.replace(",", "."))
-        if rest in STEPS:
+        if rest in STEP_NAMES:
             found |= dict.fromkeys(axes or ("x", "y"), value)
         elif axis := EXTENTS["".join(axes)].get(rest):
             found.setdefault(axis, value / shape[axis == "x"])
