@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
     from ehlpetsc.effects.effect import Scene, Step
     from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
-    from ehlpetsc.surfaces.motion.moving_surface import MovingSurface
+    from ehlpetsc.surfaces.motion.roughness import RoughSurface
 
 
 class DepthRecord(Protocol):
@@ -77,7 +77,7 @@ class BodyDepth(Effect[D]):
         return dict.fromkeys(self.surface, self.scene.mesh_on_bodies.at_points(record.depth, points))
 
 
-def _ahead(field: BodyField, profile: MovingSurface | None, faces: np.ndarray) -> BodyField:
+def _ahead(field: BodyField, profile: RoughSurface | None, faces: np.ndarray) -> BodyField:
     """Depth ahead of a profile, in excess of that of its row, the minimum in the mesh at the start."""
     if profile is None or not profile.is_moving or not profile.body_offset or not field.cells:
         return field._replace(first=0, depth=field.depth[..., :0])

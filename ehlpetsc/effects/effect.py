@@ -63,7 +63,7 @@ class Scene:
     def mesh_on_bodies(self) -> MeshOnBodies:
         """Cells of the mesh in both bodies, `surfaces.motion.body_field.MeshOnBodies`."""
         from ehlpetsc.surfaces.motion.body_field import MeshOnBodies
-        from ehlpetsc.surfaces.motion.moving_surface import directed_speeds
+        from ehlpetsc.surfaces.motion.roughness import directed_speeds
 
         pairs = zip(self.begin, directed_speeds(self.case, self.scales), strict=True)
         return MeshOnBodies(self.scales, [-begin if speed > 0.0 else begin for begin, speed in pairs])

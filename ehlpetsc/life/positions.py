@@ -22,7 +22,7 @@ from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.motion.body_field import BodyFields
-from ehlpetsc.surfaces.motion.moving_surface import directed_speeds
+from ehlpetsc.surfaces.motion.roughness import directed_speeds
 
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
 FLANK_END_LENGTH = 1.0  # half-widths at either end of a flank whose mean wear is that of the points beyond

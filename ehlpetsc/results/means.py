@@ -95,7 +95,7 @@ def bootstrap_bounds(values: np.ndarray) -> tuple[float, float]:
 
 def _filled_by(result: Result, side: str) -> float:
     """Time [s] from which the roughness of one surface fills the contact."""
-    from ehlpetsc.surfaces.motion.moving_surface import RAMP_LENGTH
+    from ehlpetsc.surfaces.motion.roughness import RAMP_LENGTH
     from ehlpetsc.surfaces.synthetic import SINGLE_FEATURES, bump_centre
 
     profile, speed = result.profile(side), result.attrs[f"u{side}"]

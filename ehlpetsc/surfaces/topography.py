@@ -11,9 +11,9 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.continued_spline import Continuation, ContinuedSpline
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE
-from ehlpetsc.surfaces.motion.moving_surface import WAVE_NODES
 from ehlpetsc.surfaces.parameters import areal_parameters, moments, rms_gradient
 
+WAVE_NODES = 4  # nodes per wavelength below which a wave is not resolved
 RIDGE_ROWS = 4  # of a map of ridges, for its parameters
 BLOCK_COLUMNS = 256  # columns whose splines across are in memory at a time
 MIN_CORRELATION = 0.5  # of two maps for a difference: less is chance

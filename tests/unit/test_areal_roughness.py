@@ -10,9 +10,8 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.continued_spline import ContinuedSpline
-from ehlpetsc.surfaces.motion.moving_surface import Passage
 from ehlpetsc.surfaces.motion.profile_checks import absurd
-from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
+from ehlpetsc.surfaces.motion.roughness import Passage, Roughness, RoughSurface
 from ehlpetsc.surfaces.samples import areal_samples
 from ehlpetsc.surfaces.topography import Topography
 

@@ -15,11 +15,11 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.line.curvature_product import BLOCK
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
+from ehlpetsc.nonlinear.line.exchange import LINEAR_TOLERANCE, collective
 from ehlpetsc.nonlinear.line.gmres import MAX_IT, orthonormalise
 from ehlpetsc.nonlinear.line.jacobian import PIVOT_REGULARISATION, JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.system import line_system
 from ehlpetsc.nonlinear.newton import NewtonSolver
-from ehlpetsc.nonlinear.ranks import LINEAR_TOLERANCE, collective
 from ehlpetsc.nonlinear.two_fields import python_matrix
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales

@@ -15,9 +15,8 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.friction_curves import time_statistics
 from ehlpetsc.results.means import both_fill, filled_from, means, pass_summary
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.surfaces.motion.moving_surface import RAMP_LENGTH
 from ehlpetsc.surfaces.motion.profile_checks import entry_times
-from ehlpetsc.surfaces.motion.roughness import Roughness
+from ehlpetsc.surfaces.motion.roughness import RAMP_LENGTH, Roughness
 
 CONTACT = {"radius": 0.0191, "load": 527e3, "youngs_modulus": [207e9] * 2, "poisson_ratio": [0.3] * 2}
 CASE = {

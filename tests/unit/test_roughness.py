@@ -15,9 +15,8 @@ from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.files.profiles import read_profile
 from ehlpetsc.surfaces.filters import levelled, mean_line
-from ehlpetsc.surfaces.motion.moving_surface import RAMP_LENGTH, Passage, directed_speeds
 from ehlpetsc.surfaces.motion.profile_checks import entry_times, mesh_warnings
-from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
+from ehlpetsc.surfaces.motion.roughness import RAMP_LENGTH, Passage, Roughness, RoughSurface, directed_speeds
 from ehlpetsc.surfaces.samples import samples
 from ehlpetsc.surfaces.topography import Topography
 

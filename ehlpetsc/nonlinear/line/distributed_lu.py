@@ -36,8 +36,9 @@ from ehlpetsc.nonlinear.line.block_lu import (
     backward_transposed,
     forward,
 )
+from ehlpetsc.nonlinear.line.exchange import collective, exchange
 from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
-from ehlpetsc.nonlinear.ranks import all_ranks, collective, exchange
+from ehlpetsc.nonlinear.ranks import all_ranks
 
 CLOSE = 0.1  # of a Reynolds row's largest entry: smaller changes cost a fraction of a Krylov iteration
 
@@ -50,7 +51,7 @@ class DistributedLU:
 
     `factors`: from the first factorisation on, for compiled solves:
 
-        * place: :func:`.ranks.collective`, the rank, and whether it is the first or the last one of several;
+        * place: :func:`.exchange.collective`, the rank, whether it is the first or the last of several;
         * factors of a `BlockLU`;
         * cuts: numbers of the unknowns at the cuts that other ranks take; dense rows (BORDER, size); columns
           G, or of an outer rank W, shape (unknowns taken of others, width), under the last `width` unknowns;

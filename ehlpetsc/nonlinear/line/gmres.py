@@ -22,8 +22,8 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.nonlinear.line.distributed_lu import solve
+from ehlpetsc.nonlinear.line.exchange import exchange
 from ehlpetsc.nonlinear.line.jacobian import jacobian_product
-from ehlpetsc.nonlinear.ranks import exchange
 
 MAX_IT = 100  # of a solve
 CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences is right to as many digits
@@ -72,7 +72,7 @@ def iterations(
     `state`, `work`: as of :func:`.jacobian.jacobian_product`.
     `buffers`, `matrices`, `pressures`: of a `Halo`.
     `place`, `lu`, `cuts`, `border`, `room`: `factors` of a `DistributedLU`; one by one, see
-        :func:`.ranks.collective`.
+        :func:`.exchange.collective`.
     `limits`: iterations, relative and absolute tolerance, divergence tolerance.
 
     Returns the norms of the residual, from that of the right-hand side on.

@@ -26,7 +26,7 @@ from ehlpetsc.discretisation.unknowns import (
     w_index,
     w_of,
 )
-from ehlpetsc.nonlinear.ranks import Halo, exchange_unknowns
+from ehlpetsc.nonlinear.line.exchange import Halo, exchange_unknowns
 from ehlpetsc.nonlinear.two_fields import Jacobian
 
 PIVOT_REGULARISATION = 1e-3  # in place of dp/dq at cavitated nodes, in preconditioners alone

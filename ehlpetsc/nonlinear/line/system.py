@@ -10,9 +10,9 @@ from petsc4py import PETSc
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
 from ehlpetsc.discretisation.line.deflection import Deflection
 from ehlpetsc.discretisation.unknowns import Share
+from ehlpetsc.nonlinear.line.exchange import LineExchange, first_nodes
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.preconditioner import Factors, FarFieldBand
-from ehlpetsc.nonlinear.ranks import LineExchange, first_nodes
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.surfaces.motion.moving_surface import WAVE_NODES
+from ehlpetsc.surfaces.topography import WAVE_NODES
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
