@@ -13,9 +13,18 @@ from typing import TYPE_CHECKING, Any, cast
 from ehlpetsc.base.case import KINDS, kind_of
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
-from ehlpetsc.base.toml_file import Tables, parse_toml, plain, read_text
+from ehlpetsc.base.toml_file import (
+    Tables,
+    keys_of,
+    member_tables,
+    parse_toml,
+    parsed,
+    plain,
+    put,
+    read_text,
+    settings_of,
+)
 from ehlpetsc.case.checking import Fault, check, in_kind, in_si, unsound_tables
-from ehlpetsc.case.combinations import keys_of, member_tables, parsed, put, settings_of
 from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
 from ehlpetsc.case.derived import (
     rating_of,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError, OutputError, Stopped
-from ehlpetsc.case.combinations import settings_of
+from ehlpetsc.base.toml_file import settings_of
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.results.index import Index, read_index
 from ehlpetsc.results.means import bootstrap_bounds

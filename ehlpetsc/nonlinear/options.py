@@ -31,7 +31,7 @@ DEFAULTS = {
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {
     "pc_type": "python",
-    "pc_python_type": "ehlpetsc.nonlinear.line.preconditioner.FarFieldBand",
+    "pc_python_type": "ehlpetsc.nonlinear.line.system.FarFieldBand",
 }
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.line.gmres.FlexibleGMRES"}
 # of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its

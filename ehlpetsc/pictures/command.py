@@ -25,10 +25,9 @@ from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case
 from ehlpetsc.pictures.frames import choice as frames
 from ehlpetsc.pictures.frames.data import described
-from ehlpetsc.pictures.frames.over_time import draw_courses, draw_map, draw_temperatures
-from ehlpetsc.pictures.friction_curves import draw_stribeck, draw_traction
+from ehlpetsc.pictures.frames.line import draw_courses, draw_map, draw_temperatures
 from ehlpetsc.pictures.report import save_report
-from ehlpetsc.pictures.running_in import draw_running_in
+from ehlpetsc.pictures.series import draw_running_in, draw_stribeck, draw_traction
 from ehlpetsc.results.index import in_order, open_all
 from ehlpetsc.results.output_guard import PAGES, PICTURES, check_derived
 from ehlpetsc.results.reader import Result

@@ -21,8 +21,8 @@ from matplotlib.figure import Figure
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
+from ehlpetsc.base.toml_file import parsed, put
 from ehlpetsc.case.checking import check, in_si
-from ehlpetsc.case.combinations import parsed, put
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, PICTURES, atomic_write, check_derived

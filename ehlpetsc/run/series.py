@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.base.command_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, OutputLost, UsageError
-from ehlpetsc.case.combinations import settings_of
+from ehlpetsc.base.toml_file import settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
@@ -35,7 +35,7 @@ from ehlpetsc.run.solve import Run
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from ehlpetsc.case.combinations import Settings
+    from ehlpetsc.base.toml_file import Settings
     from ehlpetsc.case.tables import Case
     from ehlpetsc.run.ranks import StopRequest
     from ehlpetsc.run.simulation import AcceptedState
@@ -49,7 +49,7 @@ def named(settings: list[Settings]) -> list[str]:
     """Names of the members of a series, as ``viscosity=0.002``, from the values in which members differ.
 
     Members have numbers if these names are too long or not unique, or if values are lists or tables.
-    `settings` are those of each member, see `ehlpetsc.case.combinations.settings_of`.
+    `settings` are those of each member, see `ehlpetsc.base.toml_file.settings_of`.
     """
     columns = [(column[0][0][-1], [value for _, value in column]) for column in zip(*settings, strict=True)]
     differing = [(key, values) for key, values in columns if any(value != values[0] for value in values)]

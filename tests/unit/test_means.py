@@ -12,7 +12,7 @@ from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.analysis.summary import run_scalars
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.pictures.friction_curves import time_statistics
+from ehlpetsc.pictures.series import time_statistics
 from ehlpetsc.results.means import both_fill, filled_from, means, pass_summary
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces.motion.profile_checks import entry_times

@@ -22,7 +22,7 @@ from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import report, style
 from ehlpetsc.pictures.case_surfaces import draw_case
 from ehlpetsc.pictures.frames import choice as frames
-from ehlpetsc.pictures.frames import over_time, plane
+from ehlpetsc.pictures.frames import line, plane
 
 OPTIONS = plot.arguments().parse_args(["x"])
 CASE = """title = "rough ball"
@@ -134,7 +134,7 @@ def test_red_of_a_layer_is_as_opaque_as_the_share_of_the_solids(point):
         assert share.max() == pytest.approx(0.02) and 0.2 < (share > 0.0).mean()
         assert figure.axes[1].get_legend().texts[1].get_text() == "solids 10 %"
         assert not [line for axes in figure.axes for line in axes.lines if line.get_marker() == "v"]
-        assert len(over_time.draw_map([r.section()], OPTIONS).axes[0].collections) == 0
+        assert len(line.draw_map([r.section()], OPTIONS).axes[0].collections) == 0
 
 
 @pytest.mark.parametrize("kind", ["line", "strip", "point"])

@@ -9,7 +9,7 @@ import pytest
 import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
-from ehlpetsc.pictures.frames import over_time
+from ehlpetsc.pictures.frames import line
 from ehlpetsc.results.xdmf import write_xdmf
 from ehlpetsc.run.recorder import Recorder
 
@@ -152,7 +152,7 @@ def test_run_stopped_in_mixed_contact_continues_to_the_same_result_bit_for_bit(t
     assert result.attrs["restarts"] == 1 and result.attrs["status"] == "done"
     assert len(result.time) == len(whole.time) == 8
     assert {d.max for d in compare.compare(whole, result)} == {0.0}
-    courses = over_time.draw_courses([result], None).axes[0]
+    courses = line.draw_courses([result], None).axes[0]
     assert courses.get_ylabel() == "load [N]" and 19.5 < courses.lines[0].get_ydata()[-1] < 20.0
 
 

@@ -19,7 +19,7 @@ from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case, passing
 from ehlpetsc.pictures.frames import choice as drawing
-from ehlpetsc.pictures.frames import line, over_time
+from ehlpetsc.pictures.frames import line
 from ehlpetsc.pictures.frames.data import Frame, common
 from ehlpetsc.results.means import both_fill
 from ehlpetsc.results.reader import read_result
@@ -99,7 +99,7 @@ def test_picture_of_one_result(tmp_path, result, drawn, capsys, options, name, t
 
 def test_steps_of_a_cycle_are_drawn_over_time(tmp_path):
     with read_result(reversing(tmp_path / "c.h5")) as r:
-        panels = {axes.get_ylabel(): axes for axes in over_time.draw_courses([r], None).axes}
+        panels = {axes.get_ylabel(): axes for axes in line.draw_courses([r], None).axes}
         speeds = panels["speed [m/s]"].lines
         np.testing.assert_allclose(speeds[1].get_xydata(), np.c_[1e3 * r.steps("time"), r.steps("speed_2")])
         assert [to_hex(line.get_color()) for line in speeds] == list(style.SURFACES.values())
@@ -187,7 +187,7 @@ def test_contact_is_outlined_in_a_map_without_hiding_the_pressure(result):
     with h5py.File(result, "r+", libver="latest") as file:
         file["in_contact"][:] = (np.abs(file["x"][:]) < 0.5 * A)[None, :]
     with read_result(result) as r:
-        axes = over_time.draw_map([r], OPTIONS).axes[0]
+        axes = line.draw_map([r], OPTIONS).axes[0]
     marks = axes.collections
     assert len(axes.images) == 1 and not any(mark.get_facecolor().size for mark in marks)
     outline = np.concatenate([path.vertices for mark in marks for path in mark.get_paths()])

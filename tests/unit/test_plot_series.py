@@ -9,7 +9,7 @@ from matplotlib.image import imread
 from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.pictures import friction_curves
+from ehlpetsc.pictures import series as drawing
 from ehlpetsc.pictures.command import FIGURES, arguments, main
 from ehlpetsc.results.index import open_all
 from ehlpetsc.results.reader import read_result
@@ -89,7 +89,7 @@ def test_temperatures(steps, panels, tmp_path):
 def test_stribeck_curves_with_and_without_heat(tmp_path):
     paths = [member(tmp_path / f"{k}.h5", 0.25, 0.01, HEAT if k % 2 else "", 1.0 + k) for k in range(5)]
     with contextlib.ExitStack() as stack:
-        found = friction_curves.curves(open_all(paths, stack), friction_curves.SPEED)
+        found = drawing.curves(open_all(paths, stack), drawing.SPEED)
     assert {name: list(speeds) for name, (speeds, _) in found.items()} == {
         "no bulk_temperature": [1.0, 3.0, 5.0],
         "bulk_temperature = 350": [2.0, 4.0],
@@ -145,18 +145,18 @@ def stribeck_series(tmp_path):
 
 
 def test_stribeck_curve_has_means_and_scatter(stribeck_series):
-    found = friction_curves.curves([read_result(path) for path in stribeck_series], friction_curves.SPEED)
+    found = drawing.curves([read_result(path) for path in stribeck_series], drawing.SPEED)
     [(speeds, results)] = found.values()
     assert list(speeds) == list(SPEEDS)
     share = 1.0 / (1.0 + 5.0 * speeds)
-    mean, low, high = friction_curves.time_statistics(results, "friction_coefficient")
+    mean, low, high = drawing.time_statistics(results, "friction_coefficient")
     np.testing.assert_allclose(mean, 0.03 + 0.09 * share, rtol=0.02)
     # of a cosine of amplitude 0.2 5 and 95 % lie at 0.2 cos(0.05 pi)
     np.testing.assert_allclose(high / mean, 1 + 0.2 * np.cos(0.05 * np.pi), atol=0.02)
     np.testing.assert_allclose(low / mean, 1 - 0.2 * np.cos(0.05 * np.pi), atol=0.02)
     figure = drawn("stribeck", stribeck_series)
-    for axes, name in zip(figure.axes, friction_curves.QUANTITIES, strict=True):
-        means = friction_curves.time_statistics(results, name)[0]
+    for axes, name in zip(figure.axes, drawing.QUANTITIES, strict=True):
+        means = drawing.time_statistics(results, name)[0]
         np.testing.assert_allclose(axes.lines[0].get_xydata(), np.column_stack([SPEEDS, means]))
 
 
@@ -165,7 +165,7 @@ def test_stribeck_axes_are_hersey_number_and_logarithmic_fraction(tmp_path, shar
     paths = [make_result(tmp_path / f"u{u:g}.h5", speed=u, nodes=41, steps=81) for u in (1.0, 10.0)]
     for path in paths:
         change_case(with_solids(path, share, 0.05), {"contact.load": 5e5})
-    figure = friction_curves.draw_stribeck([read_result(path) for path in paths], None)
+    figure = drawing.draw_stribeck([read_result(path) for path in paths], None)
     (above,) = figure.axes[0].child_axes
     figure.draw_without_rendering()
     ratio = np.array(above.get_xlim()) / figure.axes[0].get_xlim()
@@ -178,9 +178,9 @@ def test_stribeck_means_start_when_the_contact_is_filled(tmp_path):
     speeds = (5.0, 40.0, 50.0)
     paths = [make_result(tmp_path / f"{u}.h5", speed=u, nodes=41, steps=41, rough=True) for u in speeds]
     results = [read_result(path) for path in paths]
-    [(found, lasting)] = friction_curves.curves(results, friction_curves.SPEED).values()
+    [(found, lasting)] = drawing.curves(results, drawing.SPEED).values()
     assert list(found) == [40.0, 50.0]
-    assert np.isnan(friction_curves.time_statistics(lasting, "contact_share")).all()
+    assert np.isnan(drawing.time_statistics(lasting, "contact_share")).all()
     assert "ended too early: 5.0.h5" in drawn("stribeck", paths)._suptitle.get_text()
     with pytest.raises(OutputError, match=r"series over motion\.entrainment_speed"):
-        friction_curves.curves(results[:2], friction_curves.SPEED)
+        drawing.curves(results[:2], drawing.SPEED)

@@ -5,8 +5,8 @@ import pytest
 
 from ehlpetsc.case.tables.outputs import MEAN_STRESSES, POST_KEYS
 from ehlpetsc.post import Material, cycles_to_failure, damage
+from ehlpetsc.post.fatigue.accumulate import CORRECTIONS, reversed_range
 from ehlpetsc.post.fatigue.cycles import RESIDUALS
-from ehlpetsc.post.fatigue.mean_stress import CORRECTIONS, reversed_range
 
 STEEL = Material(tensile_strength=1.5e9, walker_exponent=0.6)
 ROOT = np.sqrt(1 - 0.3 + 0.09)  # equivalent range of a range of sz in plane strain

@@ -10,7 +10,7 @@ from support.made_loads import Scene, write
 from support.made_results import make_result
 
 from ehlpetsc.base.errors import ExitStatus
-from ehlpetsc.pictures.running_in import draw_fatigue
+from ehlpetsc.pictures.series import draw_fatigue
 from ehlpetsc.post.command import main
 from ehlpetsc.results.means import heights, passes_to_run_in, statistics
 from ehlpetsc.results.post_result import PostResult, damage_beside

@@ -7,7 +7,7 @@ import pytest
 from support.made_results import make_result, with_solids
 
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.case.combinations import settings_of
+from ehlpetsc.base.toml_file import settings_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.results.means import Totals, filled_from

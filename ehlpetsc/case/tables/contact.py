@@ -29,7 +29,7 @@ def _complete(contact: Contact) -> dict[str, Any]:
     return values
 
 
-SOLIDS = {
+KEYS = {
     "radius": Required(
         "reduced radius, `1/R = 1/R1 + 1/R2`; two, along and across the motion: a point contact",
         *("m", 1e-9, 100),
@@ -124,7 +124,7 @@ SOLIDS = {
         equation="`p <= p_y`, `d >= 0`, `(p_y - p) d = 0`, `d` the increment of plastic deformation",
     ),
 }
-CONTACT = KeyTable("contact", "solids and load", SOLIDS, required=True, values=Contact, complete=_complete)
+CONTACT = KeyTable("contact", "solids and load", KEYS, required=True, values=Contact, complete=_complete)
 
 
 _equations = [{name: law.equation for name, law in laws.items()} for laws in (LAWS, DENSITY_LAWS)]

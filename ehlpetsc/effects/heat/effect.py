@@ -21,7 +21,6 @@ import numpy as np
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Error
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.heat.mixing import mixed_record
 from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, interpolated
 
 if TYPE_CHECKING:
@@ -182,6 +181,8 @@ class Heat(Effect[HeatRecord]):
 
     def mixed(self, pairs: Sequence[tuple[HeatRecord, HeatRecord]]) -> HeatRecord:
         """Record for the next steady solve, by Anderson's acceleration."""
+        from ehlpetsc.effects.heat.mixing import mixed_record
+
         return mixed_record(pairs, self._steps.inlet)
 
     def is_settled(self, before: HeatRecord | None, after: HeatRecord) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import CommandParser, ProgressLine, duration, exit_status, put
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.case.combinations import combinations, keys_of
+from ehlpetsc.base.toml_file import combinations, keys_of
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.contact.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
