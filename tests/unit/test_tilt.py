@@ -7,8 +7,10 @@ import pytest
 from support import one_fault
 from support.points import point
 
+import ehlpetsc
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.contact.hertz import hertz_ellipse
+from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 
 RY = 0.05
@@ -34,6 +36,21 @@ def test_given_tilt_moves_the_dry_ellipse():
     raised = 0.5 * tilt**2 * RY  # of the middle over the nearest points of the undeformed bodies
     assert state.scalars["approach"] == pytest.approx(raised - hertz.approach, rel=2e-3)
     assert state.scalars["tilt"] == pytest.approx(tilt, rel=1e-12)
+
+
+def test_restart_continues_a_tilted_contact_whose_film_is_that_of_the_moved_one(tmp_path):
+    tables = point(50.0, 5.0, 8) | {"time": {"travel": 0.4, "courant": 1.0}}
+    straight = Simulation(load(tables))
+    tilt = -0.25 * straight.scales.b / straight.case.contact.radius_across  # by two nodes
+    states = list(Simulation(case := load(tables, {"contact.tilt": tilt})))
+    assert states[0].film_central == pytest.approx(straight.advance().film_central, rel=1e-3)
+    with Recorder(simulation := Simulation(case), tmp_path / "run.h5") as recorder:
+        for _ in range(2):
+            recorder.write(simulation.advance())
+        recorder.checkpoint()
+    rest = ehlpetsc.solve(case, tmp_path / "run.h5", restart=tmp_path / "run.restart.h5")
+    np.testing.assert_allclose(rest.steps.film_central, [s.film_central for s in states], rtol=1e-9)
+    np.testing.assert_allclose(rest.steps("tilt"), tilt, rtol=1e-12)
 
 
 def test_free_tilt_evens_out_a_wedge():

@@ -116,7 +116,7 @@ def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
 
 
 def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
-    """Nodes of a point contact, symmetric about the direction of motion."""
+    """Nodes of a point contact, symmetric about y = 0."""
     ratio = dry.b / dry.a
     points = mesh.points_across / ratio if mesh.points_across else mesh.points_per_half_width
     half = point_rows(mesh, dry) // 2
@@ -131,6 +131,7 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
         2.0 * np.pi / 3.0 * ratio,
         growth=2.0 / 3.0,
         breadth=2.0 * ratio,
+        middle=-(contact.tilt or 0.0) * contact.radius_across / dry.a,
     )
 
 

@@ -31,6 +31,8 @@ class Grid:
         Of the contact across the direction of motion in half-widths; of a line contact 1, of unit length.
     periodic
         Whether the first axis is periodic.
+    middle
+        Of the dry contact across, which a tilt moves.
     """
 
     axes: tuple[np.ndarray, ...]
@@ -41,6 +43,7 @@ class Grid:
     growth: float = 1.0
     breadth: float = 1.0
     periodic: bool = False
+    middle: float = 0.0
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -90,11 +93,11 @@ class Grid:
 
     @cached_property
     def distance(self) -> np.ndarray:
-        """Distance of all nodes from the middle over the half-width in their direction, flat."""
+        """Distance of all nodes from the contact's middle over the half-width in their direction, flat."""
         if len(self.axes) == 1:
             return np.abs(self.x)
-        squares = [(x / w) ** 2 for x, w in zip(self.coordinates, self.half_widths, strict=True)]
-        return np.sqrt(sum(squares))
+        (y, x), (b, a) = self.coordinates, self.half_widths
+        return np.sqrt(((y - self.middle) / b) ** 2 + (x / a) ** 2)
 
     def inside(self, radius: float) -> np.ndarray:
         """Mask of the nodes within a multiple of the dry contact, at least of those in its middle, flat."""
