@@ -133,7 +133,7 @@ class Extreme:
             surface = {"kind": "self-affine", "sq": self.sq, "hurst": 0.8, "seed": 1, **waves}
             tables |= {
                 "surface": {"1": {"synthetic": surface}},
-                "time": {"travel": travel, "start": "rough", "courant": 1.0},
+                "time": {"travel": travel, "start": "rough", "ramp": "coarse", "courant": 1.0},
             }
         return load(tables)
 

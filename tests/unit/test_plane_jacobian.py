@@ -11,6 +11,7 @@ from scipy.sparse import bsr_matrix
 from support.points import point
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.contact.node_state import limit_cavitation
 from ehlpetsc.discretisation.plane.deflection import free_kernel
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
@@ -198,5 +199,16 @@ def test_settled_pressures_balance_thin_oil():
     wrong = np.flatnonzero(inlet & (np.arange(system.n) % reynolds.n_x > 2))[5::40]
     cells = HeldFilms(reynolds, inputs, q, film)
     before = abs(cells.balance(wrong)[0]).max()
-    settle(cells, q, wrong)
+    none, as_given = np.zeros(len(q), dtype=bool), q.copy()
+    settle(cells, q, wrong, ~none)
+    np.testing.assert_array_equal(q, as_given)
+    settle(cells, q, wrong, none)
     assert abs(HeldFilms(reynolds, inputs, q, film).balance(wrong)[0]).max() < 1e-3 * before
+
+
+@pytest.mark.parametrize(
+    ("q", "dq", "new"), [(-5e-14, 3e-14, -2e-12), (-5e-14, -3e-14, -2e-14), (-5e-14, 0.3, -0.3)]
+)
+def test_oil_at_the_ambient_pressure_that_would_be_lower_opens_a_cavity(q, dq, new):
+    """Smaller steps would change no pressure: thick oil would creep towards its cavity for 30 iterations."""
+    assert q - limit_cavitation(q, dq) == pytest.approx(new, rel=1e-12)

@@ -7,6 +7,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 
 AMBIENT_TOLERANCE = 1e-12  # pressure in p0: the ambient one of the inlet is zero give or take this
+ROUNDING = 1e-16  # p0: a smaller step of an ambient pressure has no meaning
 PRESSURE_AFTER_REFILL = 1e-9  # p0: pressure of a cavity, or of a gap, in the iteration that closes it
 MIN_OIL_FRACTION = 0.2  # of the oil in a cavity that one iteration must leave
 
@@ -117,8 +118,11 @@ def limit_cavitation(q: float, dq: float) -> float:
     """Newton step of q, to be subtracted: a cavity that fills or empties stops at the change of phase.
 
     A cavity that fills gets the pressure `PRESSURE_AFTER_REFILL`. A void leaves `MIN_OIL_FRACTION` of the
-    oil: at q = -1 on a closed gap every derivative is zero.
+    oil: at q = -1 on a closed gap every derivative is zero. A cavity opens where oil at the ambient pressure
+    would have a lower one: below zero no pressure follows q, so that smaller steps would change nothing.
     """
+    if -AMBIENT_TOLERANCE < q < 0.0 and dq > ROUNDING:
+        dq = max(dq, q + 2.0 * AMBIENT_TOLERANCE)
     if q < 0.0 and q - dq > PRESSURE_AFTER_REFILL:
         return q - PRESSURE_AFTER_REFILL
     if q - dq < 0.0:

@@ -27,6 +27,7 @@ from ehlpetsc.physics.oil.rheology import FlowLaw
 
 HIGHEST = 0.1  # p0: pressures above it follow from the film; settled ones to .15 cost half an iteration more
 MOVED = 0.02  # p0: change of a pressure to be settled; .01 brings an iteration more than none
+MOVED_FILM = 0.5  # of the film: change of a film that is too far from its solution to be held
 GROWTH = 2  # nodes around a changed one whose q move
 STEPS = 3  # of the local system
 LARGEST = 0.3  # p0: change of a pressure in one of them
@@ -60,10 +61,13 @@ class HeldFilms:
         self.at[:, (nodes // n_x + 1) * (n_x + 1) + nodes % n_x] = values
 
 
-def settle(cells: HeldFilms, q: np.ndarray, changed: np.ndarray) -> None:
-    """Change q of the local nodes, in place, around some of them that have changed."""
+def settle(cells: HeldFilms, q: np.ndarray, changed: np.ndarray, moved_films: np.ndarray) -> None:
+    """Change q of the local nodes, in place, around some of them that have changed.
+
+    `moved_films`: mask of the nodes whose film is not yet known, where nothing is settled.
+    """
     (n_y, n_x), place = cells.reynolds.shape, np.full(len(q), FREE, dtype=np.int32)
-    place[q > HIGHEST] = HELD
+    place[(q > HIGHEST) | moved_films] = HELD
     nodes = around(changed, GROWTH, n_y, n_x, place)
     for _ in range(STEPS if len(nodes) else 0):
         rows, by = cells.balance(nodes)

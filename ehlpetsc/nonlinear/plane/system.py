@@ -16,7 +16,7 @@ from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.unknowns import pairs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
-from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, HeldFilms, settle
+from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, MOVED_FILM, HeldFilms, settle
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination
 from ehlpetsc.nonlinear.ranks import all_ranks, global_max
@@ -104,7 +104,7 @@ class PlaneFields(TwoFields):
         if len(changed):
             settled = q[self.problem.owned].copy()
             cells = HeldFilms(reynolds, self.inputs, q, self.contact.state(q, w).film)
-            settle(cells, settled, changed)
+            settle(cells, settled, changed, np.abs(step[:, 1]) > MOVED_FILM * np.abs(new[:, 1]))
             step[:, 0] = before - settled
 
 
