@@ -72,11 +72,14 @@ class Jacobian:
 
     def mult(self, mat: PETSc.Mat, v: PETSc.Vec, out: PETSc.Vec) -> None:
         """PETSc's product."""
-        full, rows = np.zeros(self.size), np.empty(self.size)
-        full[self.active] = v.array_r
         with events.PRODUCT:
+            if isinstance(self.active, slice):
+                self.product(v.array_r.copy(), out.array)  # loops of read-only arrays would be compiled anew
+                return
+            full, rows = np.zeros(self.size), np.empty(self.size)
+            full[self.active] = v.array_r
             self.product(full, rows)
-        out.array[:] = rows[self.active]
+            out.array[:] = rows[self.active]
 
     def createSubMatrix(
         self, mat: PETSc.Mat, rows: PETSc.IS, columns: PETSc.IS, out: PETSc.Mat | None = None

@@ -60,8 +60,10 @@ class EliminatedFilm:
 
     def apply(self, pc: PETSc.PC, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve for one right-hand side."""
-        operator, full = self.operator, np.zeros(self.operator.size)
-        full[operator.active] = x.array_r
+        operator, full = self.operator, x.array_r
+        if not isinstance(operator.active, slice):
+            full = np.zeros(operator.size)
+            full[operator.active] = x.array_r
         y.array[:] = operator.elimination.solve(operator, full)[operator.active]
 
 
