@@ -73,6 +73,7 @@ GAMMA = 0.5  # decay length of the pressure over the rms height
 CONTACT_PRESSURE = 10e6  # Pa: nodes whose asperities carry more count as in contact
 MIN_RELATIVE_HARDNESS = 0.2  # over the width of the stresses: below it all contact is plastic
 PERCOLATION, CLOSING = 0.3, 0.9  # film over rms height below which no oil passes; decay above it
+OPEN = 45.0  # film over rms height from which the factor is 1 in all digits
 CHANNELS = 1.33e-4  # 4 w^2: a flow factor of 1e-4 at a film of zero
 KAPPA = 2.0  # real area over nominal area, times E* h'_rms over the pressure, at light load
 
@@ -129,6 +130,8 @@ def flow_factor(h: float, height: float) -> tuple[float, float]:
     none, its factor being zero for surfaces of equal roughness.
     """
     above = h / height - PERCOLATION
+    if above > OPEN:
+        return 1.0, 0.0
     root = math.sqrt(above * above + CHANNELS)
     passing = 0.5 * (above + root)
     closed = math.exp(-CLOSING * passing)
