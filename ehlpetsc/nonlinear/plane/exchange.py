@@ -104,7 +104,7 @@ class PlaneExchange:
             self.below = MPI.PROC_NULL
 
     def window(self, local: np.ndarray) -> np.ndarray:
-        """Values of the window, (window, ...), from those of the local nodes; these where it has no others."""
+        """Values of the window, (window, ...), from those of the local nodes; these if it has no more."""
         p = self.problem
         if p.share.window_size == p.local:
             return local
