@@ -91,7 +91,8 @@ KEYS = {
         "`sigma = asperity_height`, `h_a = adsorbed_film`, `H = asperity_hardness`",
     ),
     "asperity_stiffness": Key(
-        "`beta` of that law [`2 pi sigma/L`, `L = short_cutoff`, or eight nodes without one]",
+        "`beta` of that law [`2 pi sigma/L`, `L = short_cutoff`, or eight nodes without one; too soft where "
+        "the roughness rolls off below `L`]",
         *("", 1e-4, 1e4),
         needs=(LAYER,),
     ),
