@@ -2,6 +2,7 @@
 
 import gc
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from ehlpetsc.base import environment
 
 environment.prepare()
+sys.path.append(str(Path(__file__).parents[1] / ".test-packages"))  # optional ones that .ci/run has fetched
 MPI_TESTS = Path(__file__).parent / "mpi"
 # Files of two seconds of processor time and more, about longest first. The first two compile post-processing
 # and the solver, those up to test_report_page nothing, those up to test_stops but the first one nothing with

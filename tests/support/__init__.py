@@ -12,9 +12,16 @@ def is_line_with(text, *parts):
     return text.strip().count("\n") == 0 and all(str(part) in text for part in parts)
 
 
+def optional(name):
+    """A package of PyPI that single tests compare with; without it they are skipped."""
+    import pytest  # of which benchmarks have no need
+
+    return pytest.importorskip(name, reason=f"{name} of PyPI is not installed; .ci/run fetches it")
+
+
 def one_fault(call, *arguments):
     """The one fault, a line, of a case that a call refuses."""
-    import pytest  # of which benchmarks have no need
+    import pytest
 
     from ehlpetsc.base.errors import CaseError
 

@@ -9,6 +9,7 @@ from hashlib import md5
 import h5py
 import numpy as np
 import pytest
+from support import optional
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures.surface import main
@@ -83,7 +84,7 @@ def test_the_command_writes_a_profile_as_one_row(tmp_path, ending):
 
 
 def test_x3pio_reads_what_is_written(tmp_path):
-    pytest.importorskip("x3pio")
+    optional("x3pio")
     np.save(tmp_path / "map.npy", Z)
     words = ["--set", f"spacing={DX}", "--set", f"spacing_across={DY}", "--set", "level=false"]
     assert main([str(tmp_path / "map.npy"), "-o", str(tmp_path / "map.x3p"), *words]) == 0

@@ -5,6 +5,7 @@ from xml.etree import ElementTree
 import h5py
 import numpy as np
 import pytest
+from support import optional
 
 import ehlpetsc
 from ehlpetsc.analysis import compare, summary
@@ -181,8 +182,8 @@ def test_xdmf_of_any_name_is_xml(path, tmp_path, name):
 
 
 def test_xdmf_opens_in_vtk(path):
-    xdmf = pytest.importorskip("vtkmodules.vtkIOXdmf2", reason="VTK from PyPI")
-    convert = pytest.importorskip("vtkmodules.util.numpy_support")
+    xdmf = optional("vtkmodules.vtkIOXdmf2")
+    convert = optional("vtkmodules.util.numpy_support")
     reader = xdmf.vtkXdmfReader()
     reader.SetFileName(str(path.with_suffix(".xdmf")))
     reader.UpdateInformation()

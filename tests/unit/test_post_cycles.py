@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support import optional
 
 from ehlpetsc.post import rainflow
 
@@ -71,8 +72,8 @@ def test_half_cycles_of_random_series_against_the_standard():
 
 
 def test_half_cycles_against_rainflow():
-    """The package of this name on PyPI, where it is installed."""
-    package = pytest.importorskip("rainflow")
+    """The package of this name on PyPI."""
+    package = optional("rainflow")
     for seed in range(20):
         series = np.cumsum(np.random.default_rng(seed).normal(size=400))
         expected = Counter()
@@ -85,8 +86,8 @@ def test_half_cycles_against_rainflow():
 
 
 def test_half_cycles_against_fatpack():
-    """Full cycles and residue of another package on PyPI, where it is installed."""
-    package = pytest.importorskip("fatpack")
+    """Full cycles and residue of another package on PyPI."""
+    package = optional("fatpack")
     series = np.cumsum(np.random.default_rng(7).normal(size=2000))
     step = np.sign(np.diff(series))
     turns = series[np.concatenate([[True], step[1:] != step[:-1], [True]])]

@@ -16,35 +16,27 @@ def test_textbook_data():
     assert 0.99 < fit.r_squared < 1
 
 
-def test_recovers_its_own_quantiles():
-    ranks = benard_ranks(25)
-    values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
+def quantiles():
+    return 7.0 * (-np.log1p(-benard_ranks(25))) ** (1 / 9.0)
+
+
+@pytest.mark.parametrize(
+    "places, damage",
+    [
+        (slice(0), []),
+        (slice(20, None), np.zeros(5)),  # no damage: infinite, censored
+        (slice(3), [1.0, 3.0, 40.0]),  # damage of 1 and more: no logarithm of -log10 D, but its rank
+    ],
+)
+def test_recovers_its_own_quantiles(places, damage):
+    values = quantiles()
+    values[places] = log_life(np.array(damage))
     assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
-
-
-def test_undamaged_values_are_censored():
-    ranks = benard_ranks(25)
-    values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
-    values[20:] = log_life(np.zeros(5))  # no damage: infinite
-    assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
-
-
-def test_immediate_failures_keep_their_ranks():
-    ranks = benard_ranks(25)
-    values = 7.0 * (-np.log1p(-ranks)) ** (1 / 9.0)
-    values[:3] = log_life(np.array([1.0, 3.0, 40.0]))  # damage of 1 and more: no logarithm of -log10 D
-    assert weibull_fit(values) == pytest.approx((7.0, 9.0, 1.0), rel=1e-10)
-
-
-def test_too_few_values():
-    for values in ([], [1.0], [2.0, 2.0], [np.inf, np.inf], [-1.0, 3.0]):
-        assert np.isnan(weibull_fit(values)).all()
 
 
 def test_exceedance_and_its_fit_agree():
-    values = 7.0 * (-np.log1p(-benard_ranks(25))) ** (1 / 9.0)
-    damages = 10.0**-values
-    falling, share = exceedance(damages)
+    values = quantiles()
+    falling, share = exceedance(10.0**-values)
     assert (np.diff(falling) <= 0).all()
     alpha, beta, _ = weibull_fit(values)
     assert fitted_exceedance(falling, alpha, beta) == pytest.approx(share, rel=1e-9)
@@ -110,7 +102,8 @@ def test_bounds_hold_at_their_confidence():
     assert held / 300 == pytest.approx([0.9, 0.9, 0.9], abs=0.05)
 
 
-def test_no_likelihood_without_two_failures():
-    for values in ([], [1.0], [2.0, 2.0], [np.inf, 3.0], [-1.0, 3.0]):
-        fit = weibull_likelihood(values)
-        assert np.isnan([fit.alpha, fit.beta]).all() and np.isnan(fit.interval()).all()
+@pytest.mark.parametrize("values", [[], [1.0], [2.0, 2.0], [np.inf, np.inf], [np.inf, 3.0], [-1.0, 3.0]])
+def test_no_fit_without_two_failures(values):
+    fit = weibull_likelihood(values)
+    assert np.isnan(weibull_fit(values)).all()
+    assert np.isnan([fit.alpha, fit.beta]).all() and np.isnan(fit.interval()).all()

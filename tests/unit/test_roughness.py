@@ -14,7 +14,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.files.profiles import read_profile
-from ehlpetsc.surfaces.filters import levelled, mean_line
+from ehlpetsc.surfaces.filters import levelled, mean_line, without_form
 from ehlpetsc.surfaces.motion.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.motion.roughness import RAMP_LENGTH, Passage, Roughness, RoughSurface, directed_speeds
 from ehlpetsc.surfaces.samples import samples
@@ -397,3 +397,4 @@ def test_levelling_removes_a_line_only():
     z = 1e-7 * np.cos(2 * np.pi * X / 1e-4)
     np.testing.assert_allclose(levelled(X, z + 3e-3 * X - 7e-6), levelled(X, z), atol=1e-18)
     np.testing.assert_allclose(levelled(X, z), z - np.polynomial.Polynomial.fit(X, z, 1)(X), atol=1e-20)
+    np.testing.assert_allclose(without_form([X], z + 3e-3 * X, 1), levelled(X, z), atol=1e-18)

@@ -6,12 +6,13 @@ square difference of the pressures 0.7 % of p0.
 
 import numpy as np
 import pytest
+from support import optional
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
-tamaas = pytest.importorskip("tamaas")
+tamaas = optional("tamaas")
 
 PERIOD, POINTS, HALF_WIDTH, MODULUS, P0 = 8, 32, 150e-6, 227e9, 1e9
 ROUGHNESS = {
