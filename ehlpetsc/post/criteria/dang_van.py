@@ -33,36 +33,75 @@ BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
 DEGENERATE = 1e-10  # pivot over the first of the products of edges: corners on a line, in a plane ...
 
 
-@compiled(nogil=True)
-def _circumcentre(corners: np.ndarray) -> np.ndarray:
-    """Centre of the smallest sphere through corners (count, axes); nan or infinite if degenerate."""
-    centre, basis = corners[0].copy(), np.zeros(corners.shape)
-    for k in range(1, len(corners)):
-        edge, outer, inner = corners[k] - corners[0], corners[k] - centre, corners[0] - centre
-        for unit in basis[: k - 1]:
-            edge = edge - (edge * unit).sum() * unit
-        height = sqrt((edge * edge).sum())
-        basis[k - 1] = edge / height
-        centre += ((outer * outer).sum() - (inner * inner).sum()) / (2 * height) * basis[k - 1]
-    return centre
+# Loops over axes in place of expressions of arrays, which take ten times as long to compile.
 
 
 @compiled(nogil=True)
-def _around(support: np.ndarray, new: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Radius, centre and support of the smallest ball about the support of another and a point outside it.
+def _circumcentre(corners: np.ndarray, basis: np.ndarray, centre: np.ndarray) -> None:
+    """Set the centre of the smallest sphere through corners (count, axes); nan or infinite if degenerate.
 
-    The new point is on its surface.
+    `basis`: space of as many numbers as corners has.
     """
-    points = np.concatenate((new.reshape(1, new.size), support))
-    best, best_centre, best_support = np.inf, new, support
-    for mask in range(1 << len(support)):
-        chosen = np.array([0] + [k + 1 for k in range(len(support)) if mask >> k & 1])
-        if len(chosen) <= new.size + 1:
-            centre = _circumcentre(points[chosen])
-            radius = np.sqrt(((points - centre) ** 2).sum(axis=1)).max()
-            if radius < best:
-                best, best_centre, best_support = radius, centre, points[chosen]
-    return best, best_centre, best_support
+    count, axes = corners.shape
+    for axis in range(axes):
+        centre[axis] = corners[0, axis]
+    for k in range(1, count):
+        for axis in range(axes):
+            basis[k, axis] = corners[k, axis] - corners[0, axis]
+        for j in range(1, k):
+            along = 0.0
+            for axis in range(axes):
+                along += basis[k, axis] * basis[j, axis]
+            for axis in range(axes):
+                basis[k, axis] -= along * basis[j, axis]
+        square = outer = inner = 0.0
+        for axis in range(axes):
+            square += basis[k, axis] ** 2
+            outer += (corners[k, axis] - centre[axis]) ** 2
+            inner += (corners[0, axis] - centre[axis]) ** 2
+        height = np.sqrt(square)
+        for axis in range(axes):
+            basis[k, axis] /= height
+            centre[axis] += (outer - inner) / (2 * height) * basis[k, axis]
+
+
+@compiled(nogil=True)
+def _around(support: np.ndarray, count: int, corners: np.ndarray, centre: np.ndarray) -> tuple[int, float]:
+    """Set corners and centre of the smallest ball about support[:count] and a point outside their ball.
+
+    The point, corners[count], is on its surface. Returns the number of corners and the radius.
+    """
+    axes = centre.size
+    new, about = corners[count].copy(), centre.copy()
+    trial, basis = np.empty((count + 1, axes)), np.empty((count + 1, axes))
+    number, best = 1, np.inf
+    for mask in range(1 << count):
+        n = 1
+        for axis in range(axes):
+            trial[0, axis] = new[axis]
+        for k in range(count):
+            if mask >> k & 1:
+                for axis in range(axes):
+                    trial[n, axis] = support[k, axis]
+                n += 1
+        if n > axes + 1:
+            continue
+        _circumcentre(trial[:n], basis, about)
+        largest = 0.0
+        for k in range(count + 1):
+            away = 0.0
+            for axis in range(axes):
+                place = support[k, axis] if k < count else new[axis]
+                away += (place - about[axis]) ** 2
+            if not away <= largest:  # nan as well
+                largest = away
+        if np.sqrt(largest) < best:
+            number, best = n, np.sqrt(largest)
+            for axis in range(axes):
+                centre[axis] = about[axis]
+                for k in range(n):
+                    corners[k, axis] = trial[k, axis]
+    return number, best
 
 
 @compiled(error_model="python", nogil=True)
@@ -105,27 +144,33 @@ def _reduced(corners: np.ndarray, count: int, centre: np.ndarray, work: tuple) -
     checked. Returns the number of corners that remain and the squared radius; 0 corners: not found.
     """
     system, weights, all_corners = work
-    every = count
-    all_corners[:every] = corners[:every]
+    every, axes = count, centre.size
+    for k in range(every):
+        for axis in range(axes):
+            all_corners[k, axis] = corners[k, axis]
     while True:
         if not _barycentric(corners[:count], system, weights):
             return 0, 0.0
-        least = weights[:count].argmin()
+        least = 0
+        for k in range(1, count):
+            least = k if weights[k] < weights[least] else least
         if weights[least] >= 0.0:
             break
         if least == count - 1:
             return 0, 0.0
-        corners[least : count - 1] = corners[least + 1 : count].copy()
         count -= 1
+        for k in range(least, count):
+            for axis in range(axes):
+                corners[k, axis] = corners[k + 1, axis]
     squared = largest = 0.0
-    for axis in range(centre.size):
+    for axis in range(axes):
         centre[axis] = 0.0
         for k in range(count):
             centre[axis] += weights[k] * corners[k, axis]
         squared += (corners[count - 1, axis] - centre[axis]) ** 2
     for k in range(every):
         away = 0.0
-        for axis in range(centre.size):
+        for axis in range(axes):
             away += (all_corners[k, axis] - centre[axis]) ** 2
         largest = max(largest, away)
     return (count, squared) if largest <= squared * (1 + BALL_TOLERANCE) else (0, 0.0)
@@ -161,16 +206,23 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
         farthest, away = _farthest(points, centre)
         if sqrt(away) <= radius * (1 + BALL_TOLERANCE):
             break
-        corners[:count], corners[count] = support[:count], points[:, farthest]
+        for axis in range(axes):
+            for k in range(count):
+                corners[k, axis] = support[k, axis]
+            corners[count, axis] = points[axis, farthest]
         number, squared = _reduced(corners, count + 1, new_centre, work)
         larger = sqrt(squared)
         if number == 0 or number > axes + 1:
-            larger, about, kept = _around(support[:count].copy(), points[:, farthest].copy())
-            number, new_centre[:], corners[: len(kept)] = len(kept), about, kept
+            for axis in range(axes):
+                corners[count, axis] = points[axis, farthest]
+            number, larger = _around(support, count, corners, new_centre)
         if not larger > radius:
             break
         radius, count = larger, number
-        centre[:], support[:count] = new_centre, corners[:count]
+        for axis in range(axes):
+            centre[axis] = new_centre[axis]
+            for k in range(count):
+                support[k, axis] = corners[k, axis]
     return centre, radius
 
 
