@@ -24,7 +24,13 @@ from ehlpetsc.results.post_result import DAMAGED
 
 CASE = Path(__file__).parent.parent / "micropitting.toml"
 PASSES, RING_PASSES = 1.5e7, 720e3  # of which shares are: of the scene, of the tests of rings
-COMMON = {"life.max_solved": 1, "life.damage_jump": 1.0, "mesh.width": 1.0, "wear.coefficient": 1e-19}
+COMMON = {
+    "life.max_solved": 1,
+    "life.damage_jump": 1.0,
+    "mesh.width": 1.0,
+    "mesh.points_per_half_width": 16,
+    "wear.coefficient": 1e-19,
+}
 SEEDS = "surface.1.synthetic.seed", "surface.2.synthetic.seed"
 
 
@@ -82,7 +88,7 @@ SCENES = {
     "first": Scene("ten seeds", seeds=tuple(range(1, 11))),
     "second": Scene("ten others", seeds=tuple(range(11, 21))),
     "fine": Scene("a/24", {"mesh.points_per_half_width": 24}, (1, 2, 3, 4, 5)),
-    "wide": Scene("width 2 a", {"mesh.width": 2.0}, (1, 2, 3, 4, 5)),
+    "wide": Scene("width 2 a", {"mesh.width": 2.0}),
     "rolling": Scene("0.02", {"motion.slide_roll_ratio": 0.02}),
     "thin": Scene("0.3", {"motion.entrainment_speed": 0.43}),
     "thick": Scene("3", {"motion.entrainment_speed": 13.5}),
@@ -104,19 +110,20 @@ SCENES = {
     "ridges": Scene("ridges", {"mesh.width": None}),
 }
 SCENE = "scene"  # the first seeds of the scene, of as many as are compared with them
-SIGNS = {  # title of a panel: its scenes; sign 6 is drawn over depth
-    "1. rough and smooth": ("first", "second", "wide", "fine"),
-    "2. slide/roll ratio": ("rolling", SCENE),
-    "3. lambda": ("thin", SCENE, "thick"),
-    "4. Rq of NU 209": ("pair_1", "pair_3", "pair_4"),
-    "5. NU 211, temperature": ("cold", "warm", "hot"),
-    "7. lay": ("transverse", SCENE, "along", "ridges"),
+SHORT = {"mesh.points_per_half_width": 8, "time.travel": 5.0}
+SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is drawn over depth
+    "1. rough and smooth surface: the smooth one is damaged more": ("first", "second", "wide", "fine"),
+    "2. slide/roll ratio: worst at 0.01 to 0.02": ("rolling", SCENE),
+    "3. lambda: worst near 1.1": ("thin", SCENE, "thick"),
+    "4. Rq of rings NU 209: little at each of these": ("pair_1", "pair_3", "pair_4"),
+    "5. temperature of NU 211: worst at 73 °C": ("cold", "warm", "hot"),
+    "7. lay: changes the area": ("transverse", SCENE, "along", "ridges"),
 }
 SCENE_LABELS = {"2": "0.25", "3": "0.84", "7": "isotropic"}  # of a sign's number
 Ensembles = dict[str, list[LifeHistory]]
 
 
-def compute(name: str, folder: Path) -> list[LifeHistory]:
+def compute(name: str, folder: Path, is_short: bool = False) -> list[LifeHistory]:
     """Lives of a scene, computed unless they are there; of every rank."""
     from mpi4py import MPI
 
@@ -125,6 +132,8 @@ def compute(name: str, folder: Path) -> list[LifeHistory]:
 
     scene = SCENES[name]
     settings = COMMON | scene.settings
+    if is_short:
+        scene, settings = scene._replace(seeds=scene.seeds[:2]), settings | SHORT
     series: dict[str, Any] = {"key": SEEDS[0], "values": list(scene.seeds)}
     if "surface.2.synthetic" in settings:
         values = [scene.seeds, [1000 + seed for seed in scene.seeds]]
@@ -170,22 +179,26 @@ def statistics(values: np.ndarray) -> np.ndarray:
 
 
 def bars(axes: Axes, labels: list[str], values: list[np.ndarray]) -> None:
-    """Shares of both surfaces with bounds, side by side."""
+    """Shares of both surfaces with bounds, one below the other."""
     for k, side in enumerate("12"):
         mean, low, high = 100 * np.array([statistics(one[k]) for one in values]).T
         at = np.arange(len(labels)) + 0.4 * k - 0.2
-        axes.bar(at, mean, 0.38, color=style.SURFACES[side], label=f"surface {side}")
-        axes.errorbar(at, mean, (mean - low, high - mean), fmt="none", color=style.DARK, lw=1.0, capsize=2)
-    axes.set_xticks(range(len(labels)), labels, fontsize="x-small")
-    axes.set(ylabel="damaged share [%]", ylim=(0.0, None))
+        axes.barh(at, mean, 0.38, color=style.SURFACES[side])
+        axes.errorbar(mean, at, xerr=(mean - low, high - mean), fmt="none", color=style.DARK, lw=1, capsize=2)
+    axes.set_yticks(range(len(labels)), labels, fontsize="small")
+    axes.set_ylim(len(labels) - 0.5, -0.5)
 
 
 def draw(ensembles: Ensembles) -> Figure:
-    """Panel of each sign."""
-    figure, panels = style.new_figure(2, 4, (13.0, 6.0))
-    flat = [axes for k, axes in enumerate(panels.flat) if k != 5]
-    for axes, (title, names) in zip(flat, SIGNS.items(), strict=False):
-        labels, values = [], []
+    """Row of each sign, over one axis of shares; beside them the damage over depth."""
+    figure = Figure(figsize=(10.0, 8.5), layout="constrained")
+    grid = figure.add_gridspec(
+        len(SIGNS), 2, width_ratios=(2, 1), height_ratios=[1 + len(names) for names in SIGNS.values()]
+    )
+    first = None
+    for row, (title, names) in enumerate(SIGNS.items()):
+        axes = figure.add_subplot(grid[row, 0], sharex=first)
+        first, labels, values = first or axes, [], []
         for name in (name for name in names if name in (SCENE, *ensembles)):
             lives = ensembles["first"][:3] if name == SCENE else ensembles[name]
             passes = PASSES if name == SCENE else SCENES[name].passes
@@ -193,12 +206,12 @@ def draw(ensembles: Ensembles) -> Figure:
             values.append(shares(lives, passes))
         if values:
             bars(axes, labels, values)
-        axes.set_title(title, fontsize="medium")
-    figure.legend(*panels.flat[0].get_legend_handles_labels(), loc="lower right")
+        axes.set_title(title, fontsize="medium", loc="left")
+        axes.tick_params(labelbottom=row == len(SIGNS) - 1)
+    axes.set_xlabel("damaged share [%]")
+    over_depth(figure.add_subplot(grid[:, 1]), ensembles["first"])
     ends = f"{PASSES:,.0f} passes (4: {RING_PASSES:,.0f})"
     style.set_title(figure, f"Surface with D above {DAMAGED:g} to 20 µm deep after {ends}; bounds of 90 %")
-    over_depth(panels.flat[5], ensembles["first"])
-    style.leave_out(panels, len(SIGNS) + 1)
     return figure
 
 
@@ -209,10 +222,13 @@ def over_depth(axes: Axes, lives: list[LifeHistory]) -> None:
         edges = 1e6 * bodies[0].edges
         values = np.array([np.quantile(body.damage_rate, 0.99, axis=(1, 2)) for body in bodies])
         middles, mean = 0.5 * (edges[1:] + edges[:-1]), values.mean(axis=0)
-        axes.semilogy(middles[mean > 0], mean[mean > 0], ".-", color=style.SURFACES[side])
-    axes.axvspan(3.0, 4.0, color=style.FAINT, alpha=0.5)
-    axes.set(xlabel="depth [µm]", ylabel="D of a pass, 1 % of surface")
-    axes.set_title("6. depth", fontsize="medium")
+        shown, color = mean > 0, style.SURFACES[side]
+        axes.semilogx(mean[shown], middles[shown], ".-", color=color, label=f"surface {side}")
+    axes.axhspan(3.0, 4.0, color=style.FAINT, alpha=0.5)
+    axes.set(ylabel="depth [µm]", xlabel="D of a pass, 1 % of surface")
+    axes.invert_yaxis()
+    axes.legend(loc="upper right")
+    axes.set_title("6. depth: published peak at 3 to 4 µm", fontsize="medium", loc="left")
 
 
 def main(words: list[str] | None = None) -> None:
@@ -222,12 +238,15 @@ def main(words: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("folder", type=Path, help="of the lives")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=", ".join(SCENES))
+    parser.add_argument(
+        "--short", action="store_true", help="two seeds a scene, on a mesh too coarse for shares"
+    )
     parser.add_argument("-o", "--output", type=Path, default=Path("seven_signs.png"), metavar="PICTURE")
     chosen = parser.parse_args(words)
     if unknown := [name for name in chosen.scenes if name not in SCENES]:
         parser.error(f"scene {unknown[0]}; allowed: {', '.join(SCENES)}")
     chosen.folder.mkdir(exist_ok=True, parents=True)
-    ensembles = {name: compute(name, chosen.folder) for name in chosen.scenes or SCENES}
+    ensembles = {name: compute(name, chosen.folder, chosen.short) for name in chosen.scenes or SCENES}
     if MPI.COMM_WORLD.rank:
         return
     print("\n".join(lines(ensembles)))

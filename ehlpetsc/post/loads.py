@@ -91,8 +91,17 @@ class Loads(Result):
             )
 
     def read(self, surface: str, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure and traction in +x on the solid of `surface` in frames first .. last-1 [Pa]."""
-        return self.frames("pressure", first, last), self.frames(f"shear_stress_{surface}", first, last)
+        """Pressure and traction in +x on the solid of `surface` in frames first .. last-1 [Pa].
+
+        PostError if a value is not finite: cycles would be counted without it.
+        """
+        names = "pressure", f"shear_stress_{surface}"
+        pressure, shear = (self.frames(name, first, last) for name in names)
+        for name, values in zip(names, (pressure, shear), strict=True):
+            if not np.isfinite(values).all():
+                frame = first + np.flatnonzero(~np.isfinite(values.reshape(len(values), -1)).all(axis=1))[0]
+                raise PostError(f"{self.path}: {name} is not finite in frame {frame}; run the case again")
+        return pressure, shear
 
     def frames(self, name: str, first: int, last: int) -> np.ndarray:
         """Frames first .. last-1 of one dataset, float64."""

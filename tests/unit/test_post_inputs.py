@@ -27,6 +27,19 @@ def test_missing_field_is_refused(name, scene, tmp_path):
         prepare(loads, ("2", "1"), print)
 
 
+@pytest.mark.parametrize("name", ["pressure", "shear_stress_1"])
+def test_field_that_is_not_finite_is_refused(name, scene, tmp_path):
+    """Also in the last frames; the output is not written."""
+
+    def edit(file):
+        file[name][160, 30] = np.nan
+
+    path = write(tmp_path / "a.h5", scene, edit=edit)
+    with pytest.raises(PostError, match=rf"a.h5: {name} is not finite in frame 160; run the case again"):
+        run(Job(str(path), str(tmp_path / "o.h5"), settings=("post.depths=[0.0]",)))
+    assert not (tmp_path / "o.h5").exists()
+
+
 def test_default_depths_reach_the_stresses_of_the_smooth_contact():
     """The largest von Mises stress of a line contact is at 0.7 a."""
     assert (DEPTHS[0], DEPTHS[-2], DEPTHS[-1]) == (0.0, 0.7, 1.0)

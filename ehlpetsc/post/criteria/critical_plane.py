@@ -25,7 +25,14 @@ from ehlpetsc.post.criteria.planes import (
 )
 from ehlpetsc.post.criteria.turning_samples import turning_samples
 from ehlpetsc.post.fatigue.accumulate import evaluate
-from ehlpetsc.post.fatigue.cycles import RESIDUALS, equivalent_points, find_cycles, loop_of, workspace
+from ehlpetsc.post.fatigue.cycles import (
+    RESIDUALS,
+    equivalent_points,
+    find_cycles,
+    history_of,
+    loop_of,
+    workspace,
+)
 from ehlpetsc.post.fatigue.strain_life import DEFAULT_STRAIN, Material, shear_tables
 
 MIN_SOUGHT = 200  # points of a depth whose planes are always sought
@@ -188,7 +195,7 @@ def _worst_planes(
     axes = 3 if stress.shape[1] == 3 else 5
     points, indices = np.empty((axes, stress.shape[2])), np.empty(stress.shape[2], np.int64)
     for p in range(stress.shape[0]):
-        history = stress[p, :, : lengths[p]].copy()
+        history = history_of(stress, p, lengths[p])
         equivalent_points(history, law[0], points)
         few = history[:, indices[: turning_samples(points, lengths[p], indices)]]
         starts, damages = _coarse(grid, few, law, work)
@@ -214,7 +221,7 @@ def _estimates(
     far, of_shear = pairs
     points, angles, best = np.empty((5, stress.shape[2])), np.empty((2, 3)), np.empty(3)
     for p in range(stress.shape[0]):
-        history = stress[p, :, : lengths[p]].copy()
+        history = history_of(stress, p, lengths[p])
         equivalent_points(history, law[0], points)
         begin, worst = ZERO, 0.0
         for pair in range(far + of_shear):
@@ -232,7 +239,7 @@ def _estimates(
             shear_planes(history, begin, end, angles)
             is_better = False
             for k in range(2):
-                damage = plane_damage(angles[k], history, law, 0.0, work)
+                damage = plane_damage(angles[k], history, law, NEGLIGIBLE_RANGE, work)
                 if damage > worst:
                     worst, is_better = damage, True
                     best[:] = angles[k]
@@ -305,7 +312,6 @@ def count_on_planes(
     Of six components planes are sought in the worst `share` of the points; others have a lower bound, the
     damage of the worst of six planes of maximum shear.
     """
-    stress = stress.astype(float, copy=False)  # one compiled version for files and arrays
     law = plane_law(residual, material, constants, strain, cycle_residual)
     damage, theta, phi = _sought(stress, lengths, law, share).T
     x, y, z = np.cos(phi) * np.cos(theta), np.sin(phi), np.cos(phi) * np.sin(theta)

@@ -26,7 +26,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.criteria.planes import Criteria
 from ehlpetsc.post.fatigue.accumulate import evaluate
-from ehlpetsc.post.fatigue.cycles import equivalent_points
+from ehlpetsc.post.fatigue.cycles import equivalent_points, history_of
 
 MAX_ROUNDS = 200  # of the search for the smallest ball
 BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
@@ -265,7 +265,7 @@ def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, o
     slope, limit = limits
     axes = 3 if stresses.shape[1] == 3 else 5
     for p in range(stresses.shape[0]):
-        stress = stresses[p, :, : lengths[p]].copy()
+        stress = history_of(stresses, p, lengths[p])
         points = np.empty((axes, stress.shape[1]))
         equivalent_points(stress, nu, points)
         centre, _ = smallest_ball(points)
@@ -283,7 +283,7 @@ def count_utilisation(
     """Dang Van's utilisation (points, 1) of histories (points, 3 or 6, samples) of these lengths."""
     out = np.empty((len(stress), 1))
     limits = constants.hydrostatic_slope, constants.torsion_limit
-    _utilisations((stress.astype(float, copy=False), lengths), poisson_ratio, residual, limits, out)
+    _utilisations((stress, lengths), poisson_ratio, residual, limits, out)
     return out
 
 

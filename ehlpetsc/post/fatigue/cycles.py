@@ -133,6 +133,14 @@ def loop_of(series: np.ndarray, size: int, i: int, j: int) -> tuple[int, int]:
 
 
 @compiled(error_model="python", nogil=True)
+def history_of(stress: np.ndarray, point: int, length: int) -> np.ndarray:
+    """First samples (3 or 6, length) of a point's history in double precision: all at once take longer."""
+    history = np.empty((stress.shape[1], length))
+    history[:] = stress[point, :, :length]
+    return history
+
+
+@compiled(error_model="python", nogil=True)
 def equivalent_points(stress: np.ndarray, nu: float, points: np.ndarray) -> None:
     """Set points (3 or 5, samples), whose distances are von Mises stresses, from stress (3 or 6, samples)."""
     root, plane = sqrt(3.0), stress.shape[0] == 3

@@ -33,6 +33,8 @@ from ehlpetsc.post.stresses.half_space import (
 ORDER = [0, 2, 5, 1, 3, 4]  # of the components in histories
 IS_EVEN_ACROSS = np.array([True, True, True, True, False, False])  # in this order, of both loads
 IS_EVEN_ALONG = np.array([[1, 1, 0, 1, 0, 1], [0, 0, 1, 0, 1, 0]], bool)  # under pressure, under traction
+# of spectra at opposite offsets, as numbers (24,): of values, then of slopes
+MIRRORED = np.outer([1, -1], np.where(IS_EVEN_ALONG == IS_EVEN_ACROSS, 1, -1)).ravel()
 NEAR_ELEMENTS = 8  # beyond, a kernel is smooth over an element
 HAT_REACH = 4  # nodes either side whose hats replace the cubic of a node far away
 ROWS_AT_ONCE = 32
@@ -117,10 +119,11 @@ def offset_spectra(
 
 
 def kernel_table(ny: int, nx: int, width: float, depth: float, nu: float, periodic: bool) -> np.ndarray:
-    """Kernel spectra (ky, 24, 6, 2, kx) at the OFFSETS, up to the last wave numbers that matter.
+    """Kernel spectra (ky, 24, 3, 2, kx) at the OFFSETS below 1/2, up to the last wave numbers that matter.
 
     The 24 are the components under pressure, traction and the slopes of both, the 2 real and imaginary parts.
-    Width of rows and depth in elements along x. Kernels at an offset from the next node are mirrored ones.
+    Width of rows and depth in elements along x. Phases are those about half an element, so that the kernels
+    at the opposite offset, which are mirrored, have conjugate spectra, times the sign of `MIRRORED`.
     """
     rows, columns = padded_shape(ny, nx, periodic)
     along = 2 * np.pi / columns * np.arange(columns // 2 + 1)
@@ -128,17 +131,22 @@ def kernel_table(ny: int, nx: int, width: float, depth: float, nu: float, period
     wave_number = np.hypot(along, across[:, None])
     factor = low_pass(wave_number, depth, wave_number.max() * (1 + 1e-9))
     kept = np.s_[: np.count_nonzero(factor[:, 0]), : np.count_nonzero(factor[0])]
-    signs = np.where(IS_EVEN_ALONG == IS_EVEN_ACROSS, 1, -1) * np.array([1, -1])[:, None, None]
-    turn = signs[..., None, None] * np.exp(1j * along)
-    shape = factor[kept].shape
-    table = np.empty((shape[0], N_LOADS * N_LOADS * COMPONENTS, OFFSETS.size, 2, shape[1]))
+    shape, half = factor[kept].shape, OFFSETS.size // 2
+    table = np.empty((shape[0], MIRRORED.size, half, 2, shape[1]))
     sums = hat_sums(ny, nx, width, depth, nu, periodic)
-    for k in range(OFFSETS.size // 2):
-        left = factor * offset_spectra(sums, ny, width, depth, nu, OFFSETS[k], periodic)
-        for place, spectra in ((k, left), (OFFSETS.size - 1 - k, turn * left.conj())):
-            by_row = np.moveaxis(spectra.reshape(-1, *factor.shape)[:, *kept], 1, 0)
-            table[:, :, place, 0], table[:, :, place, 1] = by_row.real, by_row.imag
+    for k in range(half):
+        spectra = offset_spectra(sums, ny, width, depth, nu, OFFSETS[k], periodic)
+        spectra = factor * np.exp(-0.5j * along) * spectra
+        by_row = np.moveaxis(spectra.reshape(-1, *factor.shape)[:, *kept], 1, 0)
+        table[:, :, k, 0], table[:, :, k, 1] = by_row.real, by_row.imag
     return table
+
+
+def half_weights(weights: np.ndarray) -> np.ndarray:
+    """Weights (frames, 2, 3) of even and of odd parts of a kernel_table from those (frames, 6) of OFFSETS."""
+    half = weights.shape[1] // 2
+    left, right = weights[:, :half], weights[:, : half - 1 : -1]
+    return np.stack([left + right, left - right], axis=1)
 
 
 @compiled(error_model="python", nogil=True, fastmath={"contract"})
@@ -155,7 +163,7 @@ def _add_product(
 def _multiply(
     table: np.ndarray, weights: np.ndarray, loads: np.ndarray, signs: np.ndarray, out: np.ndarray
 ) -> None:
-    """Add to spectra out (frames, 6, rows, kx) from a kernel_table, weights and loads (frames, 4, rows, kx).
+    """Add to spectra out (frames, 6, rows, kx) from a kernel_table, its weights, loads (frames, 4, rows, kx).
 
     Rows of negative wave numbers follow from those of positive ones by the signs (6,).
     """
@@ -164,14 +172,13 @@ def _multiply(
     for row in range(table.shape[0]):
         mirrored = (rows - row) % rows
         for frame in range(weights.shape[0]):
-            w = weights[frame]
             for m in range(table.shape[1]):
                 load, part = m // 6, m % 6
                 for half, values in ((0, real), (1, imaginary)):
                     at = table[row, m, :, half]
+                    w = weights[frame, half if MIRRORED[m] > 0 else 1 - half]
                     for k in range(count):
-                        low = w[0] * at[0, k] + w[1] * at[1, k] + w[2] * at[2, k]
-                        values[k] = low + w[3] * at[3, k] + w[4] * at[4, k] + w[5] * at[5, k]
+                        values[k] = w[0] * at[0, k] + w[1] * at[1, k] + w[2] * at[2, k]
                 _add_product(real, imaginary, loads[frame, load, row], 1.0, out[frame, part, row])
                 if mirrored != row:
                     load_row, sign = loads[frame, load, mirrored], signs[part]
@@ -192,7 +199,8 @@ class BlockStress:
         self.tables = [kernel_table(ny, nx, width, depth, nu, periodic) for depth in depths]
 
     def transform(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """Spectra (frames, 4, rows, n/2 + 1) of the loads (frames, ny, nx) and their slopes along x.
+        """Spectra (frames, 4, rows, n/2 + 1) of the loads (frames, ny, nx) and their slopes along x, with
+        the other half of the phases of a kernel_table.
 
         Beyond the end nodes a load falls to zero over one element.
         """
@@ -202,13 +210,15 @@ class BlockStress:
             for k in range(N_LOADS):
                 limited_slopes(frame[k], frame[k + N_LOADS])
         rows, columns = self.shape
-        return fft.fft(fft.rfft(loads, columns), rows, axis=-2, overwrite_x=True)
+        spectra = fft.rfft(loads, columns)
+        spectra *= np.exp(1j * np.pi / columns * np.arange(spectra.shape[-1]))
+        return fft.fft(spectra, rows, axis=-2, overwrite_x=True)
 
     def __call__(self, depth: int, spectra: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """Stresses (frames, 6, ny, nx) of depth number `depth` at offsets with these `offset_weights`."""
         table, (rows, columns) = self.tables[depth], self.shape
         out = np.zeros((len(spectra), COMPONENTS, rows, table.shape[-1]), complex)
-        _multiply(table, weights, spectra, np.where(IS_EVEN_ACROSS, 1.0, -1.0), out)
+        _multiply(table, half_weights(weights), spectra, np.where(IS_EVEN_ACROSS, 1.0, -1.0), out)
         found = np.empty((len(spectra), COMPONENTS, self.rows[0], self.nodes))
         for frame, field in zip(out, found, strict=True):  # one by one: within the cache
             lines = fft.ifft(frame, axis=-2, overwrite_x=True)[:, : self.rows[0]]
