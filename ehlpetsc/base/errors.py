@@ -5,8 +5,10 @@ The message of an error that a user can correct states the fault, its place, and
 
 from __future__ import annotations
 
+import errno
 import os
 from enum import IntEnum
+from pathlib import Path
 
 
 class ExitStatus(IntEnum):
@@ -29,6 +31,8 @@ def not_written(error: Exception, path: str | os.PathLike | None = None) -> str:
     """Message of a failed write: the file, by default that of the error if any, and the system's reason."""
     path, number = path or getattr(error, "filename", None), getattr(error, "errno", None)
     reason = os.strerror(number) if number else str(error)
+    if number == errno.ENOENT and path and not (folder := Path(path).parent).exists():
+        reason += f": create the folder {folder} first"
     return f"{path}: not written, {reason}" if path else str(error)
 
 

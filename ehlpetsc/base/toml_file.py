@@ -36,11 +36,18 @@ def read_text(path: str | os.PathLike) -> str:
     except UnicodeDecodeError as error:
         raise CaseError([f"{path}: not UTF-8 text (byte {error.start}); allowed: a TOML file"]) from None
     except (OSError, ValueError) as error:
+        if isinstance(error, IsADirectoryError):
+            raise CaseError([f"{path}: a folder; allowed: a TOML file of a case"]) from None
         reason = getattr(error, "strerror", None) or str(error)
-        known = Path(path).parent.glob("*.toml") if isinstance(error, FileNotFoundError) else ()
-        close = difflib.get_close_matches(Path(path).name, [file.name for file in known])
-        meant = f"; did you mean {Path(path).with_name(close[0])}?" if close else ""
+        meant = similar_file(path, "*.toml") if isinstance(error, FileNotFoundError) else ""
         raise CaseError([f"{path}: cannot be read: {reason}{meant}"]) from None
+
+
+def similar_file(path: str | os.PathLike, pattern: str = "*") -> str:
+    """Hint to the file of the same folder with the most similar name, "" without one."""
+    known = [file.name for file in Path(path).parent.glob(pattern) if file.is_file()]
+    close = difflib.get_close_matches(Path(path).name, known, n=1)
+    return f"; did you mean {Path(path).with_name(close[0])}?" if close else ""
 
 
 def parse_toml(path: str | os.PathLike, text: str) -> Tables:
@@ -48,16 +55,21 @@ def parse_toml(path: str | os.PathLike, text: str) -> Tables:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # some errors of number conversions pass tomllib
-        raise CaseError([f"{path}: not valid TOML: {error}{_decimal_comma(text, str(error))}"]) from None
+        raise CaseError([f"{path}: not valid TOML: {error}{_hint(text, str(error))}"]) from None
 
 
-def _decimal_comma(text: str, message: str) -> str:
-    """Hint to a number with a decimal comma in the line of a fault of TOML, "" without one."""
+def _hint(text: str, message: str) -> str:
+    """Hint to the cause of a fault of TOML in its line, "" to none."""
     at, lines = re.search(r"at line (\d+)", message), text.splitlines()
-    line = lines[int(at[1]) - 1] if at and int(at[1]) <= len(lines) else ""
-    number = re.search(r"=\s*([+-]?\d+,\d+)|([+-]?0,0\d+)", line.partition("#")[0])  # or a list [1,2]
-    found = number and (number[1] or number[2])
-    return f'; "{found}" is written {found.replace(",", ".")}' if found else ""
+    line = (lines[int(at[1]) - 1] if at and int(at[1]) <= len(lines) else "").partition("#")[0].strip()
+    number = re.search(r"=\s*([+-]?\d+,\d+)|([+-]?0,0\d+)", line)  # or a list [1,2]
+    if number:
+        found = number[1] or number[2]
+        return f'; "{found}" is written {found.replace(",", ".")}'
+    if "overwrite" in message:
+        return f"; {line!r}: the table has this key already"
+    word = re.fullmatch(r"[\w.-]+\s*=\s*(\w*)", line)
+    return f"; {line!r}: {'text needs quotation marks' if word[1] else 'a value is missing'}" if word else ""
 
 
 def is_plain(text: str) -> bool:

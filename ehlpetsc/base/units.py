@@ -51,9 +51,11 @@ FURTHER = {
 ZEROS = {"degC": 273.15, "°C": 273.15, "C": 273.15, "degF": 459.67 * 5 / 9}  # K
 UNIT_SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*"} | {"²": "^2", "³": "^3"})
 VALUE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\d\s.].*|1\s*/.*)")
+PLAIN_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
 COMMA = re.compile(r"\s*[-+]?[\d.]*,[\d.,]*\d.*|\s*[-+]?\d[\d.]*,.*")
 TOKEN = r"\s*(?:(\d+\.?\d*(?:e[-+]?\d+)?)|([A-Za-z%°]+)(?:(?:\^|\*\*)?([-+]?\d))?|([*/()]))"
 ANY = "a number, or %"  # where there is no unit
+UNIT_SAMPLES = "a product of such as N, kN, GPa, um, mm, ms, rpm"
 OIL_DENSITY = 870.0  # kg/m^3, of the example in a message
 MAX_DIGITS = 15  # of a converted number: 5 um is 5e-6, not 4.9999999999999996e-06
 
@@ -73,6 +75,8 @@ def converted(value: object, unit: str, is_difference: bool = False, depth: int 
     if isinstance(value, str) and COMMA.fullmatch(value):
         point = value.replace(".", "").replace(",", ".", 1).strip()
         raise UnitFault(f'"{value}": a comma in a number; allowed: digits and a decimal point, as "{point}"')
+    if isinstance(value, str) and PLAIN_NUMBER.fullmatch(value):
+        raise UnitFault(f'"{value}": a number in quotation marks; allowed: {value.strip()}')
     if not match:
         return value
     number, text = float(match[1]), match[2].strip()
@@ -93,9 +97,8 @@ def factor(text: str, unit: str, number: float = 1.0) -> float:
     try:
         size, dimensions = _unit(text)
     except (KeyError, IndexError, OverflowError, ZeroDivisionError):
-        raise UnitFault(
-            f"unknown unit; allowed: {f'a number in {unit}, or with a unit' if unit else ANY}"
-        ) from None
+        allowed = f"a number in {unit}, or with a unit, {UNIT_SAMPLES}" if unit else ANY
+        raise UnitFault(f"unknown unit; allowed: {allowed}") from None
     wanted_size, wanted = _unit(unit)
     if unit == "1/min" and dimensions == (*wanted[:-1], 1):
         size, dimensions = size / (2 * pi), wanted

@@ -20,6 +20,7 @@ import numpy as np
 
 from ehlpetsc import __version__
 from ehlpetsc.base.errors import OutputError, OutputLost, not_written
+from ehlpetsc.base.toml_file import similar_file
 from ehlpetsc.results.output_guard import replacing
 
 LIBVER = ("v110", "v110")  # the first with SWMR, that of Debian 12, which cannot read files of newer formats
@@ -44,7 +45,7 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
     Further options are those of `h5py.File`; an OutputError if there is no readable HDF5 file.
     """
     if not Path(path).is_file():
-        raise OutputError(f"{path}: no such file")
+        raise OutputError(f"{path}: no such file{similar_file(path, '*.h5')}")
     try:
         return open_hdf5(path, "r", **options)
     except (OSError, ValueError, RuntimeError) as fault:

@@ -95,7 +95,10 @@ def test_exactly_one_case_file_is_required(arguments, message):
     [
         (["-o"], "^ehlpetsc: --output: expected one argument; "),
         (["--time-limit", "0"], "--time-limit: 0: .* > 0"),
-        (["--output", "nowhere/f.h5"], "nowhere/f.h5: .*, No such file or directory"),
+        (
+            ["--output", "nowhere/f.h5"],
+            "nowhere/f.h5: .*, No such .*: create the folder nowhere first",
+        ),
         (["--restart", "none.h5"], r"none\.h5: .*steady"),
         (["-snes_type", "vinewtonssls"], "-snes_type vinewtonssls "),
         (["-pc_type", "nosuch"], "PETSc .*-pc_type nosuch: "),

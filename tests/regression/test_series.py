@@ -124,7 +124,10 @@ def test_series_in_a_removed_folder_ends_on_every_rank(tmp_path):
     (tmp_path / "out").mkdir()
     done = series(tmp_path, "--output", "out/out.h5", tampered=("lost", 0, 5))
     assert done.returncode == 5
-    assert re.search(r"ehlpetsc: out/out\.series\.json: .*, No such file or directory\n", done.stderr)
+    assert re.search(
+        r"ehlpetsc: out/out\.series\.json: .*, No such file or directory: create the folder out first\n",
+        done.stderr,
+    )
     assert re.search(r"out_viscosity_\S+\.h5: .*No such file or directory", done.stderr)
     assert "Traceback" not in done.stderr and "index:" not in done.stdout
     assert done.stdout.strip().splitlines()[-1].startswith("ehlpetsc: output lost steps=")

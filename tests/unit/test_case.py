@@ -208,10 +208,12 @@ def test_utf_16_is_named(tmp_path, encoding):
         ("a = -12,5  # x", '; "-12,5" is written -12.5'),
         ("a = [0,0191, 0,02]", '; "0,0191" is written 0.0191'),
         ("a = [16,24", ""),
-        ("a = 1.5 # 2,5\nb = ", ""),
+        ("a = 1.5 # 2,5\nb = ", "; 'b =': a value is missing"),
+        ("law = roelands  # Pa", "; 'law = roelands': text needs quotation marks"),
+        ("a = 1\na = 2.5", "; 'a = 2.5': the table has this key already"),
     ],
 )
-def test_a_decimal_comma_is_named(tmp_path, line, hint):
+def test_the_cause_of_a_fault_of_toml_is_named(tmp_path, line, hint):
     path = tmp_path / "case.toml"
     path.write_text(f"title = 'x'\n{line}\n")
     assert fault(path).endswith(f"){hint}")
@@ -327,9 +329,14 @@ def test_written_toml_and_stored_text_give_the_same_case(path):
 
 
 @pytest.mark.parametrize(
-    "name, hint", [("mine.tml", r"; did you mean \S+mine\.toml\?"), ("other/x.toml", "")]
+    "name, message",
+    [
+        ("mine.tml", r"No such file or directory; did you mean \S+mine\.toml\?"),
+        ("other/x.toml", "No such file or directory"),
+        ("", ": a folder; allowed: a TOML file of a case"),
+    ],
 )
-def test_mistyped_name_of_a_case_is_answered_by_a_close_one(name, hint, tmp_path):
+def test_mistyped_name_of_a_case_is_answered_by_a_close_one(name, message, tmp_path):
     (tmp_path / "mine.toml").touch()
-    with pytest.raises(CaseError, match=rf"No such file or directory{hint}$"):
+    with pytest.raises(CaseError, match=rf"{message}$"):
         case.load(tmp_path / name)

@@ -99,6 +99,8 @@ def test_heading_of_a_gear_run_has_the_steps_of_its_changing_conditions():
     gears = case.load(CASES / "fzg.toml", ())
     heading = forecast.banner(gears, Scales.of(gears), None, 1)[1]
     assert " 3170 steps; 1 rank" in heading
+    steady = case.load(CASES / "table1_smooth.toml", ())
+    assert " unknowns, steady; 1 rank" in forecast.banner(steady, Scales.of(steady), None, 1)[1]
     assert starting(lines("fzg.toml"), "Time: ")[0].endswith("; 3170 steps")
 
 

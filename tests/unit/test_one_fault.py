@@ -5,7 +5,7 @@ import re
 import tomllib
 
 import pytest
-from support import one_fault
+from support import CASES, one_fault
 from support.maps import GEARS, LAYER, MAPS, POINT
 
 from ehlpetsc.base.errors import CaseError
@@ -55,6 +55,16 @@ def test_a_file_that_no_contact_can_use_is_reported_beside_other_faults(tmp_path
         load(faulty, ["mesh.inlet=4"])
     heads = sorted(line.split(": ")[1].split(" = ")[0] for line in refused.value.faults)
     assert heads == ["mesh.inlet", "surface.1.file"]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("fank.csv", r"no such file: \S+; did you mean \S+flank\.csv\?"), ("", r"a folder: \S+")],
+)
+def test_a_surface_file_that_is_none_is_answered_by_a_close_one(tmp_path, name, message):
+    (tmp_path / "flank.csv").write_text("0 1")
+    fault = one_fault(load, CASES / "mixed.toml", {"surface": {"1": {"file": str(tmp_path / name)}}})
+    assert re.search(f"{message}$", fault)
 
 
 def test_bulk_temperature_of_losses_with_a_map_and_without_its_file(tmp_path, monkeypatch):

@@ -113,6 +113,8 @@ def test_series_accepts_units():
         ("contact.radius", "10,5 mm", '"10,5 mm": a comma in a number; allowed: digits .* as "10.5 mm"$'),
         ("contact.load", "1.000,5 N/mm", 'as "1000.5 N/mm"$'),
         ("motion.entrainment_speed", "3,0", 'as "3.0"$'),
+        ("motion.entrainment_speed", "3.0", '"3.0": a number in quotation marks; allowed: 3.0$'),
+        ("contact.load", "350 kn/mm", "unknown unit; .* or with a unit, a product of such as N, kN, "),
         ("fluid.viscosity", "15 cSt", '"15 cSt": kinematic, .* density, at 870 kg/m.3 "13.05 mPa s"$'),
         ("fluid.viscosity", "0.2 St", '"0.2 St": kinematic, .* "17.4 mPa s"$'),
     ],

@@ -11,6 +11,7 @@ from typing import TypeVar
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.base.toml_file import similar_file
 from ehlpetsc.surfaces.files.text import UNITS, Layout, read_softgauge, text_columns, units_in
 from ehlpetsc.surfaces.files.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
 from ehlpetsc.surfaces.filters import groups, held, spikes, without_no_data
@@ -42,7 +43,8 @@ def read_once(read: Callable[[Path, Layout], R]) -> Callable[..., R]:
         path = Path(path)
         try:
             if not path.is_file():
-                raise ProfileError(f"no such file: {path}")
+                fault = "a folder" if path.is_dir() else "no such file"
+                raise ProfileError(f"{fault}: {path}{similar_file(path)}")
             state = path.stat()
             return remembered(path, layout, state.st_mtime_ns, state.st_size)
         except (OSError, ValueError) as error:  # ValueError: a name no file system takes
