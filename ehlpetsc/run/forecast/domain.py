@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
@@ -39,7 +40,8 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
     """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure."""
     if case.fluid is None:
         return []
-    notes = [] if case.fluid.inlet_film is not None else NEAR_EDGES[case.kind](case, scales)
+    near = _near_edges if KINDS[case.kind].is_whole else _near_inlet
+    notes = [] if case.fluid.inlet_film is not None else near(case, scales)
     film = _smallest_expected_film(case, scales)
     opening = inlet_opening(film, case.mesh.points_per_half_width)
     if MESH_MARGIN * MAX_FILM_SLOPE < opening:
@@ -75,7 +77,7 @@ def refusals(case: Case, scales: Scales) -> list[str]:
 def ramps_coarsely(case: Case) -> bool:
     """Whether roughness, ramped up in the plane, is all that a state on a coarser mesh has to hand on."""
     only_rough = case.heat is None and case.wear is None and case.contact.yield_pressure is None
-    return case.kind != "line" and case.time.start == "rough" and case.fluid is not None and only_rough
+    return KINDS[case.kind].is_areal and case.time.start == "rough" and case.fluid is not None and only_rough
 
 
 def has_passes(case: Case) -> bool:
@@ -132,18 +134,11 @@ def _near_inlet(case: Case, scales: Scales) -> list[str]:
     ]
 
 
-NEAR_EDGES: dict[str, Callable[[Case, Scales], list[str]]] = {
-    "line": _near_inlet,
-    "strip": _near_inlet,
-    "point": _near_edges,
-}
-
-
 def rolling_warnings(case: Case, scales: Scales) -> list[str]:
     """Rolling friction that the oil before and beside the mesh would add, where no sliding hides it."""
     if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
         return []
-    return _point_rolling(case, scales) if case.kind == "point" else _line_rolling(case, scales)
+    return (_point_rolling if KINDS[case.kind].is_whole else _line_rolling)(case, scales)
 
 
 def _line_rolling(case: Case, scales: Scales) -> list[str]:
