@@ -84,13 +84,15 @@ class CompliantContact(SeparatedContact):
         self.layer = layer
         self.law = tuple(layer.law)
         self.minimum_film = asperity_separation(1.0, *self.law)
-        self._known: tuple = ()
+        self._known: dict[int, tuple] = {}
 
     def _solids(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Pressure of the asperities and its slope, kept: an iteration needs it six times."""
-        if not self._known or not np.array_equal(w, self._known[0]):
-            self._known = w.copy(), asperity_pressures(w, self.law)
-        return self._known[1]
+        """Pressure of the asperities and its slope, kept: an iteration asks for that of a film six times."""
+        before, found = self._known.get(w.size, (None, None))
+        if before is None or not np.array_equal(w, before):
+            found = asperity_pressures(w, self.law)
+            self._known[w.size] = w.copy(), found
+        return found
 
     def state(self, q: np.ndarray, w: np.ndarray) -> NodeState:
         solids, slope = self._solids(w)

@@ -110,7 +110,8 @@ class SparseForm:
         rows = p.first, p.first, p.last, self.pointers, self.places
         fill(tuple(whole), derivatives, self.term, scales, self.mesh, rows, blocks, self.by)
         if is_split:
-            self.parts[0][:], self.parts[1][:] = blocks[self.is_own], blocks[~self.is_own]
+            for part, places in zip(self.parts, self.split, strict=True):
+                np.take(blocks, places, axis=0, out=part, mode="clip")  # else into a copy of `part`
         self.matrix.stateIncrease()
         self.pc.setUp()
         self.kind, self.p_s = whole[0][p.first : p.last], whole[5][p.first : p.last]
@@ -127,8 +128,9 @@ class SparseForm:
         if self.matrix.comm.size > 1:
             own, others, unused = (ctypes.c_void_p() for _ in range(3))
             library.MatMPIBAIJGetSeqBAIJ(whole, *map(ctypes.byref, (own, others, unused)))
-            self.is_own = (self.columns >= self.problem.first) & (self.columns < self.problem.last)
-            parts, counts = [own, others], [self.is_own.sum(), (~self.is_own).sum()]
+            is_own = (self.columns >= self.problem.first) & (self.columns < self.problem.last)
+            self.split = np.flatnonzero(is_own), np.flatnonzero(~is_own)
+            parts, counts = [own, others], [len(places) for places in self.split]
         found = []
         for part, count in zip(parts, counts, strict=True):
             values = ctypes.POINTER(ctypes.c_double)()
