@@ -85,7 +85,7 @@ def draw(picture: str) -> None:
     panel.minorticks_off()
     panel.yaxis.set_major_formatter("{x:g}")
     panel.grid(lw=0.3)
-    style.legend_beside(panel)
+    style.legend_beside(panel, title="wavelength, slide/roll ratio: quantity")
     style.set_title(
         figure, "Waves of film and pressure in full films (circles), mixed contact with a layer (squares)"
     )
