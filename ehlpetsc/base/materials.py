@@ -29,6 +29,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import pi, sqrt
 
+MEAN_STRESSES = ("none", "morrow", "goodman", "gerber", "swt", "walker")  # corrections
 PLASTIC_STRAIN = 0.002  # that defines the cyclic yield strength
 FLOW_FACTOR = (2 + pi) / sqrt(3)  # 2.97
 HRC_60 = 654  # HB of 60 HRC, ASTM E140

@@ -17,6 +17,8 @@ from ehlpetsc.physics.operation import Conditions
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
 
+NODE_TOLERANCE = 1e-9  # relative: half-widths, and x/a of nodes, nearer than this are equal
+
 
 def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[float]) -> float:
     r"""Reduced modulus E' [Pa], :math:`2/E'=(1-\nu_1^2)/E_1+(1-\nu_2^2)/E_2`.

@@ -14,7 +14,7 @@ import numpy as np
 from ehlpetsc.base.command_line import CommandParser, ProgressLine, exit_status
 from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
-from ehlpetsc.case.tables.outputs import MEAN_STRESSES
+from ehlpetsc.base.materials import MEAN_STRESSES
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of

@@ -22,10 +22,10 @@ from ehlpetsc.base.toml_file import plain
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
+from ehlpetsc.physics.scales import NODE_TOLERANCE
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
-from ehlpetsc.run.simulation import NODE_TOLERANCE
 from ehlpetsc.stepping.state import State, TimeLevel
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.scheme import solver_of
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
-from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
 from ehlpetsc.run.forecast.domain import domain_faults
 from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
@@ -34,7 +34,6 @@ from ehlpetsc.stepping.state import State
 from ehlpetsc.stepping.time_stepping import LAST_OF_RAMP, TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
-NODE_TOLERANCE = 1e-9  # relative: half-widths, and x/a of nodes, nearer than this are equal
 MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a finer one that fails without
 MIN_HEATED_POINTS = 8  # on the half-width of the start: coarsest mesh of one with heat
 FINEST_NODES = 60_000  # of a mesh whose rough start takes one coarser mesh alone

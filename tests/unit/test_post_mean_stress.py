@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.case.tables.outputs import MEAN_STRESSES, POST_KEYS
+from ehlpetsc.base.materials import MEAN_STRESSES
+from ehlpetsc.case.tables.outputs import POST_KEYS
 from ehlpetsc.post import Material, cycles_to_failure, damage
 from ehlpetsc.post.fatigue.accumulate import CORRECTIONS, reversed_range
 from ehlpetsc.post.fatigue.cycles import RESIDUALS

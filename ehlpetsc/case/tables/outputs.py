@@ -7,12 +7,12 @@ import re
 from typing import Any
 
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
+from ehlpetsc.base.materials import MEAN_STRESSES
 from ehlpetsc.base.quantities import DEFAULT_FIELDS, FIELDS
 
 DOTTED_KEY = re.compile(r"[A-Za-z_]+(\.[A-Za-z_0-9]+)+")
 MAX_MEMBERS = 10_000  # of a series
 STRENGTH = ("Pa", 1e6, 1e12)
-MEAN_STRESSES = ("none", "morrow", "goodman", "gerber", "swt", "walker")
 MAX_DEPTH, MAX_RESIDUAL = 100.0, 1e10  # z/a, Pa
 
 OUTPUT_KEYS = {

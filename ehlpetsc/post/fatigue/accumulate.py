@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.case.tables.outputs import MEAN_STRESSES
+from ehlpetsc.base.materials import MEAN_STRESSES
 from ehlpetsc.post.fatigue.cycles import RESIDUALS, find_cycles, workspace
 from ehlpetsc.post.fatigue.strain_life import (
     DEFAULT_STRAIN,
