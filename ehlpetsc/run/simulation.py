@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from os import PathLike
@@ -272,11 +273,11 @@ class Simulation:
         return state
 
     def _started(self, watch: Watch) -> State:
-        failures = []
+        failures, begun = [], self._ramped(watch)
         for guess, records in self._guesses(watch):
             self._print_heading(f"steady start on {self.scales.grid.n} nodes")
             try:
-                return self.stepper.start(self._records | records, watch, guess, self._ramped(watch))
+                return self.stepper.start(self._records | records, watch, guess, begun)
             except NotConverged as error:
                 if not isinstance(error.__cause__, NoSteadyStart):
                     raise
@@ -318,7 +319,7 @@ class Simulation:
         return guess_of(state, coarse.stepper.problem, self.stepper.problem), records
 
     def _ramped(self, watch: Watch) -> State | None:
-        """State during a rough start on a coarser mesh, interpolated; None: the case has no such ramp."""
+        """State during a rough start on a coarser mesh, interpolated; None: no such ramp, or no solution."""
         if self.case.time is None or self.case.time.ramp == "fine":
             return None
         from ehlpetsc.run.coarse_start import coarser, guess_of
@@ -326,11 +327,15 @@ class Simulation:
         nested = "coarse" if self.scales.grid.n > FINEST_NODES else "fine"
         coarse = Simulation(coarser(self.case, nested), self.comm, self._options)
         with coarse.options:
-            guesses = coarse._guesses(watch)
-            guess, records = next(guesses)
-            begun = coarse._records | records, watch, guess, coarse._ramped(watch)
-            state = coarse.stepper.ramped(*begun, LAST_OF_RAMP)
-        return replace(state, unknowns=guess_of(state, coarse.stepper.problem, self.stepper.problem))
+            begun = coarse._ramped(watch)
+            for guess, records in coarse._guesses(watch):
+                with suppress(NotConverged):
+                    state = coarse.stepper.ramped(
+                        coarse._records | records, watch, guess, begun, LAST_OF_RAMP
+                    )
+                    of_mesh = guess_of(state, coarse.stepper.problem, self.stepper.problem)
+                    return replace(state, unknowns=of_mesh)
+        return None
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.dimensionless.step + 1} from {1e6 * self.dimensionless.time:.4f} us")

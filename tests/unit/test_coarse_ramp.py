@@ -8,10 +8,11 @@ petsc4py.init([])
 
 from support.points import point
 
-from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.errors import CaseError, NotConverged
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.stepping.time_stepping import TimeStepping
 
 
 def tables(ramp):
@@ -40,6 +41,19 @@ def test_film_of_a_coarse_ramp_ends_as_that_of_a_fine_one_and_takes_a_few_of_its
     )
     assert at_begin > 0.05  # it falls by ten in each 1.3 half-widths
     assert at_end < 1e-3
+
+
+def test_mesh_does_the_ramp_itself_where_the_coarser_one_has_no_solution(monkeypatch):
+    def fail_on_coarse(stepping, records, watch, guess, begun, left=0.0):
+        if left:
+            raise NotConverged("steady start")
+        return ramped(stepping, records, watch, guess, begun, left)
+
+    states, ramped = [], TimeStepping.ramped
+    monkeypatch.setattr(TimeStepping, "ramped", fail_on_coarse)
+    for ramp in ("fine", "coarse"):
+        states.append(Simulation(load(tables(ramp))).advance())
+    np.testing.assert_array_equal(states[1].pressure, states[0].pressure)
 
 
 @pytest.mark.parametrize(
