@@ -182,6 +182,10 @@ def _read(file: h5py.File) -> LifeHistory:
     groups = [file[f"surface/{k}"] for k in (1, 2)]
     fixed = [[group[name][:] for name in BODY_DATASETS] for group in groups]
     changing = [[group[name][:count] for name in ROW_DATASETS] for group in groups]
+    for k, values in enumerate(changing, 1):
+        for name, rows in zip(ROW_DATASETS, values, strict=True):
+            if np.isnan(rows).any():
+                raise ValueError(f"surface/{k}/{name} contains nan")
     plastic = {name: _records(file, name, count) for name in file.get("records", {})}
     for row in range(count):
         bodies = tuple(

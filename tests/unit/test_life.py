@@ -285,6 +285,17 @@ def test_longer_or_annotated_life_is_continued(change, tmp_path):
         stored_or_new(other, path, overwrite=False)
 
 
+def test_stored_life_with_nan_is_refused_and_kept(tmp_path):
+    stored, path = LifeHistory(load(COARSE_LIFE).text, "title"), tmp_path / "a.life.h5"
+    one = body()
+    stored.add({"passes": 10, "jump": 10}, (one, one._replace(damage=np.nan * one.damage)), {})
+    save_life(stored, path)
+    kept = path.read_bytes()
+    with pytest.raises(OutputError, match=r"a.life.h5: damaged \(surface/2/damage contains nan\)"):
+        stored_or_new(load(COARSE_LIFE), path, overwrite=False)
+    assert path.read_bytes() == kept
+
+
 def test_life_on_an_unresolved_profile_is_refused(tmp_path):
     with pytest.raises(CaseError, match=r"surface.1: .*95.8 %.*points_per_half_width = 98"):
         run_life(COARSE_LIFE, tmp_path / "a.life.h5")
