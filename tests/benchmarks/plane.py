@@ -11,10 +11,11 @@ of a circular contact, M = 200 and L = 10, each in a process of its own; every t
 Waves and roughness fill the contact from the first step on (`time.start = "rough"`).
 
 Time is processor time, on several ranks wall time; its unit is a zero-padded convolution of the mesh, the
-median of some in the same process. The last column is the processor time of the whole process. Errors of the
-smooth films, the minimum that of a parabola through 3 x 3 nodes, are against check values, extrapolated from
-two independent programs, and have an order and a limit; all others are against the finest mesh at the same
-instant.
+median of some in the same process. Without exchange is the processor time of a rank outside of the messages
+that are counted; with `OMPI_MCA_mpi_yield_when_idle=1` waiting takes hardly any. The last column is the
+processor time of the whole process. Errors of the smooth films, the minimum that of a parabola through 3 x 3
+nodes, are against check values, extrapolated from two independent programs, and have an order and a limit;
+all others are against the finest mesh at the same instant.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 ENVIRONMENT = dict(os.environ)  # of other processes: without the variables that MPI sets in this one
@@ -73,6 +75,9 @@ COLUMNS = {
     "gmres": "GMRES an iteration",
     "builds": "builds a step",
     "seconds": "s a step",
+    "worked": "without exchange",
+    "calls": "exchanges a step",
+    "sent": "MB sent",
     "convolution": "convolution, ms",
     "relative": "convolutions a step",
     "memory": "MB a rank",
@@ -118,6 +123,54 @@ class Counter:
         return self.solver.system.matrices.elimination.builds
 
 
+class Traffic(MPI.Intracomm):
+    """Communicator that counts its calls, the bytes that this rank sends and the time in them.
+
+    PETSc's own messages, of norms and of overlapping rows, are not among them.
+    """
+
+    calls, sent, seconds = 0, 0, 0.0
+
+    @classmethod
+    def of(cls, simulation: Simulation) -> Traffic:
+        """Communicator of all parts of a simulation from now on."""
+        system = simulation.stepper.solver.system
+        counted, elimination = cls(system.ranks), system.matrices.elimination
+        parts = [system, system.exchange, system.matrices, elimination, system.jacobian]
+        parts += [system.problem.deflection.convolution.ranks]
+        parts += [factors.coarse for factors in (elimination.kept, elimination.factors) if factors]
+        for part in filter(None, parts):
+            part.ranks = counted
+        return counted
+
+
+def counted(name: str, size: Callable) -> Callable:
+    """Method of a communicator that counts; `size`: bytes that a rank sends, of its arguments."""
+    call = getattr(MPI.Intracomm, name)
+
+    def method(ranks: Traffic, *arguments: Any, **named: Any) -> Any:
+        ranks.calls, ranks.sent = ranks.calls + 1, ranks.sent + size(ranks, *arguments)
+        at = time.process_time()
+        try:
+            return call(ranks, *arguments, **named)
+        finally:
+            ranks.seconds += time.process_time() - at
+
+    return method
+
+
+SIZES = {
+    "Alltoallv": lambda ranks, sent, received: sent[0].itemsize * (sent[1].sum() - sent[1][ranks.rank]),
+    "Sendrecv": lambda ranks, sent, to, *others: sent.nbytes * (to != MPI.PROC_NULL),
+    "Allreduce": lambda ranks, place, values, operation: values.nbytes,
+    "allreduce": lambda ranks, value: 8,
+    "allgather": lambda ranks, values: values.nbytes,
+    "bcast": lambda ranks, values: values.nbytes,
+}
+for name, size in SIZES.items():
+    setattr(Traffic, name, counted(name, size))
+
+
 def inside(scene: str, side: int, travel: float, options: dict[str, str | None], fields: str | None) -> None:
     """Run a scene on all ranks; the first one prints its figures, one writes its fields."""
     comm = MPI.COMM_WORLD
@@ -126,6 +179,7 @@ def inside(scene: str, side: int, travel: float, options: dict[str, str | None],
     counter, newton, halved, taken, at = Counter(simulation), 0, 0, [], clock()
     state = simulation.advance()
     is_steady = simulation.finished
+    traffic, worked = Traffic.of(simulation) if comm.size > 1 else None, time.process_time()
     begun, started = (0, 0) if is_steady else (counter.linear, counter.builds), clock() - at
     while not simulation.finished:
         at = clock()
@@ -136,6 +190,10 @@ def inside(scene: str, side: int, travel: float, options: dict[str, str | None],
     newton, seconds = (state.newton, started) if is_steady else (newton, sum(taken) / steps)
     figures = {"steps": steps, "newton": newton / steps, "halved": halved, "seconds": seconds}
     figures |= {"gmres": (counter.linear - begun[0]) / newton, "builds": (counter.builds - begun[1]) / steps}
+    worked = (time.process_time() - worked - (traffic.seconds if traffic else 0.0)) / steps
+    figures |= {"worked": seconds if is_steady else worked, "calls": 0.0, "sent": 0.0}
+    if traffic:
+        figures |= {"calls": traffic.calls / steps, "sent": traffic.sent / steps / 1e6}
     figures |= {
         "scene": scene,
         "nodes": side,
