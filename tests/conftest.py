@@ -1,6 +1,7 @@
 """PETSc on the path, the marker of tests under mpirun, their order, and signals as a terminal has them."""
 
 import gc
+import os
 import signal
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ from ehlpetsc.base import environment
 
 environment.prepare()
 sys.path.append(str(Path(__file__).parents[1] / ".test-packages"))  # optional ones that .ci/run has fetched
+os.environ.setdefault("MPLBACKEND", "Agg")  # no windows
 MPI_TESTS = Path(__file__).parent / "mpi"
 # Files of two seconds of processor time and more, about longest first. The first two compile post-processing
 # and the solver, those up to test_report_page nothing, those up to test_stops but the first one nothing with
@@ -53,6 +55,16 @@ def coarse_pictures():
         patch.setattr(style, "DPI", 20)
         patch.setattr(gallery, "FORMATS", ("png",))
         yield
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """Figures that a command would have written to files."""
+    from matplotlib.figure import Figure
+
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    return figures
 
 
 @pytest.fixture

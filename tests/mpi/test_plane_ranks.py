@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import petsc4py
 import pytest
+from support import self_affine
 
 petsc4py.init([])
 
@@ -27,10 +28,8 @@ STRIP = {
     "contact.yield_pressure": None,
 }
 LAYER = {"contact.boundary_film": None, "contact.asperity_height": 30e-9}
-ROUGH = {"kind": "self-affine", "sq": 40e-9, "hurst": 0.8, "seed": 1}
-ROUGH |= {"roll_off": 40e-6, "short_cutoff": 20e-6}
 MIXED = {
-    "surface.1.synthetic": ROUGH,
+    "surface.1.synthetic": self_affine(40e-9, 40e-6, 20e-6),
     "fluid.viscosity": 0.01,
     "motion.slide_roll_ratio": 0.3,
     "time": {"travel": 0.3, "start": "rough", "courant": 1.0},

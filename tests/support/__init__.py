@@ -12,6 +12,18 @@ def is_line_with(text, *parts):
     return text.strip().count("\n") == 0 and all(str(part) in text for part in parts)
 
 
+def roelands_oil(viscosity, pressure_viscosity, **more):
+    """Keys of an oil by Roelands, with the density of Dowson and Higginson."""
+    laws = {"law": "roelands", "density": "dowson-higginson"}
+    return laws | {"viscosity": viscosity, "pressure_viscosity": pressure_viscosity} | more
+
+
+def self_affine(sq, roll_off, short_cutoff):
+    """Keys of a synthetic surface of Hurst exponent 0.8, by the first seed."""
+    waves = {"sq": sq, "roll_off": roll_off, "short_cutoff": short_cutoff}
+    return {"kind": "self-affine", "hurst": 0.8, "seed": 1} | waves
+
+
 def optional(name):
     """A package of PyPI that single tests compare with; without it they are skipped."""
     import pytest  # of which benchmarks have no need

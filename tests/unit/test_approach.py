@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from support import one_fault
+from support import one_fault, self_affine
 from support.points import R, point
 
 import ehlpetsc
@@ -21,17 +21,9 @@ DRY = {
     "contact": {"radius": [0.01, 0.02], "approach": APPROACH, "material": "16MnCr5"},
     "mesh": {"inlet": -1.25, "outlet": 1.25, "width": 2.5, "points_per_half_width": 32},
 }
-ROUGH = {
-    "kind": "self-affine",
-    "sq": 40e-9,
-    "hurst": 0.8,
-    "seed": 1,
-    "roll_off": 40e-6,
-    "short_cutoff": 20e-6,
-}
 MIXED = {
     "contact": {"load": None, "approach": APPROACH, "boundary_film": 10e-9},
-    "surface": {"1": {"synthetic": ROUGH}},
+    "surface": {"1": {"synthetic": self_affine(40e-9, 40e-6, 20e-6)}},
     "motion": {"slide_roll_ratio": 0.3},
     "fluid": {"viscosity": 0.01},
     "time": {"travel": 0.15, "start": "rough", "courant": 1.0},
@@ -103,10 +95,7 @@ def test_restart_at_an_approach_continues_the_run(states, tmp_path):
 @pytest.mark.parametrize(
     "changes, message",
     [
-        (
-            {"contact.load": 20.0},
-            "contact.approach = 1.2e-06: in place of the load, which contact.load would",
-        ),
+        ({"contact.load": 20.0}, "approach = 1.2e-06: in place of the load, which contact.load would"),
         ({"contact.radius": 0.01}, "contact.approach = 1.2e-06: of point contacts, and one radius"),
         ({"operation": {"time": [0, 1], "speed_1": [1, 2], "speed_2": [1, 2]}}, r"which \[operation\] would"),
         ({"gears": {"speed": 1}}, r"which \[gears\] would give; leave out one of both"),
@@ -122,9 +111,8 @@ def test_refused_approaches_are_one_sentence(changes, message):
 
 def test_approach_has_units_varies_over_a_series_and_is_explained():
     assert load(DRY, {"contact.approach": "1.2 um"}).contact.approach == pytest.approx(APPROACH)
-    series = load(
-        DRY, {"series": {"key": "contact.approach", "values": [1e-6, 4e-6]}, "contact.approach": 1e-6}
-    )
+    varied = {"key": "contact.approach", "values": [1e-6, 4e-6]}
+    series = load(DRY, {"series": varied, "contact.approach": 1e-6})
     one, other = (member.contact.load for _, member in ehlpetsc.members(series))
     assert other / one == pytest.approx(8.0)
     assert "approach 1.2 um, dry load" in explain(load(DRY))

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, self_affine
 
 import ehlpetsc
 from ehlpetsc.case.keys import template
@@ -52,14 +52,7 @@ STRIP = {
     "time": {"travel": 0.2, "start": "rough"},
 }
 ACROSS = {"surface.1.synthetic.correlation_across": 150e-6}
-AFFINE = {
-    "kind": "self-affine",
-    "sq": 1e-7,
-    "hurst": 0.8,
-    "roll_off": 100e-6,
-    "short_cutoff": 30e-6,
-    "seed": 1,
-}
+AFFINE = self_affine(1e-7, 100e-6, 30e-6)
 
 
 @pytest.mark.parametrize(

@@ -85,9 +85,8 @@ def test_ensemble_has_damage_quantiles(tmp_path):
             file[f"temperature/2_{name}"] = [*np.linspace(20.0, 120.0, 101), np.nan]
     with read_result(path) as result:
         figures = run_scalars(result)
-    assert [figures[f"damage_2 z/a=0.01 q={q:g}"] for q in (0.5, 0.9, 0.99)] == pytest.approx(
-        [0.5, 0.9, 0.99]
-    )
+    for q in (0.5, 0.9, 0.99):
+        assert figures[f"damage_2 z/a=0.01 q={q:g}"] == pytest.approx(q)
     assert figures["share_2 D>0.1"] == pytest.approx(90 / 101)
     assert figures["flash_temperature_2 largest"] == pytest.approx(120.0)
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
@@ -101,9 +100,7 @@ def test_bootstrap_bounds_are_those_of_the_mean(seed):
     values = np.random.default_rng(seed).normal(3.0, 0.5, size=40)
     error = values.std() / np.sqrt(40)
     low, high = bootstrap_bounds(values)
-    assert (low, high) == pytest.approx(
-        (values.mean() - 1.645 * error, values.mean() + 1.645 * error), rel=0.01
-    )
+    assert (low, high) == pytest.approx(values.mean() + 1.645 * error * np.array([-1.0, 1.0]), rel=0.01)
     assert high - low == pytest.approx(2 * 1.645 * error, rel=0.05)
     assert bootstrap_bounds(values) == (low, high)
     assert np.isnan(bootstrap_bounds(values[:1])).all()

@@ -76,12 +76,8 @@ def test_command_takes_units_as_a_run_does(case, capsys):
 
 TIPS = ("centre_distance", "tip_diameter")
 TEETH, TEETH_BACK = ((16, 24), (82.5e-3, 118.4e-3)), ((24, 16), (118.4e-3, 82.5e-3))
-RING = FZG | {
-    "teeth": [20, 60],
-    "centre_distance": 0.09,
-    "tip_diameter": [99e-3, 261.75e-3],
-    "internal": True,
-}
+RING = FZG | {"teeth": [20, 60], "centre_distance": 0.09, "tip_diameter": [99e-3, 261.75e-3]}
+RING["internal"] = True
 
 
 def test_geometry_of_a_ring_is_that_of_khk():
@@ -192,10 +188,7 @@ def test_no_sliding_at_the_pitch_point():
 PITCH_POINT_BEYOND = {  # teeth, shifts, side
     "internal, before A": ({"teeth": (42, 127), "profile_shift": (0.76, 0.57), "internal": True}, "before A"),
     "internal, after E": ({"teeth": (40, 75), "profile_shift": (-0.3, -0.63), "internal": True}, "after E"),
-    "all recess": (
-        {"teeth": (30, 40), "centre_distance": 105e-3, "tip_diameter": (101e-3, 119.5e-3)},
-        "before A",
-    ),
+    "recess": ({"teeth": (30, 40), "centre_distance": 0.105, "tip_diameter": (0.101, 0.1195)}, "before A"),
 }
 
 
@@ -265,9 +258,7 @@ def test_load_that_equilibrium_leaves_at_a(rule, at_a):
     """By hand: k_A/(k_A + k_D) = 0.55/(0.55 + 0.933), and (1 - c' C_a/w')/2 of two equal pairs."""
     pair = GearPair(**(FZG | RULES[rule]))
     assert share(pair, np.array([pair.points["A"]]))[0] == pytest.approx(at_a, abs=1e-4)
-    assert path_of_contact(pair).load[0] == pytest.approx(
-        at_a * pair.normal_load, abs=1e-4 * pair.normal_load
-    )
+    assert path_of_contact(pair).load[0] / pair.normal_load == pytest.approx(at_a, abs=1e-4)
 
 
 def test_tip_edge_touches_before_a_where_the_bent_pair_lets_it():
@@ -296,9 +287,8 @@ def test_single_stiffness_of_iso_6336():
     assert single_stiffness(GearPair(**FZG)) == pytest.approx(single_stiffness(pair), rel=1e-4)
     stiff = GearPair(**(FZG | {"mesh_stiffness": 20e9}))
     assert single_stiffness(stiff) == 20e9
-    assert f"one pair bends by {stiff.normal_load / 20e3:.1f} µm" in "; ".join(
-        describe(path_of_contact(stiff))
-    )
+    described = "; ".join(describe(path_of_contact(stiff)))
+    assert f"one pair bends by {stiff.normal_load / 20e3:.1f} µm" in described
 
 
 OWN = {key: FZG[key] for key in ("module", "teeth", "face_width", "torque", "speed")}
@@ -336,10 +326,9 @@ def test_helical_slice():
     assert pair.rule == "stiffness" and faults(pair) == []
     np.testing.assert_allclose(pair_loads(pair, rho)[0].sum(axis=1), 1.0, atol=1e-12)
     assert pair.centre_distance == pytest.approx(90e-3 / math.cos(math.radians(20.0)), rel=1e-12)
-    assert pair.overlap_ratio == pytest.approx(
-        14.0 * math.sin(math.radians(20.0)) / (math.pi * 4.5), rel=1e-12
-    )
-    helix = math.asin(math.sin(math.radians(20.0)) * math.cos(math.radians(20.0)))
+    sine = math.sin(math.radians(20.0))
+    assert pair.overlap_ratio == pytest.approx(14.0 * sine / (math.pi * 4.5), rel=1e-12)
+    helix = math.asin(sine * math.cos(math.radians(20.0)))
     at_c, (r1, r2) = pair.points["C"], [r * math.tan(pair.working_angle) for r in pair.base_radii]
     assert pair.radius(at_c) == pytest.approx(r1 * r2 / (r1 + r2) / math.cos(helix), rel=1e-12)
     first, second = pair.speeds(at_c)
@@ -350,13 +339,12 @@ def test_load_over_the_path_of_a_file(case, tmp_path):
     (tmp_path / "tca.csv").write_text("path [mm], load [N/mm]\n-8, 0\n-4, 300\n4, 600\n9, 0\n")
     loaded = load(case(load_file="tca.csv"))
     pair = loaded.gears.pair
-    assert np.interp(
-        [-2e-3, 9.5e-3], path_of_contact(pair).rho - pair.points["C"], path_of_contact(pair).load
-    ) == (pytest.approx([375e3, 0.0], rel=1e-3))
-    assert loaded.conditions.load.max() == pytest.approx(600e3, rel=1e-3)
-    assert load(case(path=[-8e-3, -4e-3, 4e-3, 9e-3], load=[0.0, 3e5, 6e5, 0.0])).conditions.load.max() == (
-        pytest.approx(600e3, rel=1e-3)
-    )
+    path = path_of_contact(pair)
+    found = np.interp([-2e-3, 9.5e-3], path.rho - pair.points["C"], path.load)
+    assert found == pytest.approx([375e3, 0.0], rel=1e-3)
+    by_keys = load(case(path=[-8e-3, -4e-3, 4e-3, 9e-3], load=[0.0, 3e5, 6e5, 0.0]))
+    for one in (loaded, by_keys):
+        assert one.conditions.load.max() == pytest.approx(600e3, rel=1e-3)
     (tmp_path / "tca.csv").write_text("path [mm], load [N/mm]\n4, 300\n-4, 300\n")
     with pytest.raises(CaseError, match="increases"):
         load(case(load_file="tca.csv"))
@@ -388,18 +376,15 @@ def test_standards_for_fzg_c_at_stage_9():
     assert found["maximum flash temperature"][-1] == pytest.approx(by_hand, rel=1e-3)
     rise = found["bulk temperature"] - 363.15
     flash = found["maximum flash temperature"]
-    assert rise == pytest.approx(
-        0.47 * np.interp(np.linspace(*path.rho[[0, -1]], 4001), path.rho, flash).mean(), rel=1e-3
-    )
+    mean = np.interp(np.linspace(*path.rho[[0, -1]], 4001), path.rho, flash).mean()
+    assert rise == pytest.approx(0.47 * mean, rel=1e-3)
 
 
 def test_bulk_temperature_of_smooth_flanks_takes_the_losses_of_the_oil_film():
     """ISO/TR 14179-2 has no friction where Ra is 0; the film's is Eyring's at the mean Hertz pressure."""
     keys = ("heat.bulk_temperature=losses", "heat.reference_temperature=363.15", "surface={}")
-    case = load(
-        CASES / "fzg.toml",
-        [*keys, "fluid.eyring_stress=5e6", "fluid.limiting_shear=0.5", "fluid.eyring_stress_pressure=0"],
-    )
+    shear = ["fluid.eyring_stress=5e6", "fluid.limiting_shear=0.5", "fluid.eyring_stress_pressure=0"]
+    case = load(CASES / "fzg.toml", [*keys, *shear])
     rating, path = rating_of(case, CASES), path_of_contact(case.gears.pair)
     assert rating.roughness == 0.0 and 370.0 < rating.bulk  # of Ra 0.25 um
     at, fluid, modulus = len(path.rho) // 4, case.fluid, rating.modulus
@@ -469,8 +454,8 @@ def test_values_that_follow_from_gears_are_refused(case, key):
     [
         ({"tip_diameter": [72e-3, 108e-3]}, ["tip_diameter = [0.072, 0.108]: ", " 0.0915 m"]),
         (
-            {"tip_diameter": [78e-3, 114e-3]},
-            ["tip_diameter = [0.078, 0.114]: contact ratio 0.786, ", " 1 to 3"],
+            {"tip_diameter": [78e-3, 0.114]},
+            ["tip_diameter = [0.078, 0.114]: contact ratio 0.786", " 1 to 3"],
         ),
         ({"tip_diameter": [60e-3, 118.4e-3]}, ["tip_diameter = 0.06 of the pinion: ", " 0.067658 m"]),
         ({"tip_diameter": [82.5e-3, 130e-3]}, ["tip_diameter: ", "(interference)", " wheel: below 0.1232 m"]),
@@ -482,10 +467,7 @@ def test_values_that_follow_from_gears_are_refused(case, key):
         (POINTED, ["tip_diameter = 0.0415 of the pinion", "pointed", " -0.48 mm"]),
         (POINTED | {"teeth": [60, 10], "profile_shift": [0, 1.0]}, ["of the wheel", " -0.48 mm"]),
         ({"path": [-7.5, 0.0, 8.0], "load": [2e5, 6e5, 2e5]}, ["path = -7.5 to 8 m", "0.0349 m", "[mm]"]),
-        (
-            {"path": [-7.5e-3, 0.0, 8e-3], "load": [200.0, 600.0, 200.0]},
-            ["load: ", "0.000732 of", "637.7 kN/m"],
-        ),
+        ({"path": [-7.5e-3, 0.0, 8e-3], "load": [200, 600, 200]}, ["load: ", "0.000732 of", "637.7 kN/m"]),
         ({"path": [-7.5e-3, 0.0, 8e-3], "load": [6e5, 2e6, 6e5]}, ["load: ", "2.38 of", "0.67 to 1.5"]),
     ],
 )

@@ -11,7 +11,6 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 from PIL import Image as image
 from support import is_line_with
 from support.browser import BROWSER, visited
@@ -39,14 +38,6 @@ synthetic = { kind = "self-affine", sq = 1e-7, hurst = 0.8, roll_off = 6e-5, sho
 @pytest.fixture
 def point(tmp_path):
     return make_plane(tmp_path / "point.h5")
-
-
-@pytest.fixture
-def drawn(monkeypatch):
-    """Figures that the command would have written to files."""
-    figures = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
-    return figures
 
 
 def draw(*arguments):
@@ -178,10 +169,8 @@ def test_fringes_are_bright_at_whole_waves_and_fade():
 def test_fringes_name_wavelengths_and_resolve_the_film(point):
     with read_result(point) as r:
         figure = plane.draw_fringes([r], OPTIONS)
-    assert [axes.get_title() for axes in figure.axes[:2]] == [
-        "wavelength 530 nm",
-        "wavelengths 630, 530, 460 nm",
-    ]
+    titles = [axes.get_title() for axes in figure.axes[:2]]
+    assert titles == ["wavelength 530 nm", "wavelengths 630, 530, 460 nm"]
     assert max(figure.axes[0].images[0].get_array().shape) == plane.PIXELS
     assert figure.axes[1].images[0].get_array().shape[2] == 3
 
@@ -269,11 +258,7 @@ def test_case_picture_shows_rows_of_the_mesh(tmp_path, capsys):
         (make_plane, ["--window", 0, 0.1, "--fringes"], ["fewer than two nodes from 0 a to 0.1 a"]),
         (make_plane, ["--section", 9], ["section: y = ", "; allowed: on the mesh"]),
         (make_plane, ["--field", "heat"], ["--field heat: not stored; allowed: contact_pressure, "]),
-        (
-            make_plane,
-            ["--field", "pressure", "--fringes"],
-            ["--field: of pictures of an", "not of --fringes"],
-        ),
+        (make_plane, ["--field", "pressure", "--fringes"], ["--field: of pictures of", "not of --fringes"]),
     ],
 )
 def test_faults_are_reported(tmp_path, made, words, parts, capsys):

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import h5py
 import numpy as np
 import pytest
-from support import optional
+from support import optional, self_affine
 
 import ehlpetsc
 from ehlpetsc.analysis import compare, summary
@@ -131,14 +131,10 @@ def test_summary_of_a_frame_lists_x_and_y(path, capsys):
 
 
 def test_run_stopped_in_mixed_contact_continues_to_the_same_result_bit_for_bit(tmp_path):
-    rough = {"kind": "self-affine", "sq": 6e-8, "hurst": 0.8, "seed": 1}
-    rough |= {"roll_off": 5e-5, "short_cutoff": 2.5e-5}
-    case = ehlpetsc.load(
-        BALL,
-        {"surface.1.synthetic": rough, "mesh.points_per_half_width": 12, "fluid.viscosity": 0.01}
-        | {"operation": {"time": [0.0, 1e-3], "load": ["20 N", "18 N"]}}
-        | {"time": {"travel": 0.5, "start": "rough", "courant": 0.86}, "output.xdmf": True},
-    )
+    keys = {"surface.1.synthetic": self_affine(6e-8, 5e-5, 2.5e-5), "mesh.points_per_half_width": 12}
+    keys |= {"fluid.viscosity": 0.01, "operation": {"time": [0.0, 1e-3], "load": ["20 N", "18 N"]}}
+    keys |= {"time": {"travel": 0.5, "start": "rough", "courant": 0.86}, "output.xdmf": True}
+    case = ehlpetsc.load(BALL, keys)
     whole, part = ehlpetsc.solve(case), tmp_path / "ball.h5"
     simulation = ehlpetsc.Simulation(case)
     with simulation.options, Recorder(simulation, part) as recorder:

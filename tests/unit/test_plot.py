@@ -45,14 +45,6 @@ def draw(*arguments):
     return plot.main([str(a) for a in arguments])
 
 
-@pytest.fixture
-def drawn(monkeypatch):
-    """Figures that the command would have written to files."""
-    figures = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
-    return figures
-
-
 def reversing(path, load=None):
     """A result of 41 steps whose speeds reverse: no net displacement after a period of 40 us.
 

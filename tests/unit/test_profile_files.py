@@ -1,12 +1,13 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
+import re
 import sys
 
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, one_fault
 
-from ehlpetsc.base.errors import CaseError, ProfileError
+from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.case import loading as case
 from ehlpetsc.surfaces.files.profiles import Layout, checked, read_profile
 
@@ -36,10 +37,7 @@ READABLE = {
     "header of numbers": ("4000\n0.8 2\n7\n" + lines("{}\t{}\n"), {"header_lines": 3}),
     "BOM": ("\ufeff" + lines("{},{}\n"), {}),
     "um": (lines("{},{}\n", 1e6, 1e6), {"unit": "um"}),
-    "mm and um in the header": (
-        "x [mm]\tz [\u00b5m]\n" + lines("{}\t{}\n", 1e3, 1e6),
-        {"unit": "um", "x_unit": "mm"},
-    ),
+    "header": ("x [mm]\tz [\u00b5m]\n" + lines("{}\t{}\n", 1e3, 1e6), {"unit": "um", "x_unit": "mm"}),
     "heights alone": (lines("{1}\n", z=1e9), {"unit": "nm", "spacing": 2e-6}),
     "heights alone, decimal comma": (
         german(lines("{1:.4f}\n", z=1e6)),
@@ -153,44 +151,24 @@ def test_uneven_spacing_is_no_gap(tmp_path, x):
 REFUSED = {
     "several columns": (lines("1;{0};{1}\n"), {}, r"^3 columns; .*columns = \[1, 2\]"),
     "heights alone": (lines("{1}\n"), {}, "^heights alone .*spacing"),
-    "decimal or separator": (
-        german(lines("{1:.9f}\n")),
-        {"spacing": 1e-6},
-        r'spacing .* columns = \[2\] .* decimal = "," ',
-    ),
+    "comma": (german(lines("{1:.9f}\n")), {"spacing": 1e-6}, r'spacing .* columns = \[2\] .* decimal = "," '),
     "both signs": (lines("{0:,.1f};{1:,.3f}\n", 1e9, 1e9), {}, r'decimal = "," or decimal = "\."'),
     "no such column": (lines("{},{}\n"), {"columns": (1, 3)}, r"^columns = \[1, 3\]: .* 2$"),
-    "unit in the header": (
-        "x [mm];z [um]\n" + lines("{};{}\n"),
-        {},
-        'mm and um, .* unit = "um" .* x_unit = "mm"',
-    ),
+    "units": ("x [mm];z [um]\n" + lines("{};{}\n"), {}, 'mm and um, .* unit = "um" .* x_unit = "mm"'),
     "angstrom in the header": (
         "Lateral (um),Total Profile (\u00c5)\n" + lines("{},{}\n"),
         {},
         '^its header names um and angstrom, .* unit = "angstrom" .* x_unit = "um"$',
     ),
     "angstrom of two signs": ("x;z [A\u030a]\n" + lines("{};{}\n"), {}, 'unit = "angstrom" for the heights$'),
-    "mil in the header": (
-        "x/mil;z/\u00b5in\n" + lines("{};{}\n"),
-        {},
-        'unit = "microinch" .* x_unit = "mil"$',
-    ),
+    "mil": ("x/mil;z/\u00b5in\n" + lines("{};{}\n"), {}, 'unit = "microinch" .* x_unit = "mil"$'),
     "inch in a quoted header": ('"x (in)","z"\n' + lines("{},{}\n"), {}, 'unit = "inch" for the heights$'),
-    "word in a cell": (
-        "x;z\n" + lines("{};{}\n") + "1;0.12 um\n",
-        {},
-        '^line 8: "0.12 um" is not a number; ',
-    ),
+    "word": ("x;z\n" + lines("{};{}\n") + "1;0.12 um\n", {}, '^line 8: "0.12 um" is not a number; '),
     "word in the first cell": ("x;z\n0;0.12 um\n" + lines("{};{}\n"), {}, '^line 2: "0.12 um" .* = 2$'),
     "word after a comma": (lines("{},{}\n") + "1,0.12 um\n", {}, '^line 7: "0.12 um" is not a number; '),
     "unit in every cell": (lines("{};{} um\n"), {"spacing": 1e-6}, '^line 1: "0.0 um" is not a number; '),
     "lost exponent": (lines("{} {}\n") + "1 1.0-107\n", {}, '^line 7: "1.0-107" is not a number; '),
-    "words for x": (
-        "n;x;z\n" + lines("a;{};{}\n"),
-        {"columns": (1, 3)},
-        r"no numbers in column 1; .* \[2, 3\]",
-    ),
+    "x": ("n;x;z\n" + lines("a;{};{}\n"), {"columns": (1, 3)}, r"no numbers in column 1; .* \[2, 3\]"),
     "header of numbers": ("4000\n" + lines("{},{}\n"), {}, "^line 1: 1 numbers, .* 2; .* header_lines = 1 "),
     "text in it": (lines("{},{}\n") + "end\n", {}, "^line 1: 2 numbers, the last line has 1; .*header_lines"),
     "no numbers": ("a\nb\n", {}, "^0 points"),
@@ -218,18 +196,13 @@ def measured(tmp_path, x=1.0, z=1.0):
 
 
 @pytest.mark.parametrize(
-    ("x", "z", "keys", "message"),
-    [
-        (1e3, 1e3, (), "points 500 um apart .* 336 um: .* another unit"),
-        (1, 1e6, (), r"Rq 1\.98e\+05 um .* another unit"),
-    ],
+    ("x", "z", "message"),
+    [(1e3, 1e3, "points 500 um apart .* 336 um: "), (1, 1e6, r"Rq 1\.98e\+05 um ")],
 )
-def test_implausible_profile_is_refused(tmp_path, x, z, keys, message):
-    path = measured(tmp_path, x, z)
-    with pytest.raises(CaseError, match=message) as caught:
-        case.load(path, [f"surface.2.{key}" for key in keys])
-    (fault,) = caught.value.faults
-    assert "surface.2.file" in fault
+def test_implausible_profile_is_refused(tmp_path, x, z, message):
+    assert re.search(
+        f"surface.2.file.*{message}.* another unit", one_fault(case.load, measured(tmp_path, x, z))
+    )
 
 
 def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
@@ -271,9 +244,8 @@ def test_repeated_no_data_values_are_missing_heights(tmp_path, value, shown, til
     written[[50, 51, 52, 200]] = value
     path = tmp_path / "p.csv"
     path.write_text("".join(f"{1e6 * a:.7e};{b:.12e}\n" for a, b in zip(x, written, strict=True)))
-    with pytest.raises(
-        ProfileError, match=f"^4 heights missing, 4 of them the value {shown} far .* fill_gaps = 2e-06"
-    ):
+    message = f"^4 heights missing, 4 of them the value {shown} far .* fill_gaps = 2e-06"
+    with pytest.raises(ProfileError, match=message):
         read_profile(path, Layout(unit="um"))
     _, filled, notes = read_profile(path, Layout(unit="um", fill_gaps=2.1e-6))
     np.testing.assert_allclose(filled, z, atol=3e-8)

@@ -16,13 +16,8 @@ import ehlpetsc
 from ehlpetsc import Simulation, UsageError
 from ehlpetsc.base.errors import OutputError
 
-QUICK = {
-    "mesh.inlet": -1.5,
-    "mesh.outlet": 1.3,
-    "mesh.points_per_half_width": 40,
-    "time.travel": 0.05,
-    "time.courant": 0.445,
-}
+QUICK = {"mesh.inlet": -1.5, "mesh.outlet": 1.3, "mesh.points_per_half_width": 40}
+QUICK |= {"time.travel": 0.05, "time.courant": 0.445}
 
 
 @pytest.fixture(scope="module")
@@ -209,18 +204,12 @@ def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):
 
 
 def test_picture_shows_the_requested_frame(result):
-    import matplotlib
-
-    matplotlib.use("Agg")
     figure = result.plot(step=3)
     drawn = next(line for line in figure.axes[0].lines if len(line.get_xdata()) == len(result.x)).get_ydata()
     np.testing.assert_allclose(drawn, 1e-9 * result.pressure[3])
 
 
 def test_picture_is_written_to_a_file_of_its_name(result, tmp_path):
-    import matplotlib
-
-    matplotlib.use("Agg")
     for name, begin in (("film.png", b"\x89PNG"), ("film.pdf", b"%PDF")):
         result.plot(tmp_path / name, step=1)
         assert (tmp_path / name).read_bytes().startswith(begin)
@@ -252,9 +241,6 @@ def test_import_is_light_and_finds_petsc(tmp_path):
     "module", ["ehlpetsc.api", "ehlpetsc.case.loading", "ehlpetsc.run.simulation", "ehlpetsc.results.reader"]
 )
 def test_docstring_examples_run(module, monkeypatch):
-    import matplotlib
-
-    matplotlib.use("Agg")
     monkeypatch.chdir(ROOT)
     failed, tried = doctest.testmod(importlib.import_module(module))
     assert tried >= 3 and failed == 0
@@ -262,9 +248,6 @@ def test_docstring_examples_run(module, monkeypatch):
 
 @pytest.mark.slow
 def test_examples_of_the_python_page_run(monkeypatch, capsys):
-    import matplotlib
-
-    matplotlib.use("Agg")
     monkeypatch.chdir(ROOT)
     page = (ROOT / "ehlpetsc" / "run" / "README.md").read_text(encoding="utf-8")
     code, printed = re.search(r"```python\n(.*?)```\n\nprints\n\n```\n(.*?)```", page, re.DOTALL).groups()
@@ -315,11 +298,8 @@ def test_pass_follows_a_complete_pass_of_the_same_contact():
             Simulation(running_in(), after=first)
         first.advance()
     list(first)
-    for changes in (
-        {"mesh.points_per_half_width": 30},
-        {"contact.load": 400e3},
-        {"contact.model": "direct", **DIRECT},
-    ):
+    direct = {"contact.model": "direct", **DIRECT}
+    for changes in ({"mesh.points_per_half_width": 30}, {"contact.load": 400e3}, direct):
         with pytest.raises(UsageError, match="^after: .*same nodes.*contact law"):
             Simulation(running_in(**changes), after=first)
     assert Simulation(running_in(**{"fluid.viscosity": 0.003}), after=first).pass_number == 2

@@ -60,10 +60,7 @@ MAPS = {
     "list, columns first": (points(UM * Y, UM * X, UM * Z.T, "{1:.4f},{0:.4f},{2:.5f}\n"), {"unit": "um"}),
     "list, falling": (points(order=-1), {"unit": "um"}),
     "list, units": ("X[mm] Y[mm] Z[um]\n" + points(MM * X, MM * Y, form="{:.6f} {:.6f} {:.5f}\n"), {}),
-    "list, empty lines between scans": (
-        "\n".join(points().splitlines()[k] for k in range(384)),
-        {"unit": "um"},
-    ),
+    "list, empty lines": ("\n".join(points().splitlines()[k] for k in range(384)), {"unit": "um"}),
     "list of numbers": (points(np.arange(24), np.arange(16)), BOTH),
     "header of Gwyddion": (
         f"# Channel: Height\n# Width: {24 * 2.5} µm\n# Height: {16 * 4.0} µm\n# Value units: um\n" + matrix(),
@@ -101,10 +98,8 @@ def test_positions_are_noted(tmp_path):
     assert notes == expected
     (tmp_path / "map.txt").write_text(matrix("n", NUMBERS_X, NUMBERS_Y))
     notes = read_map(tmp_path / "map.txt", Layout(**BOTH)).notes
-    assert notes == (
-        "first line: numbers of the columns, left out",
-        "first column: numbers of the rows, left out",
-    )
+    lines, rows = "first line: numbers of the columns", "first column: numbers of the rows"
+    assert notes == (f"{lines}, left out", f"{rows}, left out")
 
 
 def test_a_point_that_is_not_in_a_list_is_missing(tmp_path):
@@ -143,30 +138,20 @@ def test_positions_in_a_binary_matrix_are_read(tmp_path):
     np.testing.assert_allclose(found.z, Z, atol=1e-15)
 
 
-TWO = matrix() + "\n" + matrix()
+TWO, POSITIONED = matrix() + "\n" + matrix(), matrix("y", MM * X, MM * Y)
+UM_UNIT = {"unit": "um"}
+UNEQUAL = "^its first line rises or falls as positions do, but at unequal steps; "
 REFUSED = {
     "second block": (TWO, BOTH, "^line 18: a second block behind an empty line; .* header_lines = 17 "),
     "second block with a heading": (matrix() + "\nIntensity\n" + matrix(), BOTH, "^line 18: a second block "),
-    "second block of another width": (
-        matrix() + "\n\n" + matrix(z=Z[:, :9]),
-        BOTH,
-        "^line 19: a second block ",
-    ),
-    "second block with positions": (
-        matrix("y", MM * X, MM * Y) + "\n" + matrix("y", MM * X, MM * Y),
-        BOTH,
-        "^line 19: a second block ",
-    ),
+    "narrower second block": (matrix() + "\n\n" + matrix(z=Z[:, :9]), BOTH, "^line 19: a second block "),
+    "second block with positions": (POSITIONED + "\n" + POSITIONED, BOTH, "^line 19: a second block "),
     "another spacing": (
         matrix("y [mm]", MM * X, MM * Y),
         {"unit": "um", "spacing": 5e-6},
         r"^spacing = 5e-06 m, by its positions 2\.5e-06 m; allowed: the same; ",
     ),
-    "another spacing, in no unit": (
-        matrix("y", MM * X, MM * Y),
-        {"unit": "um", "spacing": 7e-6},
-        "^spacing = 7e-06 m, by its positions ",
-    ),
+    "spacing, no unit": (POSITIONED, UM_UNIT | {"spacing": 7e-6}, "^spacing = 7e-06 m, by its positions "),
     "another spacing in the header": (
         "dx: 2.5 um\n" + matrix(),
         {"unit": "um", "spacing": 5e-6},
@@ -177,23 +162,11 @@ REFUSED = {
         {"unit": "um"},
         "^its first line holds positions that are not equally spaced; ",
     ),
-    "numbers at unequal steps": (
-        matrix(None, UM * X**1.3 * 50),
-        BOTH,
-        "^its first line rises or falls as positions do, but at unequal steps; ",
-    ),
-    "unit of positions": (
-        matrix("[inch]", MM * X, MM * Y),
-        {"unit": "um"},
-        "^its header names inch; write x_unit",
-    ),
+    "numbers at unequal steps": (matrix(None, UM * X**1.3 * 50), BOTH, UNEQUAL),
+    "unit of positions": (matrix("[inch]", MM * X, MM * Y), UM_UNIT, "^its header names inch; write x_unit"),
     "unit of heights": (matrix("x [mm]", MM * X, MM * Y), {}, "^its header names mm; write unit"),
-    "numbers without spacing": (
-        matrix("n", NUMBERS_X, NUMBERS_Y),
-        {"unit": "um"},
-        "^a matrix of heights needs spacing = ",
-    ),
-    "heights without spacing": (matrix(), {"unit": "um"}, "^a matrix of heights needs spacing = "),
+    "numbers without spacing": (matrix("n", NUMBERS_X, NUMBERS_Y), UM_UNIT, "^a matrix .* needs spacing = "),
+    "heights without spacing": (matrix(), UM_UNIT, "^a matrix of heights needs spacing = "),
     "x_unit without positions": (matrix(), BOTH | {"x_unit": "mm"}, "^x_unit: of x, not of spacing, "),
     "a point twice": (points() + "0 0 12.1\n", {"unit": "um"}, "^x y z: a point is in it twice; "),
 }

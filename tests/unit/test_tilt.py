@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from support import one_fault
+from support import one_fault, self_affine
 from support.points import point
 
 import ehlpetsc
@@ -67,9 +67,8 @@ def test_free_tilt_evens_out_a_wedge():
 
 
 def test_moment_vanishes_in_mixed_contact():
-    rough = {"kind": "self-affine", "sq": 40e-9, "hurst": 0.8, "seed": 1, "roll_off": 40e-6}
     changes = {"contact.self_aligning": True, "contact.boundary_film": 10e-9, "motion.slide_roll_ratio": 0.3}
-    changes |= {"surface": {"1": {"synthetic": rough | {"short_cutoff": 20e-6}}}}
+    changes |= {"surface": {"1": {"synthetic": self_affine(40e-9, 40e-6, 20e-6)}}}
     changes |= {"fluid.viscosity": 0.01, "time": {"travel": 0.1, "start": "rough", "courant": 1.0}}
     simulation = Simulation(load(point(50.0, 5.0, 8), changes))
     y = simulation.scales.grid.coordinates[0]

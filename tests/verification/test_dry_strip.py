@@ -6,7 +6,7 @@ square difference of the pressures 0.7 % of p0.
 
 import numpy as np
 import pytest
-from support import optional
+from support import optional, self_affine
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
@@ -15,14 +15,6 @@ from ehlpetsc.surfaces.motion.roughness import Roughness
 tamaas = optional("tamaas")
 
 PERIOD, POINTS, HALF_WIDTH, MODULUS, P0 = 8, 32, 150e-6, 227e9, 1e9
-ROUGHNESS = {
-    "kind": "self-affine",
-    "sq": 0.1e-6,
-    "hurst": 0.8,
-    "roll_off": 80e-6,
-    "short_cutoff": 40e-6,
-    "seed": 1,
-}
 CASE = {
     "title": "dry",
     "contact": {
@@ -32,7 +24,7 @@ CASE = {
         "poisson_ratio": 0.3,
     },
     "mesh": {"inlet": -2.0, "outlet": 2.0, "points_per_half_width": POINTS, "width": 1.0},
-    "surface": {"1": {"synthetic": ROUGHNESS}},
+    "surface": {"1": {"synthetic": self_affine(0.1e-6, 80e-6, 40e-6)}},
 }
 
 

@@ -34,14 +34,10 @@ def test_constant_conditions_in_a_table_are_the_plain_case(name):
         plain["surface.2.synthetic"] = {"kind": "sine", "amplitude": 5e-8, "wavelength": 1e-4}
     simulation, expected = states(name, plain)
     s = simulation.scales
-    table = {
-        "operation.time": [0.0, 1.7003 * s.duration],  # no whole number of steps: the travel ends the run
-        "operation.load": [s.load] * 2,
-        "operation.radius": [s.R] * 2,
-        "operation.speed_1": [s.u1] * 2,
-        "operation.speed_2": [s.u2] * 2,
-    }
-    _, found = states(name, plain | table)
+    table = {"load": s.load, "radius": s.R, "speed_1": s.u1, "speed_2": s.u2}
+    table = {name: [value] * 2 for name, value in table.items()}
+    table["time"] = [0.0, 1.7003 * s.duration]  # no whole number of steps: the travel ends the run
+    _, found = states(name, plain | {"operation": table})
     assert len(found) == len(expected) > 20
     for one, other in zip(found, expected, strict=True):
         assert one.time == pytest.approx(other.time, rel=1e-12)
@@ -74,13 +70,9 @@ def test_flank_profile_is_indexed_by_arc_length():
 
 
 def test_reversed_body_passes_the_same_points_back():
-    table = {
-        "operation.time": [0.0, 1e-4, 2e-4],
-        "operation.speed_1": [2.0, 0.0, -2.0],
-        "operation.speed_2": [2.0, 2.0, 2.0],
-    }
+    table = {"time": [0.0, 1e-4, 2e-4], "speed_1": [2.0, 0.0, -2.0], "speed_2": [2.0, 2.0, 2.0]}
     sides = {"mesh.inlet": -2.0, "mesh.outlet": 2.0, "mesh.points_per_half_width": 50}
-    simulation = Simulation(load(CASES / "table1_mixed.toml", table | sides | BOTH_WAVY))
+    simulation = Simulation(load(CASES / "table1_mixed.toml", {"operation": table} | sides | BOTH_WAVY))
     x, moved = simulation.scales.x * simulation.scales.a, simulation.operation.travelled
     fast, slow = simulation.roughness.surface_1, simulation.roughness.surface_2
     assert not fast.is_moving and slow.is_moving
@@ -94,12 +86,8 @@ def test_load_step_equals_a_restart_under_the_other_load():
     """On one mesh, the state after some steps under one load continues under the other."""
     heavy, light, dt, before, after = 527e3, 0.64 * 527e3, 5e-7, 12, 25
     step = dt * before
-    table = {
-        "operation.time": [0.0, step, step + 1e-12, 1e-4],
-        "operation.load": [light, light, heavy, heavy],
-        "time": None,
-    }
-    stepped = Simulation(load(CASES / "table1_smooth.toml", COARSE | table))
+    table = {"time": [0.0, step, step + 1e-12, 1e-4], "load": [light, light, heavy, heavy]}
+    stepped = Simulation(load(CASES / "table1_smooth.toml", COARSE | {"operation": table, "time": None}))
     restarted = Simulation(load(CASES / "table1_smooth.toml", COARSE | {"time.travel": 5.0}))
     stepped.advance()
     for _ in range(before):
@@ -173,15 +161,10 @@ def harmonic(quantity, steps):
     period = 4.0 * s.a / s.u
     phase = np.arange(65) / 64
     factor = 1.0 - 0.1 * (1.0 - np.cos(2.0 * np.pi * phase))
-    columns = {
-        "load": {"load": s.load},
-        "radius": {"radius": s.R},
-        "speed": {"speed_1": s.u1, "speed_2": s.u2},
-    }[quantity]
-    table = {"operation.time": phase * period} | {
-        f"operation.{name}": value * factor for name, value in columns.items()
-    }
-    simulation = Simulation(load(CASES / "ridge.toml", base | table), options={"snes_atol": 1e-11})
+    columns = {"load": s.load, "radius": s.R, "speed_1": s.u1, "speed_2": s.u2}
+    table = {name: value * factor for name, value in columns.items() if name.startswith(quantity)}
+    keys = base | {"operation": table | {"time": phase * period}}
+    simulation = Simulation(load(CASES / "ridge.toml", keys), options={"snes_atol": 1e-11})
     simulation.advance()
     for _ in range(steps):
         assert simulation.advance(0.75 * period / steps).retries == 0
@@ -204,18 +187,8 @@ def test_squeeze_film_of_an_approaching_cylinder():
     On an infinite domain :math:`h_0^{-1/2}` grows by :math:`w't/(6\sqrt2\pi\eta R^{3/2})` (closed form).
     The film is 200 a^2/R, so that deflection changes it by 0.5 %.
     """
-    oil = {
-        "fluid.viscosity": 1.0,
-        "fluid.law": "barus",
-        "fluid.pressure_viscosity": 1e-12,
-        "fluid.density": "incompressible",
-    }
-    oil |= dict.fromkeys(
-        [
-            f"fluid.{key}"
-            for key in ("reference_viscosity", "roelands_pressure", "gamma", "lambda", "eyring_stress")
-        ]
-    )
+    oil = {"viscosity": 1.0, "law": "barus", "pressure_viscosity": 1e-12, "density": "incompressible"}
+    oil = {"fluid": oil}
     mesh = {"mesh.points_per_half_width": 4, "mesh.inlet": -100.0, "mesh.outlet": 100.0, "time": None}
     s = Scales.of(load(CASES / "table1_smooth.toml", oil | mesh))
     load_, radius, first = s.load, s.R, 200.0 * s.h

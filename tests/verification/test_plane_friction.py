@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import roelands_oil
 
 from ehlpetsc.case.loading import load, members
 from ehlpetsc.physics.oil.laws import viscosity
@@ -18,13 +19,7 @@ POINT = {
         "asperity_height": 60e-9,
         "boundary_friction": FRICTION,
     },
-    "fluid": {
-        "viscosity": 0.01,
-        "law": "roelands",
-        "pressure_viscosity": 20e-9,
-        "density": "dowson-higginson",
-        "eyring_stress": EYRING,
-    },
+    "fluid": roelands_oil(0.01, 20e-9, eyring_stress=EYRING),
     "motion": {"entrainment_speed": 0.5},
     "mesh": {"inlet": -2.0, "outlet": 1.5, "points_per_half_width": 12, "width": 3.5},
     "series": {"key": "motion.slide_roll_ratio", "values": [0.0, 0.02, 0.5, -0.5]},

@@ -2,33 +2,24 @@
 
 import numpy as np
 import pytest
+from support import roelands_oil
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.flash_temperature import STEEL, blok_flash_temperature
 from ehlpetsc.run.simulation import Simulation
 
 BULK, FRICTION = 363.0, 0.1
+SOLIDS = {"material": "100Cr6", "boundary_friction": FRICTION}
 TIGHT = {"snes_atol": 1e-13}
 TEMPERATURES = ("film_temperature", "temperature_1", "temperature_2")
-OIL = {
-    "viscosity": 0.04,
-    "law": "roelands",
-    "pressure_viscosity": 18e-9,
-    "density": "dowson-higginson",
-    "eyring_stress": 6e6,
-}
+OIL = roelands_oil(0.04, 18e-9, eyring_stress=6e6)
 
 
 def tables(radius, contact_load, speed, mesh, **more):
     """Tables of a case with heat at slide/roll 0.4."""
     return {
         "title": "heat",
-        "contact": {
-            "radius": radius,
-            "load": contact_load,
-            "material": "100Cr6",
-            "boundary_friction": FRICTION,
-        },
+        "contact": {"radius": radius, "load": contact_load, **SOLIDS},
         "motion": {"entrainment_speed": speed, "slide_roll_ratio": 0.4},
         "mesh": {"inlet": -1.5, "outlet": 1.5, "points_per_half_width": 20} | mesh,
         "heat": {"bulk_temperature": BULK},

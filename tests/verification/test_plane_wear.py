@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support import roelands_oil
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
@@ -18,13 +19,7 @@ RIDGE = {
         "boundary_friction": 0.1,
         "yield_pressure": 2e9,
     },
-    "fluid": {
-        "viscosity": 0.005,
-        "law": "roelands",
-        "pressure_viscosity": 11.1e-9,
-        "density": "dowson-higginson",
-        "eyring_stress": 10e6,
-    },
+    "fluid": roelands_oil(0.005, 11.1e-9, eyring_stress=10e6),
     "motion": {"entrainment_speed": 1.0, "slide_roll_ratio": 0.5},
     "mesh": {"inlet": -1.3, "outlet": 1.4, "points_per_half_width": 20},
     "surface": {

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import petsc4py
 import pytest
-from support import CASES
+from support import CASES, roelands_oil
 from support.points import point
 
 petsc4py.init([])
@@ -120,35 +120,19 @@ def test_failed_start_stops_after_its_attempts(monkeypatch):
 @pytest.mark.parametrize("share", [1.25, 2.0, 4.0])
 def test_fully_plastic_start_converges(share):
     """Hertz' pressure above the yield pressure: few iterations, from the dry contact."""
-    keys = {
-        "contact.model": "mixed",
-        "mesh.points_per_half_width": 50,
-        "mesh.inlet": -6.0,
-        "mesh.outlet": 4.0,
-    }
+    mesh = {"mesh.points_per_half_width": 50, "mesh.inlet": -6.0, "mesh.outlet": 4.0}
     hertz = Simulation(load(CASES / "table1_smooth.toml")).scales.p0
-    state = Simulation(
-        load(CASES / "table1_smooth.toml", keys | {"contact.yield_pressure": hertz / share})
-    ).advance()
+    keys = {"contact.model": "mixed", "contact.yield_pressure": hertz / share}
+    state = Simulation(load(CASES / "table1_smooth.toml", mesh | keys)).advance()
     assert state.newton < 60 and state.load_error < 1e-10
     assert state.p_max == pytest.approx(hertz / share, rel=1e-15) and state.yielding > 30
 
 
+MIXED = {"poisson_ratio": 0.3, "model": "mixed"}
 FROM_REST = {
     "title": "from rest",
-    "contact": {
-        "radius": 0.0024,
-        "load": 47e3,
-        "youngs_modulus": 70e9,
-        "poisson_ratio": 0.3,
-        "model": "mixed",
-    },
-    "fluid": {
-        "viscosity": 0.004,
-        "law": "roelands",
-        "pressure_viscosity": 16e-9,
-        "density": "dowson-higginson",
-    },
+    "contact": {"radius": 0.0024, "load": 47e3, "youngs_modulus": 70e9} | MIXED,
+    "fluid": roelands_oil(0.004, 16e-9),
     "mesh": {"inlet": -2.0, "outlet": 2.0, "points_per_half_width": 24},
     "time": {"courant": 0.5},
     "operation": {"time": [0.0, 3.8e-5], "speed_1": [0.0, 0.77], "speed_2": [0.0, 0.77]},
@@ -186,34 +170,13 @@ def test_start_from_rest_does_not_depend_on_rounding(monkeypatch, solids):
     assert max(taken) <= 8 and max(taken) - min(taken) <= 1
 
 
+WAVE = {"kind": "sine", "amplitude": 56e-9, "wavelength": 1.25e-4}
 STRIP_FROM_REST = {
     "title": "strip from rest",
-    "contact": {
-        "radius": 0.03768,
-        "load": 84290.0,
-        "youngs_modulus": 206e9,
-        "poisson_ratio": 0.3,
-        "model": "mixed",
-        "boundary_film": 16.57e-9,
-    },
-    "fluid": {
-        "viscosity": 0.001224,
-        "law": "roelands",
-        "pressure_viscosity": 12.67e-9,
-        "density": "dowson-higginson",
-        "eyring_stress": 9.088e6,
-    },
+    "contact": {"radius": 0.03768, "load": 84290, "youngs_modulus": 206e9, "boundary_film": 16.57e-9} | MIXED,
+    "fluid": roelands_oil(0.001224, 12.67e-9, eyring_stress=9.088e6),
     "mesh": {"inlet": -2.0, "outlet": 1.7, "points_per_half_width": 6, "width": 1.07},
-    "surface": {
-        "1": {
-            "synthetic": {
-                "kind": "sine",
-                "amplitude": 56e-9,
-                "wavelength": 1.25e-4,
-                "wavelength_across": 0.00020224807411789976,  # the width
-            }
-        }
-    },
+    "surface": {"1": {"synthetic": WAVE | {"wavelength_across": 0.00020224807411789976}}},  # the width
     "time": {"courant": 2.0},
     "operation": {"time": [0.0, 1.4e-4], "speed_1": [0.0, 1.17], "speed_2": [0.0, 1.8]},
     "motion": {"entrainment_speed": 1.483, "slide_roll_ratio": -0.427},

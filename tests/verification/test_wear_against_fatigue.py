@@ -28,13 +28,8 @@ def scaled(scale):
 @pytest.mark.parametrize("criterion", ["von-mises", "fatemi-socie"])
 def test_cells_without_wear_fail_after_one_over_damage_passes(criterion, tmp_path):
     """By the criterion of [post], which post computes as well."""
-    keys = {
-        "post.criterion": criterion,
-        "wear": None,
-        "life.break_out": "none",
-        "life.damage_jump": 0.5,
-        "life.passes": 1e12,
-    }
+    keys = {"post.criterion": criterion, "wear": None, "life.break_out": "none"}
+    keys |= {"life.damage_jump": 0.5, "life.passes": 1e12}
     scene = Simulation(case(keys)).scene
     edges = laws.cell_edges(CELL_SIZE * scene.rq, 6 * CELL_SIZE * scene.rq)
     depths = [0.0, *(0.5 * (edges[1:] + edges[:-1]) / scene.scales.a)]
@@ -119,14 +114,11 @@ def test_thicker_film_protects_and_moves_the_border(tmp_path):
     fluid = {"viscosity": 0.004, "law": "roelands", "pressure_viscosity": 15e-9}
     fluid |= {"density": "dowson-higginson", "eyring_stress": 6e6}
     keys = {"fluid": fluid, "mesh.inlet": -2.0, "contact.asperity_height": 20e-9}
-    keys |= {
-        "contact.asperity_stiffness": 1.0
-    }  # a stiff layer; a soft one leaves the damage to single asperities
-    found = []
+    # a stiff layer; a soft one leaves the damage to single asperities
+    keys, found = keys | {"contact.asperity_stiffness": 1.0}, []
     for speed in (0.2, 1.0, 2.0):
-        found.append(
-            first_round(keys | {"motion.entrainment_speed": speed}, tmp_path / f"{speed}.life.h5", True)
-        )
+        given = keys | {"motion.entrainment_speed": speed}
+        found.append(first_round(given, tmp_path / f"{speed}.life.h5", True))
     damage, borders = zip(*found, strict=True)
     assert max(damage[0]) > 2.0 * max(damage[1]) > 8.0 * max(damage[2])
     for k in range(2):
