@@ -91,13 +91,8 @@ def made(
     x = np.linspace(-2.5, 1.5, nodes)
     s = np.linspace(-3.5, -2.5, 50) * A
     attrs = {"title": title, "case": TABLE_1.format(viscosity=viscosity, speed=speed), "a": A, "p0": p0}
-    attrs |= {
-        "h_scale": A**2 / RADIUS,
-        "u1": 1.12 * speed,
-        "u2": 0.88 * speed,
-        "ranks": 1,
-        "petsc_options": "",
-    }
+    attrs |= {"h_scale": A**2 / RADIUS, "u1": 1.12 * speed, "u2": 0.88 * speed}
+    attrs |= {"ranks": 1, "petsc_options": ""}
     surface = StoredSurface(s, 1e-7 * np.cos(s / 1e-5), speed)
     surfaces = {side: surface for side in ("1", "2") if rough}
     writer = ResultWriter(path, Layout(x * A, list(fields), surfaces=surfaces), attrs)

@@ -253,19 +253,8 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     q, h, b = np.full(n, 0.5), np.full(n, 5e-4), np.full(n, 363e6)
     q[20], b[20] = 1.0, 563e6
     zero, response = np.zeros(n), np.full(n, 1e-8)
-    of_nodes = (
-        np.full(n, 1e6),
-        b,
-        zero,
-        zero,
-        b / 1e6,
-        b / 1e6,
-        response,
-        response,
-        zero + 1,
-        b / 1e6,
-        b / 1e6,
-    )
+    t = b / 1e6
+    of_nodes = (np.full(n, 1e6), b, zero, zero, t, t, response, response, zero + 1, t, t)
     oil, law = IsothermalOil(case.fluid, scales), film_law(case.fluid, case.heat, 0.0)
     heat = FilmHeat(oil, law, np.array(of_nodes), state(n), None, zero)
     solved = heat.begin()

@@ -157,15 +157,13 @@ def test_distances_are_integrals_of_speeds():
         count = 10_000
         times = begin + (np.arange(count) + 0.5) / count * (end - begin)
         mean = np.mean([operation.at(t)[2:] for t in times], axis=0)
-        np.testing.assert_allclose(
-            operation.displacement(begin, end - begin), mean * (end - begin), atol=2e-9
-        )
+        way = operation.displacement(begin, end - begin)
+        np.testing.assert_allclose(way, mean * (end - begin), atol=2e-9)
     parts = [operation.displacement(k * 1e-3, 1e-3) for k in range(9)]
     np.testing.assert_allclose(np.sum(parts, axis=0), operation.travelled(9e-3), rtol=1e-12)
     places = np.array([operation.travelled(t) for t in np.linspace(0.0, 9e-3, 3001)])
-    np.testing.assert_allclose(
-        operation.extent(), np.stack([places.min(0), places.max(0)], axis=1), atol=1e-8
-    )
+    ends = np.stack([places.min(0), places.max(0)], axis=1)
+    np.testing.assert_allclose(operation.extent(), ends, atol=1e-8)
 
 
 @pytest.mark.parametrize("last", [0.0, 1.2])

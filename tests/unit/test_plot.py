@@ -26,6 +26,7 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
 FRAME = ["pressure [GPa]", "film thickness [µm]"]
+LATER = ["--time", 1e-5, "--window", 0.05, 0.55]
 MAP = ["time [µs]", "pressure [GPa]"]  # of the panel and of its colours
 COURSES = ["film [µm]", "maximum\npressure [GPa]", "friction\ncoefficient"]
 OPTIONS = plot.arguments().parse_args(["x"])
@@ -68,13 +69,7 @@ def reversing(path, load=None):
     "options, name, title, window, panels",
     [
         ([], "one.png", "made up: step 0, 0 µs, travel 0.00 a", (-1.6, 1.4), FRAME),
-        (
-            ["--time", 1e-5, "--window", 0.05, 0.55],
-            "one.png",
-            "made up: step 10, 10 µs, travel 0.17 a",
-            (0.05, 0.55),
-            FRAME,
-        ),
+        (LATER, "one.png", "made up: step 10, 10 µs, travel 0.17 a", (0.05, 0.55), FRAME),
         (["--over-time"], "one.over_time.png", "made up", (0.0, 0.04), COURSES),
         (["--map", "--window", -0.5, 0.5], "one.map.png", "made up", (-0.5, 0.5), MAP),
     ],

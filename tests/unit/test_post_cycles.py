@@ -24,11 +24,8 @@ def counts(cycles):
 def three_point(series):
     """ASTM E1049, 5.4.4, written as the standard's text reads; ranges and counts."""
     turns = [v for k, v in enumerate(series) if k == 0 or v != series[k - 1]]
-    turns = [
-        v
-        for k, v in enumerate(turns)
-        if k in (0, len(turns) - 1) or (v - turns[k - 1]) * (turns[k + 1] - v) < 0
-    ]
+    ends = 0, len(turns) - 1
+    turns = [v for k, v in enumerate(turns) if k in ends or (v - turns[k - 1]) * (turns[k + 1] - v) < 0]
     stack, total = [], Counter()
     for value in turns:
         stack.append(value)

@@ -78,10 +78,8 @@ def test_limited_shear(stress, limit, uncompiled):
     if max(stress, limit) >= 1.2 * min(stress, limit):
         assert value == pytest.approx(min(stress, limit), rel=0.0015)
     assert value >= 0.9659 * min(stress, limit)
-    for arguments, slope in (
-        ((stress + STEP * 1j, limit), by_stress),
-        ((stress, limit + STEP * 1j), by_limit),
-    ):
+    stepped = (stress + STEP * 1j, limit), (stress, limit + STEP * 1j)
+    for arguments, slope in zip(stepped, (by_stress, by_limit), strict=True):
         assert rheology.limited_shear(*arguments)[0].imag / STEP == pytest.approx(slope, rel=1e-12)
 
 

@@ -173,13 +173,10 @@ LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA = 637.6e3, 6.583, 8.382e-3, 0.0112, 0.25e
 
 
 def test_hoehn_michaelis_of_fzg_at_302_n_m():
-    assert hoehn_michaelis(LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA) == pytest.approx(0.0491, rel=1e-3)
-    assert hoehn_michaelis(LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA, 0.8) == pytest.approx(
-        0.8 * 0.0491, rel=1e-3
-    )
-
-
-def test_hoehn_michaelis_of_light_loads_is_that_of_150_n_mm():
+    """And that of loads below 150 N/mm is that of 150."""
+    for factor in (1.0, 0.8):
+        found = hoehn_michaelis(LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA, factor)
+        assert found == pytest.approx(factor * 0.0491, rel=1e-3)
     light, least = (hoehn_michaelis(load, SUM_SPEED, RADIUS, VISCOSITY, RA) for load in (10e3, 150e3))
     assert light == least
 

@@ -99,10 +99,7 @@ def test_share_friction_and_lengths_converge():
         observed, extrapolated = order(*means[name])
         assert observed > 1.7, name
         assert extrapolated == pytest.approx(limit, rel=0.005), name
-    for name, length in (
-        ("contact_length_10mpa", 2.007),
-        ("contact_length_100mpa", 1.697),
-    ):  # the same limits
+    for name, length in (("contact_length_10mpa", 2.007), ("contact_length_100mpa", 1.697)):
         assert means[name][0] > means[name][1] > means[name][2]
         assert means[name][2] / A == pytest.approx(length, rel=0.005), name
 
@@ -173,10 +170,9 @@ def test_contact_length_is_the_integral_of_the_real_area():
     modulus = 0.5 * scales.E * 0.1
     area = erf(np.sqrt(np.pi) * state.contact_pressure / modulus)
     assert state.contact_length == pytest.approx(scales.spacing * area.sum(), rel=1e-9)
-    assert state.contact_length_10mpa == pytest.approx(scales.spacing * (state.contact_pressure > 10e6).sum())
-    assert state.contact_length_100mpa == pytest.approx(
-        scales.spacing * (state.contact_pressure > 100e6).sum()
-    )
+    for mpa in (10, 100):
+        length = scales.spacing * (state.contact_pressure > 1e6 * mpa).sum()
+        assert getattr(state, f"contact_length_{mpa}mpa") == pytest.approx(length)
     np.testing.assert_array_equal(state.in_contact, state.contact_pressure > 10e6)
 
 
