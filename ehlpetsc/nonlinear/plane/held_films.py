@@ -27,7 +27,7 @@ from ehlpetsc.physics.oil.rheology import FlowLaw
 
 HIGHEST = 0.1  # p0: pressures above it follow from the film; settled ones to .15 cost half an iteration more
 MOVED = 0.02  # p0: change of a pressure to be settled; .01 brings an iteration more than none
-MOVED_FILM = 0.5  # of the film: change of a film that is too far from its solution to be held
+MOVED_FILM = 0.3  # of the film: change of one too far from its solution to be held; with .5 some never end
 GROWTH = 2  # nodes around a changed one whose q move
 STEPS = 3  # of the local system
 LARGEST = 0.3  # p0: change of a pressure in one of them
