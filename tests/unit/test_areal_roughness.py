@@ -99,9 +99,13 @@ def test_a_moving_surface_is_level_ahead_of_its_first_column():
     assert np.abs(heights[:, X_NODES < -0.2 * A]).max() > 1e-7
 
 
+@pytest.fixture(scope="module")
+def lay():
+    return made(kind="ground", ra=1e-7, correlation=60e-6, correlation_across=15e-6, seed=3, direction=30.0)
+
+
 @pytest.mark.parametrize("passage", [FORWARD, BACKWARD, AT_REST])
-def test_the_lay_has_the_same_direction_in_any_motion(passage):
-    lay = made(kind="ground", ra=1e-7, correlation=60e-6, correlation_across=15e-6, seed=3, direction=30.0)
+def test_the_lay_has_the_same_direction_in_any_motion(lay, passage):
     z = gap(lay, passage, np.sign(passage.speed) * ENTERED)
     along_y, along_x = np.gradient(z, DY, DX)
     tensor = np.array([[np.mean(along_x**2), np.mean(along_x * along_y)], [0.0, np.mean(along_y**2)]])
