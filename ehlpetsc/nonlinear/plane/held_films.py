@@ -27,7 +27,6 @@ from ehlpetsc.physics.oil.rheology import FlowLaw
 
 HIGHEST = 0.1  # p0: pressures above it follow from the film; settled ones to .15 cost half an iteration more
 MOVED = 0.02  # p0: change of a pressure to be settled; .01 brings an iteration more than none
-MOVED_FILM = 0.3  # of the film: change of one too far from its solution to be held; with .5 some never end
 GROWTH = 2  # nodes around a changed one whose q move
 STEPS = 3  # of the local system
 LARGEST = 0.3  # p0: change of a pressure in one of them
@@ -61,13 +60,10 @@ class HeldFilms:
         self.at[:, (nodes // n_x + 1) * (n_x + 1) + nodes % n_x] = values
 
 
-def settle(cells: HeldFilms, q: np.ndarray, changed: np.ndarray, moved_films: np.ndarray) -> None:
-    """Change q of the local nodes, in place, around some of them that have changed.
-
-    `moved_films`: mask of the nodes whose film is not yet known, where nothing is settled.
-    """
+def settle(cells: HeldFilms, q: np.ndarray, changed: np.ndarray) -> None:
+    """Change q of the local nodes, in place, around some of them that have changed."""
     (n_y, n_x), place = cells.reynolds.shape, np.full(len(q), FREE, dtype=np.int32)
-    place[(q > HIGHEST) | moved_films] = HELD
+    place[q > HIGHEST] = HELD
     nodes = around(changed, GROWTH, n_y, n_x, place)
     for _ in range(STEPS if len(nodes) else 0):
         rows, by = cells.balance(nodes)

@@ -14,9 +14,10 @@ from ehlpetsc.discretisation.contact.node_state import full_of_oil
 from ehlpetsc.discretisation.ehl_problem import problem_of
 from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.discretisation.reynolds import Reynolds
-from ehlpetsc.discretisation.unknowns import pairs
+from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.unknowns import Unknowns, pairs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
-from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, MOVED_FILM, HeldFilms, settle
+from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, HeldFilms, settle
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination
 from ehlpetsc.nonlinear.ranks import all_ranks, global_max
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 ELASTIC_STEP_LIMIT = 1.0  # p0: largest change of pressure; 0.3 costs asperities half as many iterations again
 MANY_CHANGED = 0.1  # of the nodes: too many to settle their pressures after an iteration
+SETTLED_STEPS = 8  # of a solve; most take six
 OF_HIGHEST = 0.3  # of the highest pressure: the same, where it is more
 
 
@@ -61,6 +63,12 @@ class PlaneFields(TwoFields):
     """System of a contact in the plane."""
 
     exchange: PlaneExchange
+    steps = 0  # of the solve
+
+    def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
+        """See :class:`TwoFields`."""
+        super().set_initial_guess(guess, inputs)
+        self.steps = 0
 
     def limit_step(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """As of :class:`TwoFields`; of elastic solids by the pressures to which the limited entries lead.
@@ -92,7 +100,14 @@ class PlaneFields(TwoFields):
             self._settle(reynolds, now, given)
 
     def _settle(self, reynolds: Reynolds, now: np.ndarray, step: np.ndarray) -> None:
-        """Change a step so that thin oil and the edges of cavities are where its films have them."""
+        """Change a step so that thin oil and the edges of cavities are where its films have them.
+
+        Where the film gives way at once to the pressure of a single node, that goes round in circles, which
+        ends after `SETTLED_STEPS`.
+        """
+        self.steps += 1
+        if self.steps > SETTLED_STEPS:
+            return
         new, before = now - step, now[:, 0]
         is_changed = (np.abs(step[:, 0]) > MOVED) & (new[:, 0] < HIGHEST)
         changed = np.flatnonzero(is_changed | (full_of_oil(new[:, 0]) != full_of_oil(before)))
@@ -104,7 +119,7 @@ class PlaneFields(TwoFields):
         if len(changed):
             settled = q[self.problem.owned].copy()
             cells = HeldFilms(reynolds, self.inputs, q, self.contact.state(q, w).film)
-            settle(cells, settled, changed, np.abs(step[:, 1]) > MOVED_FILM * np.abs(new[:, 1]))
+            settle(cells, settled, changed)
             step[:, 0] = before - settled
 
 
