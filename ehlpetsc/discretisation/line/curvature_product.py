@@ -152,15 +152,24 @@ def pack(rank: int, matrices: tuple, room: tuple, pressure: np.ndarray, message:
     """Begin the product with the pressures of this rank, and fill in its message to the others."""
     of_pressures, _, decay, _ = matrices
     pressures, near_and_moments, incoming, arriving = room
-    pressures.ravel()[: len(pressure)] = pressure
+    for b in range(len(pressures)):  # numba takes long to compile assignments of slices
+        begin = b * BLOCK
+        for i in range(min(BLOCK, len(pressure) - begin)):
+            pressures[b, i] = pressure[begin + i]
     np.dot(pressures, of_pressures, near_and_moments)
-    incoming[:] = 0.0
+    terms, half, last = len(decay), len(message) // 2, len(near_and_moments) - 1
+    for m in range(terms):
+        for k in range(2):
+            incoming[0, k, m] = incoming[1, k, m] = 0.0
     scan_moments(near_and_moments, decay, incoming, arriving)
-    terms, half, inner = len(decay), len(message) // 2, BLOCK + len(decay)
-    right, left, first, last = message[:half], message[half:], near_and_moments[0], near_and_moments[-1]
-    right[:BLOCK], left[:BLOCK] = last[BLOCK : 2 * BLOCK], first[2 * BLOCK : 3 * BLOCK]
-    right[BLOCK:inner], left[BLOCK:inner] = arriving[-1, :terms], arriving[0, terms:]
-    right[inner:], left[inner:] = last[3 * BLOCK : 3 * BLOCK + terms], first[3 * BLOCK + terms :]
+    for k in range(BLOCK):
+        message[k] = near_and_moments[last, BLOCK + k]
+        message[half + k] = near_and_moments[0, 2 * BLOCK + k]
+    for m in range(terms):
+        message[BLOCK + m] = arriving[len(arriving) - 1, m]
+        message[half + BLOCK + m] = arriving[0, terms + m]
+        message[BLOCK + terms + m] = near_and_moments[last, 3 * BLOCK + m]
+        message[half + BLOCK + terms + m] = near_and_moments[0, 3 * BLOCK + terms + m]
 
 
 @compiled
@@ -181,10 +190,11 @@ def unpack(rank: int, matrices: tuple, room: tuple, messages: np.ndarray) -> np.
         for i in range(BLOCK):
             sums[b, i] += near_and_moments[b - 1, BLOCK + i]
             sums[b - 1, i] += near_and_moments[b, 2 * BLOCK + i]
-    if rank > 0:
-        sums[0] += messages[rank - 1, :BLOCK]
-    if rank < ranks - 1:
-        sums[last] += messages[rank + 1, half : half + BLOCK]
+    for i in range(BLOCK):
+        if rank > 0:
+            sums[0, i] += messages[rank - 1, i]
+        if rank < ranks - 1:
+            sums[last, i] += messages[rank + 1, half + i]
     return sums.ravel()
 
 
