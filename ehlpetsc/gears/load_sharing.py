@@ -34,7 +34,7 @@ RULES = ("thirds", "tip-relief", "stiffness")
 SLICES = 41  # of a helical pair
 EDGE_SAMPLES = 2001
 NEVER = 1.0  # m: gap of flanks that do not touch
-ROUNDING = 1e-9  # of the base pitch: a pair that near to A to E is not beyond them
+PITCH_ROUNDING = 1e-9  # of the base pitch: a pair that near to A to E is not beyond them
 END_STIFFNESS = 0.55  # of a pair at A and E, over that in the middle
 
 
@@ -130,7 +130,7 @@ def pair_loads(pair: GearPair, rho: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 def _thirds(pair: GearPair, rho: np.ndarray) -> np.ndarray:
-    rho, points, rounding = np.asarray(rho, dtype=float), pair.points, ROUNDING * pair.base_pitch
+    rho, points, rounding = np.asarray(rho, dtype=float), pair.points, PITCH_ROUNDING * pair.base_pitch
 
     def is_beyond(at: np.ndarray) -> np.ndarray:
         return (at < points["A"] - rounding) | (at > points["E"] + rounding)

@@ -37,7 +37,7 @@ FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield p
 LOAD_GROWTH = 1.2  # factor from one load to the next
 QUICK_ITERATIONS = 15  # after which a start that yields is tried otherwise
 MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
-NEAR = 30  # iterations from the solution on a coarser mesh, which is near or of no use
+NEAR_ITERATIONS = 30  # iterations from the solution on a coarser mesh, which is near or of no use
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
 
 
@@ -50,7 +50,7 @@ def steady(
     """
     problem, oil = solver.problem, inputs.inlet_film
     if guess is not None:
-        return Continuation(solver, inputs, NEAR, watch).solve(guess)
+        return Continuation(solver, inputs, NEAR_ITERATIONS, watch).solve(guess)
     if problem.model.yield_pressure < 1.0:
         return yielding_start(solver, film, inputs, watch)
     if oil is None:
