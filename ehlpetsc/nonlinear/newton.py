@@ -274,6 +274,7 @@ class NewtonSolver:
         """Create PETSc's objects anew after a failed solve."""
         while self._petsc_objects:
             self._petsc_objects.pop().destroy()
+        self.system.matrices.renew()
         self._create()
 
 

@@ -138,6 +138,9 @@ class Matrices:
     def begin_solve(self) -> None:
         """Called at the start of each nonlinear solve."""
 
+    def renew(self) -> None:
+        """Free what a failed solve has left."""
+
     def keep(self, jacobian: Any) -> None:
         """Factor for the state of a Jacobian, as the first factors of all later solves."""
 

@@ -10,6 +10,7 @@ from petsc4py import PETSc
 from scipy.sparse import bsr_matrix
 from support.points import point
 
+from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import limit_cavitation
 from ehlpetsc.discretisation.plane.deflection import free_kernel
@@ -202,6 +203,25 @@ def test_settled_pressures_balance_thin_oil():
     before = abs(cells.balance(wrong)[0]).max()
     settle(cells, q, wrong)
     assert abs(HeldFilms(reynolds, inputs, q, film).balance(wrong)[0]).max() < 1e-3 * before
+
+
+def test_solve_after_one_whose_factors_failed(monkeypatch):
+    """PETSc's preconditioner keeps a failed factorisation."""
+    system, state, inputs = scene("layer")
+
+    def linearise(x, is_evaluated=False):
+        type(system).linearise(system, x, is_evaluated)
+        system.jacobian.reynolds_derivatives = np.zeros_like(system.jacobian.reynolds_derivatives)
+
+    options = RunOptions(kind="point")
+    with options:
+        solver = NewtonSolver(system, options)
+        with monkeypatch.context() as patched:
+            patched.setattr(system, "linearise", linearise)
+            with pytest.raises(SolveFailed):
+                solver.solve(state, inputs)
+        solver.solve(state, inputs)
+    assert solver.snes.getFunctionNorm() < solver.tolerance
 
 
 def test_pressures_are_settled_in_the_first_steps_of_each_solve(monkeypatch):

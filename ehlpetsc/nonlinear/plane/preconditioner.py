@@ -186,6 +186,10 @@ class Elimination:
         """Return to the kept factors, or to none."""
         self.factors, self.applications = self.kept, 0 if self.kept else MAX_KEPT + 1
 
+    def renew(self) -> None:
+        """Free what a failed solve has left: PETSc's preconditioner keeps a failed factorisation."""
+        self.form, self.factors, self.applications = None, self.kept, MAX_KEPT + 1
+
     def keep(self, operator: PlaneJacobian) -> None:
         """Factor for the state of an operator, as the first factors of all later solves."""
         self.applications = MAX_KEPT + 1

@@ -54,6 +54,10 @@ class PlaneMatrices(Matrices):
         if self.elimination.factors:
             self.elimination.begin_solve()
 
+    def renew(self) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
+        self.elimination.renew()
+
     def keep(self, jacobian: PlaneJacobian) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Matrices`."""
         self.elimination.keep(jacobian)
