@@ -17,7 +17,7 @@ from ehlpetsc.surfaces.topography import difference, displacement
 STEP = 2e-6
 RANDOM = np.random.default_rng(4)
 WAVES = 1e-7 * gaussian_filter(RANDOM.standard_normal((200, 240)), 3.0) / 0.09
-KEYS = ["--set", f"spacing={STEP}"]
+KEYS, MASKED = ["--set", f"spacing={STEP}"], ["mask=mask.npy"]
 
 
 def sampled(folder, **keys):
@@ -52,13 +52,9 @@ def test_masked_heights_are_missing(tmp_path):
 @pytest.mark.parametrize(
     ("mask", "words", "message"),
     [
-        (
-            np.zeros((3, 4)),
-            ["mask=mask.npy"],
-            "mask: mask.npy has 3 x 4 values; allowed: as many as heights, 200 x 240",
-        ),
-        (None, ["mask=mask.npy"], "mask: no such file: "),
-        (np.eye(200, 240), ["mask=mask.npy"], "200 heights missing, the widest gap "),
+        (np.zeros((3, 4)), MASKED, "mask: mask.npy has 3 x 4 values; allowed: as many as heights, 200 x 240"),
+        (None, MASKED, "mask: no such file: "),
+        (np.eye(200, 240), MASKED, "200 heights missing, the widest gap "),
         (None, ["level=lines"], 'level = "lines": allowed: true or false or "rows" ('),
     ],
 )

@@ -15,6 +15,7 @@ from support.made_results import make_result, with_solids
 
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import report
+from ehlpetsc.pictures.frames.choice import frame_to_show
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import read_result
 
@@ -78,7 +79,7 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
         np.testing.assert_array_equal(touching, r["in_contact"][:][:, part])
         contacts = next(f for f in data["steps"]["figures"] if f["name"] == "nodes in contact")
         np.testing.assert_array_equal(unpacked(contacts["y"]), r.steps("contacts")[1:])
-        assert frames["step"][frames["first"]] == r.step[plot_first(r)]
+        assert frames["step"][frames["first"]] == r.step[frame_to_show(r)]
         facts, means = dict(data["facts"]), Totals.of_result(r).means
         assert facts["friction coefficient, mean"] == f"{means['friction_coefficient']:.4g}"
         assert facts["maximum pressure"] == f"{1e-9 * r.steps('p_max').max():.4g} GPa"
@@ -87,12 +88,6 @@ def test_report_contains_fields_and_needs_no_network(tmp_path, page):
     assert data["damage"] is None and "maximum pressure [GPa]" in names
     assert "share of the load on the solids" in names
     assert "time step [µs]" not in names  # what does not change is left out
-
-
-def plot_first(result):
-    from ehlpetsc.pictures.frames.choice import frame_to_show
-
-    return frame_to_show(result)
 
 
 def test_thinned_fields_keep_their_peaks(tmp_path, page, monkeypatch):
