@@ -71,6 +71,9 @@ def test_the_command_writes_the_map_as_used(tmp_path, capsys, ending):
     assert "exists; give another -o, or --overwrite" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["map.npy", f"out{ending}"]
     assert target.read_text() == "measured"
+    if ending != ".x3p":
+        assert main([str(target)]) == 2
+        assert f"format '{ending}' is written, not read; allowed: " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("ending", READERS)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.lib.format import MAGIC_PREFIX, read_array
 
 from ehlpetsc.base.errors import ProfileError
+from ehlpetsc.surfaces.files.exports import WRITERS
 from ehlpetsc.surfaces.files.profiles import (
     KEYS_OF_TEXT,
     MAX_ABSCISSA,
@@ -113,8 +114,11 @@ def _instrument_file(path: Path, layout: Layout) -> Map:
     stated = [key for key in KEYS_OF_TEXT if getattr(layout, key) is not None]
     if stated:
         raise ProfileError(f"{stated[0]}: {path.suffix!r} includes it; leave it out")
-    package, read = READERS.get(path.suffix.lower(), ("surfalize", _by_surfalize))
-    return by_package(package, read, path, ".npy or text, a matrix of heights in m, with spacing")
+    ending, otherwise = path.suffix.lower(), ".npy or text, a matrix of heights in m, with spacing"
+    if ending in WRITERS.keys() - READERS.keys():
+        raise ProfileError(f"format {ending!r} is written, not read; allowed: {otherwise}, or .x3p")
+    package, read = READERS.get(ending, ("surfalize", _by_surfalize))
+    return by_package(package, read, path, otherwise)
 
 
 def _by_x3pio(path: Path) -> Map:
