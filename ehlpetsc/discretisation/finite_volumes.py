@@ -309,12 +309,12 @@ def reynolds_product(by: np.ndarray, v: np.ndarray, n_x: int, first: int, out: n
         here = first + row
         left, right = max(here, ONE) - ONE, min(here + ONE, last)
         behind = max(left, ONE) - ONE
-        by_q = by[row, 0] * v[behind, 0] + by[row, 2] * v[left, 0]  # of two sums processors add pairs at once
-        by_h = by[row, 1] * v[behind, 1] + by[row, 3] * v[left, 1]
-        by_q += by[row, 4] * v[here, 0] + by[row, 6] * v[right, 0]
-        by_h += by[row, 5] * v[here, 1] + by[row, 7] * v[right, 1]
+        total = by[row, 0] * v[behind, 0] + by[row, 1] * v[behind, 1]
+        total = total + by[row, 2] * v[left, 0] + by[row, 3] * v[left, 1]
+        total = total + by[row, 4] * v[here, 0] + by[row, 5] * v[here, 1]
+        total = total + by[row, 6] * v[right, 0] + by[row, 7] * v[right, 1]
         if by.shape[1] > BELOW:
             below, above = max(here, stride) - stride, min(here + stride, last)
-            by_q += by[row, BELOW] * v[below, 0] + by[row, ABOVE] * v[above, 0]
-            by_h += by[row, BELOW + 1] * v[below, 1] + by[row, ABOVE + 1] * v[above, 1]
-        out[row] = by_q + by_h
+            total += by[row, BELOW] * v[below, 0] + by[row, BELOW + 1] * v[below, 1]
+            total += by[row, ABOVE] * v[above, 0] + by[row, ABOVE + 1] * v[above, 1]
+        out[row] = total
