@@ -25,6 +25,7 @@ from ehlpetsc.discretisation.contact.node_state import (
     SurfaceLoads,
     full_of_oil,
     limit_cavitation,
+    open_cavity,
 )
 from ehlpetsc.physics.contact.asperities import (
     CONTACT_PRESSURE,
@@ -170,7 +171,7 @@ def limit_rise(now: np.ndarray, step: np.ndarray, law: tuple) -> None:
     film = asperity_separation(FREE_RISE, *law)
     for i in range(len(now)):
         h = now[i, 1]
-        step[i, 0] = limit_cavitation(now[i, 0], step[i, 0])
+        step[i, 0] = limit_cavitation(now[i, 0], open_cavity(now[i, 0], step[i, 0]))
         if h - step[i, 1] < film and step[i, 1] > 0.0:  # asperities carry more
             highest = max(2.0 * asperity_pressure(h, *law)[0], FREE_RISE)
             step[i, 1] = min(step[i, 1], h - asperity_separation(highest, *law))

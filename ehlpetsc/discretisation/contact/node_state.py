@@ -114,15 +114,23 @@ def directional_derivative(by: np.ndarray, nodes: np.ndarray, first: int, change
 
 
 @compiled
+def open_cavity(q: float, dq: float) -> float:
+    """Newton step of q, to be subtracted: ambient oil that would have a lower pressure is a cavity.
+
+    Below zero no pressure follows q, so that smaller steps would change nothing.
+    """
+    if -AMBIENT_TOLERANCE < q < 0.0 and dq > ROUNDING:
+        return max(dq, q + 2.0 * AMBIENT_TOLERANCE)
+    return dq
+
+
+@compiled
 def limit_cavitation(q: float, dq: float) -> float:
     """Newton step of q, to be subtracted: a cavity that fills or empties stops at the change of phase.
 
     A cavity that fills gets the pressure `PRESSURE_AFTER_REFILL`. A void leaves `MIN_OIL_FRACTION` of the
-    oil: at q = -1 on a closed gap every derivative is zero. A cavity opens where oil at the ambient pressure
-    would have a lower one: below zero no pressure follows q, so that smaller steps would change nothing.
+    oil: at q = -1 on a closed gap every derivative is zero.
     """
-    if -AMBIENT_TOLERANCE < q < 0.0 and dq > ROUNDING:
-        dq = max(dq, q + 2.0 * AMBIENT_TOLERANCE)
     if q < 0.0 and q - dq > PRESSURE_AFTER_REFILL:
         return q - PRESSURE_AFTER_REFILL
     if q - dq < 0.0:

@@ -17,7 +17,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import MatrixRankWarning, spsolve
 
 from ehlpetsc.base.compiled import compiled, unsigned
-from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, limit_cavitation
+from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, limit_cavitation, open_cavity
 from ehlpetsc.discretisation.finite_volumes import M_Q, ONE, M, flux_through, positive_extrapolation
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.reynolds import Reynolds
@@ -164,7 +164,8 @@ def moved(q: np.ndarray, nodes: np.ndarray, change: np.ndarray) -> np.ndarray:
     flipped, count = np.empty(len(nodes), dtype=np.int64), 0
     for k in range(len(nodes)):
         before = q[nodes[k]]
-        new = before - limit_cavitation(before, min(max(change[k], -LARGEST), LARGEST))
+        limited = min(max(change[k], -LARGEST), LARGEST)
+        new = before - limit_cavitation(before, open_cavity(before, limited))
         q[nodes[k]] = new
         if (new > -AMBIENT_TOLERANCE) != (before > -AMBIENT_TOLERANCE):
             flipped[count] = nodes[k]
