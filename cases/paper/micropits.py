@@ -65,8 +65,6 @@ def pair(rq_1: float, rq_2: float) -> Scene:
     settings = bearing(4.576e-3, 0.0094, 1.0, 0.02) | surfaces
     if rq_1 + rq_2 > 0.5:  # solids touch beyond the smooth contact
         settings |= {"mesh.inlet": -2.6, "mesh.outlet": 2.2, "time.travel": 10.0}
-    if rq_2 == 1.0:  # oil of 1e28 Pa s, with which incomplete factors break down
-        settings |= {"petsc.pc_type": "lu"}
     return Scene(f"{rq_1:g} on {rq_2:g} µm", settings, passes=RING_PASSES)
 
 

@@ -72,6 +72,8 @@ class SparseForm:
 
     `block`: unknowns of a node.
     `term`: of the deflection, see :func:`.screened_poisson.fitted_term`.
+    `is_complete`: whether the factors are complete, whatever the options; for oil so viscous that the
+        pivots of incomplete ones vanish.
 
     `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
     `no_pressure`, `no_reynolds`: masks of the nodes of the window not `PRESSURE`, of the local nodes `BOUND`.
@@ -79,8 +81,11 @@ class SparseForm:
         them, shape (local nodes, 12).
     """
 
-    def __init__(self, problem: EHLProblem, block: int, term: tuple, comm: PETSc.Comm):
+    def __init__(
+        self, problem: EHLProblem, block: int, term: tuple, comm: PETSc.Comm, is_complete: bool = False
+    ):
         self.problem, self.block, self.term, local = problem, block, term, problem.local
+        self.is_complete = is_complete
         self.mesh = problem.grid.shape[-1], problem.n, problem.grid.periodic
         self.pointers = np.empty(local + 1, dtype=np.int32)
         self.places = np.empty((local, STENCIL), dtype=np.int8)
@@ -93,9 +98,13 @@ class SparseForm:
         )
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
-        self.pc.setOptionsPrefix(PREFIX)
-        self.pc.setType("ilu" if comm.size == 1 else "asm")
-        self.pc.setFromOptions()
+        if is_complete:
+            self.pc.setType("lu")
+            self.pc.setFactorSolverType("petsc" if comm.size == 1 else "mumps")
+        else:
+            self.pc.setOptionsPrefix(PREFIX)
+            self.pc.setType("ilu" if comm.size == 1 else "asm")
+            self.pc.setFromOptions()
         self.b, self.u = self.matrix.createVecs()
         self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
         self.by = np.empty((local, 2 * STENCIL))
@@ -184,6 +193,8 @@ class Elimination:
 
     def begin_solve(self) -> None:
         """Return to the kept factors, or to none."""
+        if self.form is not None and self.form.is_complete:
+            self.form = None
         self.factors, self.applications = self.kept, 0 if self.kept else MAX_KEPT + 1
 
     def renew(self) -> None:
@@ -216,15 +227,17 @@ class Elimination:
         """Values of all nodes from those of the local ones, first axis."""
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def _build(self, operator: PlaneJacobian, with_coarse: bool) -> None:
+    def _build(self, operator: PlaneJacobian, with_coarse: bool, is_complete: bool = False) -> None:
+        """Factor for the state of an operator; completely where incomplete factors break down."""
         p, self.builds = self.problem, self.builds + 1
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
         parts: Reduction = self.reduction._replace(back=None)
         whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
         block = R + int((whole[0] == CONTACT).any())
-        if self.form is None or self.form.block != block:
+        is_complete |= self.form is not None and self.form.is_complete
+        if self.form is None or (self.form.block, self.form.is_complete) != (block, is_complete):
             self.form = self.factors = None  # freed before the next one
-            self.form = SparseForm(p, block, self.term, self.comm)
+            self.form = SparseForm(p, block, self.term, self.comm, is_complete)
         sparse = self.form
         sparse.set_up(whole, operator.reynolds_derivatives)
         mask = whole[0] == PRESSURE
@@ -235,6 +248,9 @@ class Elimination:
         gaps = (np.full(p.local, p.balance.gap(unit, p.share.local)) for unit in np.eye(p.balance.unknowns))
         of_border = [self._pressures(operator, np.zeros(p.local), gap) for gap in gaps]
         self.factors = Factors(sparse, coarse, of_border)
+        is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
+        if is_broken and not (is_complete or PETSc.Options().hasName(f"{PREFIX}pc_type")):
+            self._build(operator, with_coarse, is_complete=True)
 
     def _pressures(
         self, operator: PlaneJacobian, reynolds: np.ndarray, separation: np.ndarray
