@@ -89,6 +89,7 @@ SCENES = {
     "second": Scene("ten others", seeds=tuple(range(11, 21))),
     "fine": Scene("a/24", {"mesh.points_per_half_width": 24}, (1, 2, 3, 4, 5)),
     "wide": Scene("width 2 a", {"mesh.width": 2.0}),
+    "long": Scene("travel 16 a", {"time.travel": 16.0}),
     "rolling": Scene("0.02", {"motion.slide_roll_ratio": 0.02}),
     "thin": Scene("0.3", {"motion.entrainment_speed": 0.43}),
     "thick": Scene("3", {"motion.entrainment_speed": 13.5}),
@@ -113,7 +114,9 @@ SCENES = {
 SCENE = "scene"  # the first seeds of the scene, of as many as are compared with them
 SHORT = {"mesh.points_per_half_width": 8, "time.travel": 5.0}
 SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is drawn over depth
-    "1. rough and smooth surface: the smooth one is damaged more": ("first", "second", "wide", "fine"),
+    "1. rough and smooth surface: the smooth one is damaged more": (
+        *("first", "second", "wide", "long", "fine"),
+    ),
     "2. slide/roll ratio: worst at 0.01 to 0.02": ("rolling", SCENE),
     "3. lambda: worst near 1.1": ("thin", SCENE, "thick"),
     "4. Rq of rings NU 209: 0.05 on 1.0 µm alone pits": ("pair_1", "pair_2", "pair_3", "pair_4"),
@@ -164,7 +167,7 @@ def lines(ensembles: Ensembles) -> list[str]:
         last = [life.rows[-1] for life in lives]
         friction, pressure = (np.mean([row[key] for row in last]) for key in ("friction", "p_max"))
         line = f"{name}, {scene.label}, {len(lives)} seeds: surface 1 {text[0]}, surface 2 {text[1]}"
-        if name in ("second", "fine", "wide") and "first" in ensembles:
+        if name in ("second", "fine", "wide", "long") and "first" in ensembles:
             paired = len(lives) if name == "fine" else None  # same seeds, same surfaces
             reference = shares(ensembles["first"][:paired], PASSES).mean(axis=1)
             line += ", {:+.1f} and {:+.1f} % of the first".format(
