@@ -152,12 +152,12 @@ def with_walls(bottom: np.ndarray, recession: np.ndarray, widths: tuple[float, .
     breaks = np.argwhere(bottoms > depth)
     if not len(breaks):
         return np.array(recession, float)
-    width, across = widths[-1], (widths[0] if rows > 1 else np.inf)
+    width, across = widths[-1], widths[0]
     reach = (bottoms.max() - depth.min()) / WALL_SLOPE
     beside, turned = min(int(reach / width), columns), min(int(reach / across), (rows - 1) // 2 + 1)
     turns = np.arange(max(-turned, -((rows - 1) // 2)), min(turned, rows // 2) + 1)
     along = np.arange(-beside, beside + 1)
-    rise = WALL_SLOPE * np.hypot(width * along, (across * turns if rows > 1 else 0.0 * turns)[:, None])
+    rise = WALL_SLOPE * np.hypot(width * along, (across * turns)[:, None])
     for row, column in breaks:
         first, last = max(column - beside, 0), min(column + beside + 1, columns)
         wall = rise[:, first - column + beside : last - column + beside]
