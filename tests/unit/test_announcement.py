@@ -3,11 +3,10 @@
 from types import SimpleNamespace
 
 import pytest
+from numba.core import event
 
 from ehlpetsc.base import compiled
 from ehlpetsc.base.compiled import COMPILING, announce_compilation
-
-event = pytest.importorskip("numba.core.event")
 
 
 @pytest.mark.parametrize("seconds, said", [((0.2, 0.3), []), ((0.8, 0.8, 2.0, 0.1), [COMPILING])])
