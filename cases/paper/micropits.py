@@ -115,7 +115,11 @@ SCENE = "scene"  # the first seeds of the scene, of as many as are compared with
 SHORT = {"mesh.points_per_half_width": 8, "time.travel": 5.0}
 SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is drawn over depth
     "1. rough and smooth surface: the smooth one is damaged more": (
-        *("first", "second", "wide", "long", "fine"),
+        "first",
+        "second",
+        "wide",
+        "long",
+        "fine",
     ),
     "2. slide/roll ratio: worst at 0.01 to 0.02": ("rolling", SCENE),
     "3. lambda: worst near 1.1": ("thin", SCENE, "thick"),
