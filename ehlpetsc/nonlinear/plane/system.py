@@ -106,8 +106,8 @@ class PlaneFields(TwoFields):
     def _settle(self, reynolds: Reynolds, now: np.ndarray, step: np.ndarray) -> None:
         """Change a step so that thin oil and the edges of cavities are where its films have them.
 
-        Where the film gives way at once to the pressure of a single node, that goes round in circles, which
-        ends after `SETTLED_STEPS`.
+        Where the pressure of a single node lifts a thin film, Newton's method may cycle with this change;
+        without it, after `SETTLED_STEPS`, it converges.
         """
         self.steps += 1
         if self.steps > SETTLED_STEPS:
