@@ -81,6 +81,7 @@ CHANGES: dict[str, dict[str, Any]] = {
     "isothermal": {"heat": None, "fluid.temperature": 363.15},
     "46 W/(m K) of soft steel": {"heat.conductivity": 46.0},
     "FVA 3 as oil m100": {"fluid.oil": "m100"},
+    "half of the time steps' length": {"time.courant": 0.5},
 }
 CHANGES_OF_STRIPS: dict[str, dict[str, Any]] = {
     "border 79 um, 8 nodes a wave": strip(*LONG, SEEDS[0]) | {"contact.asperity_stiffness": None},
@@ -193,7 +194,7 @@ def main(words: list[str] | None = None) -> None:
     """Print the tables and write the picture."""
     parser = measured_data.parser(__doc__, "cmod_friction.png")
     parser.add_argument("models", nargs="*", choices=[*MODELS, []], metavar="MODEL", help=", ".join(MODELS))
-    parser.add_argument("--store", action="store_true", help="friction at all speeds as columns of the file")
+    parser.add_argument("--store", action="store_true", help="friction and shares as columns of the file")
     chosen = parser.parse_args(words)
     computed: dict[str, list[Found]] = {}
     for model in chosen.models or MODELS:
@@ -217,8 +218,14 @@ def main(words: list[str] | None = None) -> None:
             computed[model].append(both[-1])
         influences(model)
     if chosen.store:
-        of_all = {model: values for model, values in computed.items() if MODELS[model].speeds is None}
-        columns = {model: [f"{value.friction:.4f}" for value in of_all[model]] for model in of_all}
+        columns = {}
+        for model, values in computed.items():
+            of_speed = dict(zip(points_of(model), values, strict=True))
+            every = [of_speed.get(point, Found(np.nan, np.nan, np.nan)) for point in MEASURED]
+            columns |= {model: [f"{value.friction:.4f}" for value in every]}
+            columns |= (
+                {f"{model}_share": [f"{value.share:.2f}" for value in every]} if model != "smooth" else {}
+            )
         measured_data.store("cmod.csv", **columns)
     style.save(draw(computed), chosen.output)
     print(chosen.output)

@@ -1,8 +1,9 @@
 """Damage of rough strips by ensembles: the table and the picture of `cases/micropitting.md`.
 
-``ehlpetsc python cases/paper/micropits.py FOLDER [SCENE ...] [-o PICTURE]`` computes one pass of each seed of
-the scenes, by default of all, skips lives that are in the folder, and prints shares of the surface with D
-above 0.1. With the scene `first` it draws the signs of the chosen ones. Under mpirun ranks share the lives.
+``ehlpetsc python cases/paper/micropits.py FOLDER [SCENE ...] [--store] [-o PICTURE]`` computes one pass of
+each seed of the scenes, by default of all, skips lives that are in the folder, and prints shares of the
+surface with D above 0.1, which ``--store`` writes to `data/micropits.csv`. With the scene `first` it draws
+the signs of the chosen ones. Under mpirun ranks share the lives.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import argparse
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import measured_data
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -24,6 +26,8 @@ from ehlpetsc.results.post_result import DAMAGED
 
 CASE = Path(__file__).parent.parent / "micropitting.toml"
 PASSES, RING_PASSES = 1.5e7, 720e3  # of which shares are: of the scene, of the tests of rings
+FILE = "micropits.csv"
+COLUMNS = ("scene", "seeds", *(f"{name}_{side}" for side in "12" for name in ("share", "low", "high")))
 COMMON = {
     "life.max_solved": 1,
     "life.damage_jump": 1.0,
@@ -181,6 +185,16 @@ def lines(ensembles: Ensembles) -> list[str]:
     return found
 
 
+def store(ensembles: Ensembles) -> None:
+    """Write means and bounds of the shares, as percentages, to `FILE`."""
+    rows = []
+    for name, lives in ensembles.items():
+        values = [100 * statistics(one) for one in shares(lives, SCENES[name].passes)]
+        rows.append((name, len(lives), *(f"{value:.1f}" for value in np.ravel(values))))
+    columns = (map(str, column) for column in zip(*rows, strict=True))
+    measured_data.store(FILE, **dict(zip(COLUMNS, columns, strict=True)))
+
+
 def statistics(values: np.ndarray) -> np.ndarray:
     """Mean and its bounds."""
     return np.array([values.mean(), *bootstrap_bounds(values)])
@@ -250,6 +264,7 @@ def main(words: list[str] | None = None) -> None:
         "--short", action="store_true", help="two seeds a scene, on a mesh too coarse for shares"
     )
     parser.add_argument("-o", "--output", type=Path, default=Path("seven_signs.png"), metavar="PICTURE")
+    parser.add_argument("--store", action="store_true", help="shares as columns of the file")
     chosen = parser.parse_args(words)
     if unknown := [name for name in chosen.scenes if name not in SCENES]:
         parser.error(f"scene {unknown[0]}; allowed: {', '.join(SCENES)}")
@@ -258,6 +273,8 @@ def main(words: list[str] | None = None) -> None:
     if MPI.COMM_WORLD.rank:
         return
     print("\n".join(lines(ensembles)))
+    if chosen.store:
+        store(ensembles)
     if "first" in ensembles:
         style.save(draw(ensembles), chosen.output)
         print(chosen.output)

@@ -1,8 +1,8 @@
 """Central films of a ball on glass beside optical measurements: table on two meshes and picture.
 
 ``ehlpetsc python cases/paper/optical_films.py [--store] [-o PICTURE]`` computes cases/optical.toml at the
-measured speeds on a/16 and a/32, prints measured and computed films with their ratio, and draws them over the
-speed.
+measured speeds on a/16 and a/32, prints measured and computed films with their ratio and the effect of
+each of `CHANGES`, and draws them over the speed.
 """
 
 from __future__ import annotations
@@ -25,6 +25,10 @@ CASE = Path(__file__).parents[1] / "optical.toml"
 INDEX = 1.48  # refractive index of the oils at ambient pressure, about
 MESHES = (16, 32)  # nodes per half-width
 RANGE = (0.06, 1.1)  # m/s, of the mean ratio: slower films scatter, faster ones jump by a fringe
+
+SPEED_OF_CHANGES = 0.2122  # m/s
+CHANGES = {"26 degrees C": {"temperature": 26.0}, "oil m100": {"name": "m100"}}
+"""What moves a film of FVA 3, with the changed fields of :class:`Oil`."""
 
 
 class Oil(NamedTuple):
@@ -132,6 +136,10 @@ def main(words: list[str] | None = None) -> None:
     meshes = ", ".join(f"on a/{points}" for points in MESHES)
     print(f"oil, speed [m/s]: film measured, {meshes}, Hamrock and Dowson [nm]")
     computed = {oil.title: table(oil) for oil in OILS}
+    (unchanged,) = computed[FVA3.title][FVA3.speeds == SPEED_OF_CHANGES]
+    for name, fields in CHANGES.items():
+        changed = film(FVA3._replace(**fields), SPEED_OF_CHANGES, MESHES[-1])
+        print(f"FVA 3 at {SPEED_OF_CHANGES} m/s, {name}: {100.0 * (changed / unchanged - 1.0):+.1f} %")
     if chosen.store:
         films = (computed[oil.title] for oil in (FVA3, SHC320))
         measured_data.store("optical_films.csv", computed=[f"{film:.1f}" for of in films for film in of])

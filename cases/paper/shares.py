@@ -2,12 +2,12 @@
 
 ``ehlpetsc python cases/paper/shares.py [--compute] [-o PICTURE]`` prints the shares of `data/shares.csv`
 beside those of `LAWS` and draws them. ``--compute`` first computes that file again by ``anisotropy.py film``,
-in ten minutes of processor time.
+in six minutes of processor time, and prints the effect of each of `CHANGES` on line and strip.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import anisotropy
@@ -22,14 +22,29 @@ FILE = "shares.csv"
 
 
 class Computed(NamedTuple):
-    """Lay and nodes per half-width of :mod:`anisotropy`, symbol of the picture."""
+    """Lay and nodes per half-width of :mod:`anisotropy`, symbol of the picture, outlet for other seeds."""
 
     lay: float
     points: int
     symbol: str
+    outlet: str = "1.5"
 
 
-MODELS = {"line": Computed(0.01, 128, "s"), "strip": Computed(1.0, 64, "o"), "layer": Computed(0.0, 64, "^")}
+MODELS = {
+    "line": Computed(0.01, 128, "s"),
+    "strip": Computed(1.0, 64, "o", "2"),
+    "layer": Computed(0.0, 64, "^"),
+}
+
+
+SPEED_OF_CHANGES = 3.3  # m/s, Lambda 0.73
+CHANGES: dict[str, Callable[[Computed], list[str]]] = {
+    "mesh twice as coarse": lambda of: ["--points", str(of.points // 2)],
+    "seeds 4, 5": lambda of: ["--seed", "2", "--outlet", of.outlet],
+    "seeds 6, 7": lambda of: ["--seed", "3", "--outlet", of.outlet],
+    "border 79.9 um": lambda of: ["--border", "79.9e-6"],
+}
+"""What moves the share, with the changed arguments of :mod:`anisotropy`."""
 
 
 def exponential(b: float, c: float) -> Callable[[np.ndarray], np.ndarray]:
@@ -67,15 +82,25 @@ LAWS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 """
 
 
+def computed(of: Computed, speed: float, changes: Iterable[str] = ()) -> anisotropy.Film:
+    """Film of a model at a speed [m/s]; `changes`: arguments of :mod:`anisotropy`."""
+    words = ["film", "--width", "0.5", "--points", str(of.points), *changes]
+    return anisotropy.lubricated(anisotropy.arguments().parse_args(words), of.lay, speed)
+
+
+def influences() -> None:
+    """Print the share with each of `CHANGES`."""
+    for model in ("line", "strip"):
+        of = MODELS[model]
+        for change, words in CHANGES.items():
+            share = computed(of, SPEED_OF_CHANGES, words(of)).share
+            print(f"{model} at {SPEED_OF_CHANGES} m/s, {change}: share {share:.4f}", flush=True)
+
+
 def compute() -> None:
     """Write `FILE` anew, at its speeds."""
-    found = []
-    for model, speed in zip(
-        *(measured_data.read(FILE).columns[key] for key in ("model", "speed")), strict=True
-    ):
-        of = MODELS[model]
-        chosen = anisotropy.arguments().parse_args(["film", "--width", "0.5", "--points", str(of.points)])
-        found.append(anisotropy.lubricated(chosen, of.lay, float(speed)))
+    keys = (measured_data.read(FILE).columns[key] for key in ("model", "speed"))
+    found = [computed(MODELS[model], float(speed)) for model, speed in zip(*keys, strict=True)]
     measured_data.store(
         FILE,
         lambda_ratio=[f"{film.lambda_ratio:.2f}" for film in found],
@@ -111,12 +136,13 @@ def main(words: list[str] | None = None) -> None:
     chosen = parser.parse_args(words)
     if chosen.compute:
         compute()
+        influences()
     data = measured_data.read(FILE)
     print("Lambda: " + ", ".join([*MODELS, *LAWS]))
     for ratio in dict.fromkeys(data.columns["lambda_ratio"]):
-        computed = [data.where(model=model, lambda_ratio=ratio)["share"][0] for model in MODELS]
+        shares = [data.where(model=model, lambda_ratio=ratio)["share"][0] for model in MODELS]
         laws = [float(law(ratio)) for law in LAWS.values()]
-        print(f"{ratio:g}: " + ", ".join(f"{share:.3f}" for share in (*computed, *laws)))
+        print(f"{ratio:g}: " + ", ".join(f"{share:.3f}" for share in (*shares, *laws)))
     style.save(draw(data), chosen.output)
     print(chosen.output)
 

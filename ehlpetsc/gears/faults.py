@@ -23,6 +23,11 @@ def faults(pair: GearPair) -> list[str]:
     missing = [name for name in ("centre_distance", "tip_diameter") if getattr(pair, name) is None]
     if missing:
         return [f"gears.{' and '.join(missing)} missing; allowed: a length, or profile_shift for both"]
+    if math.isnan(pair.centre_distance):  # of no working pressure angle
+        tangent, side = math.tan(math.radians(pair.pressure_angle)), "below" if pair.internal else "above"
+        limit = -0.5 * involute(pair.transverse_angle) * sum(pair.teeth) / tangent
+        shifts = " and ".join(f"{x:g}" for x in pair.profile_shift)
+        return [f"gears.profile_shift = {shifts}: no pair without play; allowed: a sum {side} {limit:.3g}"]
     found = []
     if pair.load_sharing == "tip-relief" and pair.tip_relief == 0.0:
         found.append('tip_relief is missing; load_sharing = "tip-relief" needs its depth')

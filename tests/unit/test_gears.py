@@ -310,6 +310,8 @@ def test_profile_shift_gives_the_play_free_pair():
     clearance = pair.centre_distance - 0.5 * (pair.tip_diameter[0] + pair.root_diameters[1])
     assert clearance == pytest.approx(0.25 * 3e-3, rel=1e-9)
     assert faults(pair) == []
+    (fault,) = faults(GearPair(**own | {"internal": True}, profile_shift=(0.5, 0.3)))
+    assert fault.endswith("allowed: a sum below 0.573")  # inv 20 28/(2 tan 20)
     unshifted = GearPair(**OWN, profile_shift=(0.2, -0.2))
     assert unshifted.centre_distance == pytest.approx(90e-3, rel=1e-12)
     assert unshifted.tip_diameter == pytest.approx((82.8e-3, 115.2e-3), rel=1e-12)
