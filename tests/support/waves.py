@@ -24,6 +24,10 @@ PERIODS = 3  # fitted, at the end of a run
 class Kept(NamedTuple):
     """Amplitude of the film over that of the wave; ripple of the pressure over p0 and the relative wave.
 
+    `film`: in the middle.
+    `ripple`: root mean square of its amplitudes over the middle half of the contact, along the motion. Two
+        waves of nearly one amplitude pass each other there, that of the surface and the one that it leaves in
+        the film, so that the amplitude at a single node may be a small difference of both.
     `newton`, `steps`: iterations and steps of the pass. `seconds`: its processor time.
     """
 
@@ -60,7 +64,8 @@ def _kept(
     smooth = Simulation(load(case, more | {"time": None}))
     state, s = smooth.advance(), smooth.scales
     middle = np.unravel_index(np.argmin(s.grid.distance), s.grid.shape)
-    film, pressure = state.film_thickness[middle], state.pressure[middle]
+    film, along = state.film_thickness[middle], (*middle[:-1], np.abs(s.x) <= 0.5)
+    before = state.pressure[along]
     wave = {"kind": "sine", "amplitude": amplitude * film, "wavelength": wavelength * s.a}
     if len(middle) > 1:
         wave["wavelength_across"] = wavelength * s.a
@@ -70,26 +75,26 @@ def _kept(
     begin, newton, rows = time.process_time(), 0, []
     for state in Simulation(load(case, more | moving)):
         newton += state.newton
-        rows.append((state.time, state.film_thickness[middle] - film, state.pressure[middle] - pressure))
+        rows.append((state.time, state.film_thickness[middle] - film, state.pressure[along] - before))
     seconds = time.process_time() - begin
-    t, film_change, pressure_change = np.array(rows).T
+    t, film_change, pressure_change = map(np.array, zip(*rows, strict=True))
     period = wavelength * s.a / speed
     last = t > t[-1] - PERIODS * period * (1.0 - 1e-9)
     fit = (t[last], period)
     return Kept(
-        _amplitude(film_change[last], *fit) / (amplitude * film),
-        _amplitude(pressure_change[last], *fit) / (amplitude * s.p0),
+        float(_amplitudes(film_change[last], *fit)) / (amplitude * film),
+        float(np.sqrt(np.mean(_amplitudes(pressure_change[last], *fit) ** 2))) / (amplitude * s.p0),
         newton,
         len(rows) - 1,
         seconds,
     )
 
 
-def _amplitude(values: np.ndarray, t: np.ndarray, period: float) -> float:
-    """Amplitude of the wave of one period in values with a linear trend."""
+def _amplitudes(values: np.ndarray, t: np.ndarray, period: float) -> np.ndarray:
+    """Amplitudes of the wave of one period in values with a linear trend, by time along the first axis."""
     phase = 2.0 * np.pi * t / period
     terms = np.stack([np.cos(phase), np.sin(phase), np.ones_like(t), t - t[-1]], axis=1)
-    return float(np.hypot(*np.linalg.lstsq(terms, values, rcond=None)[0][:2]))
+    return np.hypot(*np.linalg.lstsq(terms, values, rcond=None)[0][:2])
 
 
 class Pass(NamedTuple):

@@ -8,7 +8,7 @@ from support.waves import line_wave, mixed_pass, point_wave
 
 pytestmark = pytest.mark.slow
 QUARTER, HALF, POINT = 0.678, 0.395, 0.759  # amplitudes left in pure rolling of waves of a/4, a/2; of a point
-FASTER, SLOWER, PASSING = 0.2423, 0.3257, 2.080  # ripples, slide/roll 0.5 and 1.9
+FASTER, SLOWER, PASSING = 1.0933, 0.8015, 1.609  # ripples, slide/roll 0.5 and 1.9
 FRICTION = 0.0149  # of the measured profiles with a layer, their load on the solids 0.0055
 
 
@@ -30,10 +30,9 @@ def test_ten_nodes_a_wave_keep_that_of_a_point():
 
 @pytest.mark.parametrize(
     ("sliding", "side", "limit", "within"),
-    [(0.5, 2, SLOWER, 0.02), (0.5, 1, FASTER, 0.11), (1.9, 1, PASSING, 0.05)],
+    [(0.5, 2, SLOWER, 0.01), (0.5, 1, FASTER, 0.02), (1.9, 1, PASSING, 0.05)],
 )
 def test_pressure_ripple_of_a_wave_that_slides_past_the_film(sliding, side, limit, within):
-    """The film that a faster wave leaves has fewer nodes to its wave: 6.4 for 8, and 9 % less ripple."""
     assert line_wave(0.125, 8, sliding, side).ripple == pytest.approx(limit, rel=within)
 
 
