@@ -54,7 +54,7 @@ def carried(rows: np.ndarray, nodes: float, beyond: float | None = None) -> np.n
     `beyond`: value that enters at an end; None: that at the end.
     """
     as_end = beyond is None
-    return _carried(rows, float(nodes), 0.0 if as_end else float(beyond), as_end)
+    return _carried(np.ascontiguousarray(rows), float(nodes), 0.0 if as_end else float(beyond), as_end)
 
 
 @compiled

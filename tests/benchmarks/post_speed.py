@@ -56,10 +56,10 @@ def post(path):
 if __name__ == "__main__":
     sought, search = [], critical_plane._worst_planes
 
-    def counted(grid, stress, *others):
+    def counted(grid, law, work, stress, *others):
         """Search that counts the histories."""
         sought.append(len(stress))
-        search(grid, stress, *others)
+        search(grid, law, work, stress, *others)
 
     with tempfile.TemporaryDirectory() as folder:
         post(made(Path(folder) / "small.h5", 230, DEPTHS[-1:]))  # compiles

@@ -6,6 +6,7 @@ from scipy.special import ellipe, ellipk
 from support.convergence import observed_order, order_and_limit
 from support.points import R, lowest, moes_film, point
 
+from ehlpetsc.base.compiled import unsigned
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.finite_volumes import flux_through
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
@@ -144,8 +145,10 @@ def fluxes(simulation):
         for i in range(n_x):
             here = (row + 1) * (n_x + 1) + i
             if row < n_y:
-                x[row, i] = dy * flux_through(at, here - min(i, 1), here, here + 1, table, along)[0]
-            y[row, i] = dx * flux_across(at, here - n_x - 1, here, table, across, flow_law(inputs.fluid))[0]
+                nodes = map(unsigned, (here - min(i, 1), here, here + 1))
+                x[row, i] = dy * flux_through(at, *nodes, table, along)[0]
+            nodes = map(unsigned, (here - n_x - 1, here))
+            y[row, i] = dx * flux_across(at, *nodes, table, across, flow_law(inputs.fluid))[0]
     return x, y
 
 

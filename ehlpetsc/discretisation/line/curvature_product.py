@@ -142,7 +142,7 @@ def _translation(cuts: Sequence[int], rank: int, rates: np.ndarray) -> np.ndarra
 
 def product(blocks: Blocks, pressure: np.ndarray) -> np.ndarray:
     """Sums on one rank, from the pressures (n,) of the mesh."""
-    messages = np.empty((1, blocks.message_size))
+    messages = np.empty((1, 1 + blocks.message_size))[:, 1:]  # as from other ranks, behind their loads
     pack(*blocks, pressure, messages[0])
     return unpack(*blocks, messages)[: len(pressure)]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled, inlined
+from ehlpetsc.base.compiled import compiled, inlined, unsigned
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
     LN_ETA_P,
@@ -227,8 +227,9 @@ def faces(
     slope = 0.0
     for i in range(nodes):
         before = slope
-        films, slope, stress, (left, right) = face(at, i, i + 1, table, law)
-        couette[i + 1] = entrainment * drawn(at, max(i - 1, 0), i)[0]
+        here = unsigned(i)  # or numba would compile the fluxes of the Reynolds equation again
+        films, slope, stress, (left, right) = face(at, here, unsigned(i + 1), table, law)
+        couette[i + 1] = entrainment * drawn(at, unsigned(max(i - 1, 0)), here)[0]
         if i == nodes - 1:  # the node beyond the outlet is a mirror of it
             slope = 0.0
         between_oil_nodes = oil[i] and oil[min(i + 1, nodes - 1)]
@@ -245,7 +246,7 @@ def faces(
             stress = no_pressure
             if stress_rise != 0.0:
                 stress += stress_rise * at[P, i]
-            rate = max(sliding / (stress * at[H, i] * fluidities(at, i, i)[0]), MIN_RATE)
+            rate = max(sliding / (stress * at[H, i] * fluidities(at, here, here)[0]), MIN_RATE)
             spread[i] = stress_spread(0.5 * at[H, i] * abs(gradient[i]) / stress, np.log(rate), table)
     couette[0] = couette[1]
 
@@ -287,7 +288,7 @@ def cross_flow_heat(
         right = (left + n) % (rows * n)
         if not (oil[left] and oil[right]):
             continue
-        mass = flux_across(at, left, right, table, law, flow)[0]
+        mass = flux_across(at, unsigned(left), unsigned(right), table, law, flow)[0]
         pressure_flow = 2.0 * abs(mass) / (at[RHO, left] + at[RHO, right])
         film, _, _ = face_film(at[H, left], at[H, right], law[-1])
         pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))

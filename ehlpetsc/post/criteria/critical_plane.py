@@ -30,6 +30,7 @@ from ehlpetsc.post.fatigue.cycles import (
     equivalent_points,
     find_cycles,
     history_of,
+    in_double_precision,
     loop_of,
     workspace,
 )
@@ -186,7 +187,7 @@ class PlaneDamage(NamedTuple):
 
 @compiled(error_model="python", nogil=True)
 def _worst_planes(
-    grid: np.ndarray, stress: np.ndarray, lengths: np.ndarray, law: tuple, work: tuple, out: np.ndarray
+    grid: np.ndarray, law: tuple, work: tuple, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray
 ) -> None:
     """Set out (points, 3) to the damage on the worst plane, theta and phi of its normal [rad].
 
@@ -211,7 +212,7 @@ def _worst_planes(
 
 @compiled(error_model="python", nogil=True)
 def _estimates(
-    stress: np.ndarray, lengths: np.ndarray, law: tuple, work: tuple, pairs: tuple, out: np.ndarray
+    pairs: tuple, law: tuple, work: tuple, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray
 ) -> None:
     """Set out as `_worst_planes`, to the most damaged of some planes of maximum shear: a lower bound.
 
@@ -256,15 +257,15 @@ def _sought(stress: np.ndarray, lengths: np.ndarray, law: tuple, share: float) -
     damage exceeds its estimate by no more than that of any point so far; of `MAX_SOUGHT` shares at most.
     """
     grid, work = planes_and_directions(components=stress.shape[1]), plane_workspace(stress.shape[-1])
-    out = np.empty((len(stress), 3))
+    seek, out = partial(_worst_planes, grid, law, work), np.empty((len(stress), 3))
     wanted = max(int(np.ceil(share * len(stress))), MIN_SOUGHT)
     if wanted >= len(stress) or stress.shape[1] == 3:
-        _worst_planes(grid, stress, lengths, law, work, out)
+        in_double_precision(seek, stress, lengths, out)
         return out
-    _estimates(stress, lengths, law, work, FIRST_PAIRS, out)
+    in_double_precision(partial(_estimates, FIRST_PAIRS, law, work), stress, lengths, out)
     worst = np.argsort(-out[:, 0])[: max(int(FIRST_SHARE * len(out)), MAX_SOUGHT * wanted)]
     better = np.empty((worst.size, 3))
-    _estimates(stress[worst], lengths[worst], law, work, PAIRS, better)
+    in_double_precision(partial(_estimates, PAIRS, law, work), stress[worst], lengths[worst], better)
     out[worst] = better
     estimates = out[:, 0].copy()
     order, done, excess = np.argsort(-estimates), 0, 1.0
@@ -275,7 +276,7 @@ def _sought(stress: np.ndarray, lengths: np.ndarray, law: tuple, share: float) -
                 break
         chosen = order[done : done + wanted]
         found = np.empty((chosen.size, 3))
-        _worst_planes(grid, stress[chosen], lengths[chosen], law, work, found)
+        in_double_precision(seek, stress[chosen], lengths[chosen], found)
         better = found[:, 0] > estimates[chosen]
         out[chosen[better]] = found[better]
         known = estimates[chosen] > 0

@@ -26,7 +26,7 @@ import numpy as np
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.criteria.planes import Criteria
 from ehlpetsc.post.fatigue.accumulate import evaluate
-from ehlpetsc.post.fatigue.cycles import equivalent_points, history_of
+from ehlpetsc.post.fatigue.cycles import equivalent_points, history_of, in_double_precision
 
 MAX_ROUNDS = 200  # of the search for the smallest ball
 BALL_TOLERANCE = 1e-9  # of the radius: points this far outside count as inside
@@ -259,19 +259,20 @@ def _hydrostatic(stress: np.ndarray, k: int, nu: float, residual: float) -> floa
 
 
 @compiled(error_model="python", nogil=True)
-def _utilisations(histories: tuple, nu: float, residual: float, limits: tuple, out: np.ndarray) -> None:
+def _utilisations(
+    nu: float, residual: float, limits: tuple, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray
+) -> None:
     """Set out (points, 1) to U of histories (points, 3 or 6, samples) with their lengths; limits a, tau_w."""
-    stresses, lengths = histories
     slope, limit = limits
-    axes = 3 if stresses.shape[1] == 3 else 5
-    for p in range(stresses.shape[0]):
-        stress = history_of(stresses, p, lengths[p])
-        points = np.empty((axes, stress.shape[1]))
-        equivalent_points(stress, nu, points)
+    axes = 3 if stress.shape[1] == 3 else 5
+    for p in range(stress.shape[0]):
+        history = history_of(stress, p, lengths[p])
+        points = np.empty((axes, history.shape[1]))
+        equivalent_points(history, nu, points)
         centre, _ = smallest_ball(points)
         largest = 0.0
-        for k in range(stress.shape[1]):
-            hydrostatic = _hydrostatic(stress, k, nu, residual)
+        for k in range(history.shape[1]):
+            hydrostatic = _hydrostatic(history, k, nu, residual)
             tension = slope * max(hydrostatic, 0.0)
             largest = max(largest, _greatest_shear(points, centre, k, largest - tension) + tension)
         out[p, 0] = largest / limit
@@ -283,7 +284,7 @@ def count_utilisation(
     """Dang Van's utilisation (points, 1) of histories (points, 3 or 6, samples) of these lengths."""
     out = np.empty((len(stress), 1))
     limits = constants.hydrostatic_slope, constants.torsion_limit
-    _utilisations((stress, lengths), poisson_ratio, residual, limits, out)
+    in_double_precision(partial(_utilisations, poisson_ratio, residual, limits), stress, lengths, out)
     return out
 
 

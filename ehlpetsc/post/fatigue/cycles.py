@@ -21,6 +21,7 @@ for which :math:`\sigma_y=\nu(\sigma_x+\sigma_z)`; of six components (sx, sz, tx
 :math:`(\sigma_x+\sigma_z)/2-\sigma_y`, and root 3 times the other shear stresses are the fourth and fifth.
 """
 
+from collections.abc import Callable
 from math import sqrt
 
 import numpy as np
@@ -28,6 +29,7 @@ import numpy as np
 from ehlpetsc.base.compiled import ZERO, compiled
 
 RESIDUALS = ("repeat", "half")
+POINTS_AT_ONCE = 64  # whose histories are in double precision at the same time
 
 
 @compiled(error_model="python", nogil=True)
@@ -132,9 +134,16 @@ def loop_of(series: np.ndarray, size: int, i: int, j: int) -> tuple[int, int]:
     return first, count
 
 
+def in_double_precision(kernel: Callable, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
+    """Call kernel(stress, lengths, out), compiled for double precision alone, on a few points at a time."""
+    for begin in range(0, len(stress), POINTS_AT_ONCE):
+        part = slice(begin, begin + POINTS_AT_ONCE)
+        kernel(stress[part].astype(float), lengths[part], out[part])
+
+
 @compiled(error_model="python", nogil=True)
 def history_of(stress: np.ndarray, point: int, length: int) -> np.ndarray:
-    """First samples (3 or 6, length) of a point's history in double precision: all at once take longer."""
+    """First samples (3 or 6, length) of a point's history, contiguous."""
     history = np.empty((stress.shape[1], length))
     history[:] = stress[point, :, :length]
     return history
