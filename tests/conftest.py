@@ -48,8 +48,8 @@ def signals_as_before():
 @pytest.fixture(scope="module")
 def coarse_pictures():
     """Pictures of post-processing of few dots and in one format, but where a test asks for both."""
+    from ehlpetsc.pictures import damage_maps as gallery
     from ehlpetsc.pictures import style
-    from ehlpetsc.pictures.damage import maps as gallery
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "DPI", 20)

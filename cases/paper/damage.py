@@ -13,8 +13,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.damage.maps import SECTION_LENGTH, Map, draw_maps, rule_name
-from ehlpetsc.pictures.damage.weibull import draw_distributions
+from ehlpetsc.pictures.damage_maps import SECTION_LENGTH, Map, draw_maps, rule_name
+from ehlpetsc.pictures.weibull import draw_distributions
 from ehlpetsc.results.post_result import PostResult
 
 LAYER_DEPTH = 0.2  # half-widths: damage below asperities is shallower

@@ -58,7 +58,7 @@ def _picture(path: Path, inputs: list[Path]) -> Path:
 
 
 def _draw(target: Path, path: Path) -> None:
-    from ehlpetsc.pictures.damage.lives import draw
+    from ehlpetsc.pictures.lives import draw
 
     draw(read_life(path), target)
     print(target)
@@ -69,7 +69,7 @@ def _show_lives(path: Path, draws: bool) -> None:
     lives = read_lives(path)
     print("\n".join(lines_of_ensembles(lives)))
     if draws:
-        from ehlpetsc.pictures.damage.lives import draw_ensembles
+        from ehlpetsc.pictures.lives import draw_ensembles
 
         target = _picture(path, [path])
         one = next(iter(lives.values()))

@@ -18,8 +18,7 @@ from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeFile, LifeHistory, stored_or_new
 from ehlpetsc.life.one_pass import Pass, band, lines_of, passes_to_failure, run_pass
-from ehlpetsc.life.positions import Positions, number_of_positions
-from ehlpetsc.life.rounds import Jumps, Ranks, Round
+from ehlpetsc.life.rounds import Jumps, Positions, Ranks, Round, number_of_positions
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
 from ehlpetsc.run.forecast.cost import work_time

@@ -25,8 +25,8 @@ from ehlpetsc.base.toml_file import parsed, put
 from ehlpetsc.case.checking import check, in_si
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
+from ehlpetsc.results.exports import WRITERS, GridField
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, PICTURES, atomic_write, check_derived
-from ehlpetsc.surfaces.files.exports import WRITERS, GridField
 from ehlpetsc.surfaces.motion.profile_checks import doubts
 from ehlpetsc.surfaces.parameters import (
     CORRELATION_THRESHOLD,

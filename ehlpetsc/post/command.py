@@ -161,7 +161,7 @@ def _summary(output: str, wall: float) -> None:
 
 
 def _draw(jobs: Sequence[Job], chosen: argparse.Namespace) -> None:
-    from ehlpetsc.pictures.damage.maps import draw, pictures, weibull_pictures
+    from ehlpetsc.pictures.damage_maps import draw, pictures, weibull_pictures
 
     kinds = [pictures] if chosen.pictures is not None else []
     for kind in kinds + [weibull_pictures] * chosen.weibull:

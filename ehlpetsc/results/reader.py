@@ -234,7 +234,7 @@ class Result:
         `frame`: index; negative ones count from the end.
         """
         target = file_path(path)
-        from ehlpetsc.surfaces.files.exports import WRITERS, GridField
+        from ehlpetsc.results.exports import WRITERS, GridField
 
         check_derived(target, [self.path], tuple(WRITERS), "export")
         if name in ("surface/1", "surface/2"):

@@ -260,7 +260,7 @@ class Recorder(Output):
         self.limits = limits(simulation.case, simulation.scales, simulation.roughness, figures, friction)
         self._writer.close(status.words, self.limits)
         if simulation.case.output.xdmf and self.output:
-            from ehlpetsc.results.xdmf import write_xdmf
+            from ehlpetsc.results.exports import write_xdmf
 
             write_xdmf(self.output)
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from ehlpetsc.post.loads import passage
+from ehlpetsc.post.run import histories
 from ehlpetsc.post.stresses.body_stress import BodyStress
-from ehlpetsc.post.stresses.histories import histories
 
 
 def history_at(loads, surface, s, depth, quantum=0.0):

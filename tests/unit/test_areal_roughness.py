@@ -9,11 +9,10 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.continued_spline import ContinuedSpline
 from ehlpetsc.surfaces.motion.profile_checks import absurd
 from ehlpetsc.surfaces.motion.roughness import Passage, Roughness, RoughSurface
 from ehlpetsc.surfaces.samples import areal_samples
-from ehlpetsc.surfaces.topography import Topography
+from ehlpetsc.surfaces.topography import ContinuedSpline, Topography
 
 A = 100e-6  # half-width, m
 WIDTH = 3.0 * A

@@ -36,7 +36,7 @@ MAY_IMPORT = {
     "__main__": "run",
 }
 MAY_IMPORT = {name: set(rooms.split()) for name, rooms in MAY_IMPORT.items()}
-UPWARD_HINTS = {"ehlpetsc.pictures.damage.lives": {"ehlpetsc.life.history"}}  # said in the map of the code
+UPWARD_HINTS = {"ehlpetsc.pictures.lives": {"ehlpetsc.life.history"}}  # said in the map of the code
 SOLVER = {"discretisation", "nonlinear", "stepping", "run"}
 LIBRARIES = {  # who alone may load what is heavy
     "petsc4py": {"nonlinear", "run", "__main__"},

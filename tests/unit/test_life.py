@@ -16,9 +16,8 @@ from ehlpetsc.life.command import main
 from ehlpetsc.life.driver import check_case, line_of
 from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.one_pass import OfBody
-from ehlpetsc.life.positions import number_of_positions
-from ehlpetsc.life.rounds import MAX_EXTRAPOLATION, Jumps, Round
-from ehlpetsc.pictures.damage import lives
+from ehlpetsc.life.rounds import MAX_EXTRAPOLATION, Jumps, Round, number_of_positions
+from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.motion.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0])

@@ -14,7 +14,7 @@ from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.one_pass import OfBody
 from ehlpetsc.life.rounds import Jumps, Round
-from ehlpetsc.pictures.damage import lives
+from ehlpetsc.pictures import lives
 from ehlpetsc.surfaces.motion.body_field import BodyField
 
 EDGES = np.array([0.0, 1.0, 2.0, 4.0, 8.0])

@@ -11,7 +11,7 @@ import ehlpetsc
 from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
 from ehlpetsc.pictures.frames import line
-from ehlpetsc.results.xdmf import write_xdmf
+from ehlpetsc.results.exports import write_xdmf
 from ehlpetsc.run.recorder import Recorder
 
 BALL = {

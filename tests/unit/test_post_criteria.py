@@ -9,8 +9,7 @@ from ehlpetsc import post
 from ehlpetsc.post import Criteria, Material, cycles_to_failure, dang_van, stress
 from ehlpetsc.post.criteria.critical_plane import plane_damage, plane_law, plane_workspace
 from ehlpetsc.post.criteria.dang_van import smallest_ball
-from ehlpetsc.post.criteria.planes import plane_weights, planes_and_directions
-from ehlpetsc.post.criteria.turning_samples import turning_samples
+from ehlpetsc.post.criteria.planes import plane_weights, planes_and_directions, turning_samples
 
 STEEL = Material()
 SHEAR = Criteria(normal_sensitivity=0.0)  # shear strain alone

@@ -6,17 +6,16 @@ import pytest
 from support.made_loads import A, Scene, write
 from support.made_planes import FRICTION, sphere, write_plane
 
-from ehlpetsc.pictures.damage import maps as gallery
+from ehlpetsc.pictures import damage_maps as gallery
 from ehlpetsc.post import damage, dang_van, stress_plane
 from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.fatigue.statistics import asperities
 from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.loads import Loads, prepare
-from ehlpetsc.post.run import Job, run
+from ehlpetsc.post.run import Job, histories, run
 from ehlpetsc.post.stresses.block_stress import ORDER, BlockStress
 from ehlpetsc.post.stresses.body_stress import offset_weights
-from ehlpetsc.post.stresses.histories import histories
 from ehlpetsc.results.post_result import PostResult
 
 NU = 0.3

@@ -13,7 +13,7 @@ from support import ROOT, is_line_with, refused
 from support.histories import history_at
 from support.made_loads import Scene, write
 
-from ehlpetsc.pictures.damage import maps as gallery
+from ehlpetsc.pictures import damage_maps as gallery
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
 from ehlpetsc.post.command import main

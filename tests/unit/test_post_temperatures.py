@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.made_loads import A, Scene, write
 
-from ehlpetsc.pictures.damage.maps import damage_picture
+from ehlpetsc.pictures.damage_maps import damage_picture
 from ehlpetsc.post.command import main
 from ehlpetsc.results.post_result import PostResult
 

@@ -7,7 +7,7 @@ from support import COARSE_LIFE
 from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
-from ehlpetsc.life.positions import CELL_SIZE
+from ehlpetsc.life.rounds import CELL_SIZE
 from ehlpetsc.post.run import Job
 from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult

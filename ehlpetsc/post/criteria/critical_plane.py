@@ -22,8 +22,8 @@ from ehlpetsc.post.criteria.planes import (
     on_plane,
     planes_and_directions,
     shear_planes,
+    turning_samples,
 )
-from ehlpetsc.post.criteria.turning_samples import turning_samples
 from ehlpetsc.post.fatigue.accumulate import evaluate
 from ehlpetsc.post.fatigue.cycles import (
     RESIDUALS,

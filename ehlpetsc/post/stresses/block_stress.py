@@ -15,6 +15,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.post.stresses.body_stress import (
     HATS_PER_ELEMENT,
     OFFSETS,
+    BodyStress,
     hermite_kernels,
     hermite_shapes,
     limited_slopes,
@@ -185,13 +186,13 @@ def _multiply(
                     _add_product(real, imaginary, load_row, sign, out[frame, part, mirrored])
 
 
-class BlockStress:
+class BlockStress(BodyStress):
     """Stresses at body points in a batch of frames, one depth at a time.
 
     `width`: spacing across and `depths` (nz,) in elements along x.
     """
 
-    components, frames_at_once = COMPONENTS, 8
+    components = COMPONENTS
 
     def __init__(self, ny: int, nx: int, width: float, depths: np.ndarray, nu: float, periodic: bool) -> None:
         self.rows, self.nodes, self.shape = (ny,), nx, padded_shape(ny, nx, periodic)

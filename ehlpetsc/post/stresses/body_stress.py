@@ -171,7 +171,8 @@ def _multiply(table: np.ndarray, weights: np.ndarray, loads: np.ndarray, out: np
 class BodyStress:
     """Stresses at body points in a batch of frames, one depth at a time; depths (nz,) in elements."""
 
-    components, rows, frames_at_once = 3, (), 8  # frames whose spectra fit in the cache
+    components, frames_at_once = 3, 8  # frames whose spectra fit in the cache
+    rows: tuple[int, ...] = ()
 
     def __init__(self, nx: int, depths: np.ndarray) -> None:
         self.n = padded_length(nx)

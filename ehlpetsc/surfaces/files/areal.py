@@ -12,7 +12,6 @@ import numpy as np
 from numpy.lib.format import MAGIC_PREFIX, read_array
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.files.exports import WRITERS
 from ehlpetsc.surfaces.files.profiles import (
     KEYS_OF_TEXT,
     MAX_ABSCISSA,
@@ -27,6 +26,7 @@ from ehlpetsc.surfaces.files.text_maps import MIN_POINTS, MIN_PRESENT, in_metres
 from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
 
 OF_PROFILES = {".smd"}  # besides text
+WRITTEN_ONLY = {".gsf", ".vti"}
 
 
 class Map(NamedTuple):
@@ -115,7 +115,7 @@ def _instrument_file(path: Path, layout: Layout) -> Map:
     if stated:
         raise ProfileError(f"{stated[0]}: {path.suffix!r} includes it; leave it out")
     ending, otherwise = path.suffix.lower(), ".npy or text, a matrix of heights in m, with spacing"
-    if ending in WRITERS.keys() - READERS.keys():
+    if ending in WRITTEN_ONLY:
         raise ProfileError(f"format {ending!r} is written, not read; allowed: {otherwise}, or .x3p")
     package, read = READERS.get(ending, ("surfalize", _by_surfalize))
     return by_package(package, read, path, otherwise)

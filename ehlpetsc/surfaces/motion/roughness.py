@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.surfaces.continued_spline import ContinuedSpline
+from ehlpetsc.surfaces.topography import ContinuedSpline
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case

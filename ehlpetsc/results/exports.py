@@ -1,6 +1,7 @@
 """Heights or fields on a uniform grid as files of other programs: GSF of Gwyddion, X3P (ISO 25178-72), VTK.
 
-Rows are written in the order of increasing y.
+Rows are written in the order of increasing y. XDMF describes a result in the plane for ParaView and VTK:
+RESULT.xdmf beside RESULT.h5.
 """
 
 from __future__ import annotations
@@ -10,12 +11,16 @@ import io
 import zipfile
 from collections.abc import Callable
 from hashlib import md5
+from pathlib import Path
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
+import h5py
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.results.hdf5_file import open_for_reading
+from ehlpetsc.results.output_guard import atomic_write
 
 
 class GridField(NamedTuple):
@@ -105,3 +110,47 @@ def vti(field: GridField) -> bytes:
 
 WRITERS: dict[str, Callable[[GridField], bytes]] = {".gsf": gsf, ".x3p": x3p, ".vti": vti}
 """Content of a file by its ending."""
+
+XDMF_HEAD = '<?xml version="1.0"?>\n<Xdmf Version="2.0">\n<Domain>\n'
+COLLECTION = '<Grid Name="frames" GridType="Collection" CollectionType="Temporal">\n'
+FOOT = "</Grid>\n</Domain>\n</Xdmf>\n"
+
+
+def write_xdmf(path: Path) -> Path:
+    """Write the description of the frames of a result in the plane, XDMF 2, beside it; returns its path."""
+    with open_for_reading(path) as file:
+        frames = "".join(_frame(file, Path(path).name, k) for k in range(len(file["time"])))
+    target = Path(path).with_suffix(".xdmf")
+    atomic_write(target, (XDMF_HEAD + COLLECTION + frames + FOOT).encode())
+    return target
+
+
+def _frame(file: h5py.File, name: str, index: int) -> str:
+    (x, dx), (y, dy) = ((axis[0], axis[1] - axis[0]) for axis in (file["x"][:], file["y"][:]))
+    shape = "1 {} {}".format(
+        *map(len, (file["y"], file["x"]))
+    )  # z, y, x: VTK would lay two dimensions into y and z
+    item = '<DataItem Dimensions="3" NumberType="Float" Precision="8" Format="XML">'
+    step, time = file["step"][index], file["time"][index]
+    lines = [
+        f'<Grid Name="frame {step}"><Time Value="{time:.9g}"/>',
+        f'<Topology TopologyType="3DCoRectMesh" Dimensions="{shape}"/>',
+        f'<Geometry GeometryType="ORIGIN_DXDYDZ">{item}0 {y:.12g} {x:.12g}</DataItem>',
+        f"{item}1 {dy:.12g} {dx:.12g}</DataItem></Geometry>",
+        *(_field(data, name, index, shape) for data in file.values() if getattr(data, "ndim", 0) == 3),
+        "</Grid>\n",
+    ]
+    return "\n".join(lines)
+
+
+def _field(data: h5py.Dataset, file: str, index: int, shape: str) -> str:
+    """Frame of a field: a hyperslab (start, stride, count) of its dataset."""
+    kind = "UChar" if data.dtype.kind == "u" else "Float"
+    all_frames = " ".join(map(str, data.shape))
+    return (
+        f'<Attribute Name={quoteattr(data.name[1:])} Center="Node">'
+        f'<DataItem ItemType="HyperSlab" Dimensions="{shape}">'
+        f'<DataItem Dimensions="3 3" Format="XML">{index} 0 0 1 1 1 {shape}</DataItem>'
+        f'<DataItem Dimensions="{all_frames}" NumberType="{kind}" Precision="{data.dtype.itemsize}" '
+        f'Format="HDF">{escape(f"{file}:{data.name}")}</DataItem></DataItem></Attribute>'
+    )

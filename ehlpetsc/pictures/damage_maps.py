@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
 from ehlpetsc.pictures import style
-from ehlpetsc.pictures.damage.weibull import draw_distributions, weibull_picture
+from ehlpetsc.pictures.weibull import draw_distributions, weibull_picture
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.stresses.half_plane import stress, von_mises, von_mises_squared
 from ehlpetsc.post.stresses.half_space import StressTensor, stress_plane
