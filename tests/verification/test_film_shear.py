@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from support.exact_solutions import band_kernel
 from support.film_stress import FilmStress, film_stress, other_heat
 
 from ehlpetsc.effects.heat import film_shear
@@ -142,17 +141,6 @@ def test_closed_form_is_the_solution_across_the_film(name, limited, difference):
         assert float(closed.mean) == pytest.approx(exact.mean, rel=3e-3 if difference else 1e-7)
 
 
-@pytest.mark.parametrize("nahme, ratio", [(10.0, 1.05), (30.0, 1.14), (100.0, 1.29), (300.0, 1.43)])
-def test_lumped_temperature_overstates_newtonian_stress(nahme, ratio):
-    eta = 0.5
-    sliding = np.sqrt(nahme * CONDUCTIVITY / (BETA * eta))
-    exact = float(film_stress(FILM, eta, BETA, 0.0, 0.0, CONDUCTIVITY, sliding, LAWS["newton"]).stress)
-    lumped = 1.0  # stress over the isothermal one: t = exp(-Na t/12)
-    for _ in range(200):
-        lumped = 0.5 * (lumped + np.exp(-nahme * lumped / 12.0))
-    assert lumped * eta * sliding / FILM / exact == pytest.approx(ratio, abs=0.006)
-
-
 def test_sum_of_fluxes_is_the_heat_of_shear():
     sliding = np.geomspace(1e-3, 100.0, 30)
     closed = film_stress(FILM, 5.0, BETA, 340.0, 300.0, CONDUCTIVITY, sliding, LAWS["eyring"], 20e6)
@@ -268,67 +256,3 @@ def test_secant_of_roelands_law_to_the_middle_of_the_film(flow, error):
             tangent = film_stress(FILM, np.exp(at_wall), -slope, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
             if middle > 60.0:
                 assert float(tangent.stress) < 0.88 * exact.stress
-
-
-# ---- friction of smooth contacts, walls by Jaeger's moving source ----
-
-CELLS, HERTZ, HALF_WIDTH, LOAD = 200, 0.9995e9, 0.3357e-3, 527e3
-STEEL_CONDUCTIVITY, STEEL_CAPACITY = 46.0, 7850.0 * 470.0  # W/(m K), J/(m^3 K)
-
-
-def lumped_stress(eta: np.ndarray, rate: np.ndarray, heating: np.ndarray, eyring: float) -> np.ndarray:
-    """Eyring stress at the mean temperature of a parabola, tau (u1 - u2) h/(12 k) above the walls."""
-    stress = np.zeros_like(eta)
-    for _ in range(100):
-        slowed = np.exp(-8.0 / 12.0 * heating * stress)
-        stress = 0.7 * stress + 0.3 * eyring * np.arcsinh(eta * slowed * rate / eyring)
-    return stress
-
-
-def friction(case: tuple, resolved: bool) -> float:
-    """Coefficient of friction of Hertz' pressure and a uniform film, surfaces at the heat that they get."""
-    eta0, speed, slide_roll, alpha, z, reference, eyring, bulk, film = case
-    x = (2.0 * np.arange(CELLS) + 1.0) / CELLS - 1.0
-    pressure, sliding = HERTZ * np.sqrt(1.0 - x * x), slide_roll * speed
-    ln_eta = np.log(eta0) + alpha * reference / z * ((1.0 + pressure / reference) ** z - 1.0)
-    cell, diffusivity = 2.0 * HALF_WIDTH / CELLS, STEEL_CONDUCTIVITY / STEEL_CAPACITY
-    responses = [
-        band_kernel(CELLS, cell, diffusivity, STEEL_CONDUCTIVITY, speed * (1.0 + sign * 0.5 * slide_roll))
-        for sign in (1.0, -1.0)
-    ]
-    walls = np.full((2, CELLS), bulk)
-    for _ in range(60):
-        eta = np.exp(ln_eta - BETA * (walls.mean(axis=0) - bulk))
-        if resolved:
-            found = film_stress(film, eta, BETA, *walls, CONDUCTIVITY, sliding, FlowLaw(EYRING, eyring))
-            stress, fluxes = found.stress, (found.q1, found.q2)
-        else:
-            heating = BETA * film * sliding / (8.0 * CONDUCTIVITY)
-            stress = lumped_stress(eta, sliding / film, heating, eyring)
-            between = CONDUCTIVITY / film * (walls[0] - walls[1])
-            fluxes = 0.5 * stress * sliding - between, 0.5 * stress * sliding + between
-        rises = [np.convolve(q, k)[CELLS - 1 : 1 - CELLS] for q, k in zip(fluxes, responses, strict=True)]
-        walls += 0.3 * (bulk + np.array(rises) - walls)
-    return float(stress.sum() * 2.0 * HALF_WIDTH / CELLS / LOAD)
-
-
-THIN = 11.1e-9, 0.4979, 1.96078e8, 10e6, 363.0
-THICK = 20e-9, 0.6360, 1.96e8, 5e6, 333.0
-
-
-@pytest.mark.parametrize(
-    "case, lumped, resolved",
-    [
-        ((0.005, 25.0, 0.5, *THIN, 0.399e-6), 0.0093, 0.0083),
-        ((0.005, 25.0, 1.0, *THIN, 0.375e-6), 0.0076, 0.0064),
-        ((0.03, 10.0, 0.1, *THICK, 1.111e-6), 0.0336, 0.0325),
-        ((0.03, 10.0, 0.2, *THICK, 1.108e-6), 0.0322, 0.0290),
-        ((0.03, 10.0, 0.5, *THICK, 1.084e-6), 0.0262, 0.0201),
-    ],
-)
-def test_friction_of_smooth_contacts(case, lumped, resolved):
-    """An independent solver's friction; the uniform film of Hertz' contact costs 2 to 4 %, in both laws."""
-    of_lumped, of_resolved = friction(case, False), friction(case, True)
-    assert of_lumped == pytest.approx(lumped, rel=0.05)
-    assert of_resolved == pytest.approx(resolved, rel=0.05)
-    assert of_resolved / of_lumped == pytest.approx(resolved / lumped, rel=0.012)

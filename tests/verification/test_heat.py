@@ -184,49 +184,6 @@ def test_faults():
         load(CASES / "dry_hertz.toml", [HEAT])
 
 
-def surface_rise(simulation, fluxes, times, speed):
-    r"""Temperature rise of a surface at the last time [K], by quadrature of instantaneous line sources.
-
-    :math:`T=\int\!\!\int\frac{q(s',t')}{2\pi k\tau}e^{-(s-s')^2/(4\chi\tau)}ds'dt'`, :math:`\tau=t-t'`
-    (Carslaw & Jaeger 1959, section 10.3), q constant over a cell of the mesh and linear in time; at nodes.
-    """
-    from scipy.special import erf
-
-    s, steel = simulation.scales, Solid(46.0, 7850.0, 470.0)
-    end, rise = times[-1], np.zeros(s.nx)
-    points, weights = np.polynomial.legendre.leggauss(3)
-    lag = (np.arange(-(s.nx - 1), s.nx)) * s.spacing
-    for k in range(len(times) - 1):
-        low, high = np.sqrt(end - times[k + 1]), np.sqrt(end - times[k])  # in sqrt(tau) nothing is singular
-        for point, weight in zip(points, weights, strict=True):
-            root = 0.5 * (low + high) + 0.5 * (high - low) * point
-            tau = root * root
-            share = (end - tau - times[k]) / (times[k + 1] - times[k])
-            q = (1.0 - share) * fluxes[k] + share * fluxes[k + 1]
-            moved, width = lag - speed * tau, np.sqrt(4.0 * steel.diffusivity) * root
-            cell = erf((moved + 0.5 * s.spacing) / width) - erf((moved - 0.5 * s.spacing) / width)
-            kernel = 0.5 * cell / (np.sqrt(np.pi) * steel.effusivity * root)
-            rise += 0.5 * (high - low) * weight * 2.0 * root * np.convolve(q, kernel)[s.nx - 1 : 2 * s.nx - 1]
-    return rise
-
-
-@pytest.mark.parametrize("name", ["table1_damage.toml", "table1_mixed.toml"])
-def test_surface_temperatures_by_quadrature_of_the_fluxes(name):
-    keys = ["mesh.points_per_half_width=64", "mesh.inlet=-1.4", "mesh.outlet=1.3", "time.travel=2.4"]
-    keys.append("time.courant=0.5")
-    simulation, states = solved(name, HEAT, *keys)
-    s, before = simulation.scales, 300  # steps of the steady flux at the start
-    times = [state.time for state in states]
-    times = np.array([*(-s.dt * np.arange(before, 0, -1)), *times])
-    for side, speed in ((1, s.u1), (2, s.u2)):
-        fluxes = [getattr(state, f"heat_flux_{side}") for state in states]
-        rise = surface_rise(simulation, [fluxes[0]] * before + fluxes, times, speed)
-        found = getattr(states[-1], f"temperature_{side}") - BULK
-        assert found.max() > 1.3 * (getattr(states[0], f"temperature_{side}") - BULK).max()
-        assert found.max() == pytest.approx(rise.max(), rel=0.05)
-        assert np.sqrt(np.mean((found - rise) ** 2)) < 0.01 * rise.max()
-
-
 def test_start_under_counter_motion_without_a_limiting_stress_names_the_cure():
     """The sliding of a Newtonian oil heats the film by thousands of kelvins."""
     case = {

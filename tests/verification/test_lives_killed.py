@@ -12,6 +12,7 @@ import pytest
 from support import COARSE_LIFE
 from support.made_results import save_life
 
+from ehlpetsc.case.loading import load
 from ehlpetsc.life import read_life, run_life
 from ehlpetsc.life.history import COMMIT_DATASET, LifeHistory
 
@@ -24,6 +25,7 @@ KEYS = {
     "contact.yield_pressure": 2e9,
     "life.max_solved": 4,
 }
+CASE = load(COARSE_LIFE, [f"{key}={value}" for key, value in KEYS.items()])
 
 
 def command(path):
@@ -50,7 +52,7 @@ def cut(life, count):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "a.life.h5"
-    subprocess.run(command(path), check=True, stdout=subprocess.DEVNULL)
+    run_life(CASE, path, unresolved=True)
     return path
 
 
@@ -66,8 +68,7 @@ def test_a_life_killed_in_mid_pass_and_resumed_is_the_same(whole, tmp_path):
     run.send_signal(signal.SIGKILL)
     run.wait()
     assert 2 <= len(read_life(path).rows) < 4, "killed on its way, and the file has what was solved"
-    subprocess.run(command(path), check=True, stdout=subprocess.DEVNULL)
-    equal(read_life(path), read_life(whole))
+    equal(run_life(CASE, path, unresolved=True), read_life(whole))
 
 
 @pytest.mark.parametrize("written", [0, 3, 12, 25])
@@ -91,12 +92,9 @@ def test_a_row_that_a_kill_cut_short_is_dropped(written, whole, tmp_path):
 
 
 def test_a_life_restarts_at_any_of_its_rows(whole, tmp_path):
-    from ehlpetsc.case.loading import load
-
     path = tmp_path / "a.life.h5"
     save_life(cut(read_life(whole), 2), path)
-    case = load(COARSE_LIFE, [f"{key}={value}" for key, value in KEYS.items()])
-    again = run_life(case, path, unresolved=True)
+    again = run_life(CASE, path, unresolved=True)
     equal(again, read_life(whole))
     assert len(again.rows) == 4 and os.path.exists(path)
     assert np.isfinite(again("friction")).all()

@@ -150,14 +150,7 @@ RESTING_SOLIDS = [
 
 
 @pytest.mark.parametrize("solids", RESTING_SOLIDS)
-def test_start_from_rest_is_the_dry_contact_in_oil(solids):
-    state = Simulation(load(FROM_REST, solids)).advance()
-    assert state.contact_share == pytest.approx(1.0, abs=1e-9) and state.load_error < 1e-7
-    assert state.heat_error < 1e-6  # next to no heat is no measure of it
-
-
-@pytest.mark.parametrize("solids", RESTING_SOLIDS)
-def test_start_from_rest_does_not_depend_on_rounding(monkeypatch, solids):
+def test_start_from_rest_is_the_dry_contact_in_oil_whatever_the_rounding(monkeypatch, solids):
     """Seeds of rounding errors in the guesses take as many iterations, and few."""
     set_guess, random = TwoFields.set_initial_guess, np.random.default_rng(1)
 
@@ -166,8 +159,12 @@ def test_start_from_rest_does_not_depend_on_rounding(monkeypatch, solids):
         set_guess(system, Unknowns(q, w, guess.border), inputs)
 
     monkeypatch.setattr(TwoFields, "set_initial_guess", disturbed)
-    taken = [Simulation(load(FROM_REST, solids)).advance().newton for _ in range(3)]
+    states = [Simulation(load(FROM_REST, solids)).advance() for _ in range(2)]
+    taken = [state.newton for state in states]
     assert max(taken) <= 8 and max(taken) - min(taken) <= 1
+    for state in states:
+        assert state.contact_share == pytest.approx(1.0, abs=1e-9) and state.load_error < 1e-7
+        assert state.heat_error < 1e-6  # next to no heat is no measure of it
 
 
 WAVE = {"kind": "sine", "amplitude": 56e-9, "wavelength": 1.25e-4}

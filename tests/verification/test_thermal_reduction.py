@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 from support import CASES
 
@@ -163,23 +162,3 @@ def test_friction_and_minimum_film(point):
     assert warm.friction == pytest.approx(theory[1], rel=0.1)
     least = hsu_lee(thermal_load(*point[:2]), point[2], cold.simulation)
     assert warm.least / cold.least == pytest.approx(least, rel=0.08)
-
-
-def test_stress_of_a_heated_film_solves_the_heat_equation_across_it():
-    viscosity, film, sliding = 50.0, 0.3e-6, 4.0
-    stress = film_stress(viscosity, film, sliding)
-
-    def slopes(y, values, unknown):
-        rise, flux, _ = values
-        rate = EYRING / viscosity * np.sinh(unknown[0] / EYRING)
-        local = rate * np.exp(BETA * rise)
-        return np.array([flux, -unknown[0] * local * film**2 / OIL, local * film])
-
-    def ends(a, b, unknown):
-        return np.array([a[0], b[0], a[2], b[2] - sliding])
-
-    y = np.linspace(0.0, 1.0, 101)
-    begin = np.array([80.0 * y * (1.0 - y), 80.0 * (1.0 - 2.0 * y), sliding * y])
-    found = solve_bvp(slopes, ends, y, begin, [0.5 * isothermal_stress(viscosity, film, sliding)])
-    assert found.success and stress == pytest.approx(found.p[0], rel=1e-3)
-    assert stress < 0.8 * isothermal_stress(viscosity, film, sliding)
