@@ -98,7 +98,11 @@ def test_a_damaged_file_is_refused(tmp_path, suffix):
         read_map(path)
 
 
-def test_a_profile_and_a_spacing_beside_that_of_the_file_are_refused(tmp_path):
+def test_units_named_in_a_header_are_asked_for_and_profiles_refused(tmp_path):
+    (tmp_path / "map.txt").write_text("scan [um]\n" + as_text(1e6 * Z))
+    with pytest.raises(ProfileError, match="^its header names um; write unit "):
+        read_map(tmp_path / "map.txt", SPACED)
+    np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)
     path = tmp_path / "p.x3p"
     path.touch()
     with pytest.raises(ProfileError, match=r"^spacing: '\.x3p' includes it; leave it out$"):
@@ -106,13 +110,6 @@ def test_a_profile_and_a_spacing_beside_that_of_the_file_are_refused(tmp_path):
     optional("x3pio").Profile.from_array(Z[3], x_scale=DX).save(str(path))
     with pytest.raises(ProfileError, match="^no map in it; allowed: "):
         read_map(path)
-
-
-def test_units_named_in_a_header_are_asked_for(tmp_path):
-    (tmp_path / "map.txt").write_text("scan [um]\n" + as_text(1e6 * Z))
-    with pytest.raises(ProfileError, match="^its header names um; write unit "):
-        read_map(tmp_path / "map.txt", SPACED)
-    np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)
 
 
 INFINITE, HOLES = Z.copy(), np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)
@@ -164,12 +161,6 @@ def test_a_file_that_is_no_npy_matrix_is_refused_in_one_sentence(tmp_path, conte
     assert "\n" not in str(caught.value)
 
 
-def test_the_width_of_a_gap_is_that_of_its_widest_circle():
-    missing = np.zeros((40, 60), bool)
-    missing[10:13] = True  # a scratch: four rows apart are present
-    assert gap_width(missing, DX, DY) == pytest.approx(2 * 2 * DY)
-
-
 def test_a_value_far_from_all_others_is_no_height(tmp_path):
     z = Z + 1e-9 * np.random.default_rng(2).standard_normal(Z.shape)
     z[10:13, 20:24] = z[30, 5] = 9.999e-3
@@ -183,12 +174,9 @@ def test_a_value_far_from_all_others_is_no_height(tmp_path):
     several = r"^13 heights missing, 13 of them of 3 values, 0\.009997 to 0\.009999, far from all others"
     with pytest.raises(ProfileError, match=several):
         read_map(tmp_path / "map.npy", SPACED)
-
-
-def test_equal_heights_at_the_edges_of_an_inclined_map_are_heights(tmp_path):
-    tilted = np.repeat(Z[::4], 4, axis=0) + 1e-2 * X
-    np.save(tmp_path / "map.npy", tilted)
-    np.testing.assert_array_equal(read_map(tmp_path / "map.npy", SPACED).z, tilted)
+    missing = np.zeros((40, 60), bool)
+    missing[10:13] = True  # a scratch: four rows apart are present
+    assert gap_width(missing, DX, DY) == pytest.approx(2 * 2 * DY)
 
 
 def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
@@ -205,13 +193,16 @@ def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
     np.testing.assert_allclose(found.z, z, rtol=0, atol=2e-7)
 
 
-def test_a_gap_in_an_inclined_plane_is_filled_exactly(tmp_path):
+def test_gaps_of_an_inclined_map_are_filled_exactly_and_equal_heights_at_its_edges_kept(tmp_path):
     plane = 1e-3 * X + 2e-3 * Y[:, np.newaxis]
     holed = plane.copy()
     holed[10:20, 20:40] = np.nan
     np.save(tmp_path / "map.npy", holed)
     z = read_map(tmp_path / "map.npy", replace(SPACED, fill_gaps=1e-3)).z
     np.testing.assert_allclose(z, plane, rtol=0, atol=1e-16)
+    tilted = np.repeat(Z[::4], 4, axis=0) + 1e-2 * X
+    np.save(tmp_path / "map.npy", tilted)
+    np.testing.assert_array_equal(read_map(tmp_path / "map.npy", SPACED).z, tilted)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 4])
@@ -286,9 +277,6 @@ def test_keys_of_a_map_are_applied_in_order(tmp_path):
     np.testing.assert_allclose(flipped.z, -2 * level.z[::-1, ::-1], atol=1e-17)
     smoothed = areal_samples(tmp_path, spec(path, **keys, form=2, short_cutoff=40e-6), 1e-4, False)
     assert 0.65 < smoothed.sq / level.sq < 0.75 and smoothed.notes[0].startswith("short_cutoff: Sa 0.0")
-
-
-def test_a_map_for_a_strip_has_its_period_and_a_position_on_it(tmp_path):
     np.save(tmp_path / "map.npy", Z)
     keys = {"spacing": DX, "spacing_across": DY}
     strip = areal_samples(tmp_path, spec(tmp_path / "map.npy", **keys), 90e-6, True)
@@ -309,7 +297,7 @@ def test_a_profile_in_a_file_is_a_ridge_and_has_no_direction(tmp_path):
         areal_samples(tmp_path, spec(path, direction=10.0), 1e-4, False)
 
 
-def test_a_matrix_of_heights_in_the_case_is_a_map():
+def test_a_matrix_of_heights_in_the_case_is_a_map_on_equally_spaced_axes():
     keys = {"z": (1e6 * Z).tolist(), "unit": "um", "level": True}
     by_axes = values_of(PROFILE, keys | {"x": (1e6 * X).tolist(), "y": (1e6 * Y).tolist()})
     by_spacing = values_of(PROFILE, keys | {"spacing": DX, "spacing_across": DY})
@@ -317,9 +305,6 @@ def test_a_matrix_of_heights_in_the_case_is_a_map():
     np.testing.assert_allclose(first.z, without_form((Y, X), Z, 1), atol=1e-18)
     np.testing.assert_allclose(second.z, first.z, atol=1e-18)
     assert (first.dx, first.dy) == pytest.approx((DX, DY))
-
-
-def test_axes_that_are_not_equally_spaced_are_refused():
     keys = {"z": Z[:4].tolist(), "x": (X**1.1).tolist(), "y": [0.0, 1.0, 2.0, 3.0]}
     with pytest.raises(ProfileError, match="^x: allowed for a map: equally spaced, increasing$"):
         areal_samples(None, values_of(PROFILE, keys), 1e-4, False)
@@ -357,6 +342,7 @@ POINT = {
     "mesh": {"inlet": -2.0, "outlet": 1.5, "width": 3.0, "points_per_half_width": 8},
 }
 STRIP = {"contact": POINT["contact"] | {"radius": 0.01, "load": 8e4}}
+LINE = STRIP | {"mesh": {"inlet": -2.0, "outlet": 1.5, "points_per_half_width": 8}}
 FINE = np.random.default_rng(1).standard_normal((60, 80)) * 5e-8
 RIDGE = np.transpose([2e-6 * np.arange(200), np.tile(FINE[0], 3)[:200]])
 IMPLAUSIBLE = {
@@ -388,7 +374,7 @@ def test_an_implausible_map_is_refused(tmp_path, monkeypatch, more, source, keys
     judge(more | {"surface": {"1": heights | keys}}, message and f"surface.1: {message}.* in another unit")
 
 
-@pytest.mark.parametrize("more", [{}, STRIP], ids=["point", "strip"])
+@pytest.mark.parametrize("more", [{}, STRIP, LINE], ids=["point", "strip", "line"])
 @pytest.mark.parametrize(
     ("factors", "message"),
     [((1e3, 1e6), "points 2e.03 um apart"), ((1, 1e6), "Rq 4.* um beside"), ((1, 1), None)],
@@ -396,7 +382,9 @@ def test_an_implausible_map_is_refused(tmp_path, monkeypatch, more, source, keys
 def test_an_implausible_ridge_is_refused(tmp_path, monkeypatch, more, factors, message):
     monkeypatch.chdir(tmp_path)
     np.savetxt("p.csv", RIDGE * factors, delimiter=",")
-    judge(more | {"surface": {"2": {"file": "p.csv"}}}, message and f"surface.2: {message}")
+    judge(
+        more | {"surface": {"2": {"file": "p.csv"}}}, message and f"surface.2.*: {message}.* in another unit"
+    )
 
 
 DOUBTFUL = {

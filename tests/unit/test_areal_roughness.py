@@ -9,7 +9,6 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.surfaces.motion.profile_checks import absurd
 from ehlpetsc.surfaces.motion.roughness import Passage, Roughness, RoughSurface
 from ehlpetsc.surfaces.samples import areal_samples
 from ehlpetsc.surfaces.topography import ContinuedSpline, Topography
@@ -85,14 +84,8 @@ def test_ranks_with_some_rows_have_the_same_heights():
     whole = gap(random_map(), FORWARD, ENTERED)
     parts = [gap(random_map(), FORWARD, ENTERED, Y_NODES[own]) for own in (slice(0, 17), slice(17, 48))]
     np.testing.assert_allclose(np.concatenate(parts), whole, rtol=0, atol=1e-20)
-
-
-def test_reversed_motion_turns_the_surface_by_half_a_turn():
     forward, backward = (gap(random_map(), p, d) for p, d in ((FORWARD, 7 * A), (BACKWARD, -7 * A)))
     np.testing.assert_allclose(backward, forward[::-1, ::-1], rtol=0, atol=1e-19)
-
-
-def test_a_moving_surface_is_level_ahead_of_its_first_column():
     heights = gap(random_map(), FORWARD, 2.0 * A)  # has entered half of the domain
     assert not heights[:, X_NODES > DX].any()
     assert np.abs(heights[:, X_NODES < -0.2 * A]).max() > 1e-7
@@ -146,21 +139,6 @@ def test_a_strip_keeps_the_heights_of_the_middle_of_the_map():
     np.testing.assert_allclose(strip.z, measured.z[20:61], rtol=0, atol=1e-20)
 
 
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ({"amplitude": 1e-7}, None),
-        ({"amplitude": 1e-4}, "Rq "),
-        ({"amplitude": 8e-6, "wavelength": 10e-6}, "slopes of "),
-        ({"amplitude": 1e-7, "wavelength_across": 9e-3}, "points 141 um apart"),
-    ],
-)
-def test_maps_in_another_unit_are_noticed(keys, message):
-    wave = {"kind": "sine", "wavelength": 30e-6, "wavelength_across": 75e-6}
-    found = absurd(made(**wave | keys), A, A, 1e-6, 1e-7)
-    assert found is None if message is None else found.startswith(message)
-
-
 def test_waves_that_the_mesh_does_not_resolve_are_counted():
     wave = made(kind="sine", amplitude=1e-7, wavelength=30e-6, wavelength_across=75e-6)
     assert wave.unresolved_variance(7e-6, 18e-6) < 1e-3
@@ -182,7 +160,12 @@ def test_a_wave_that_does_not_fit_a_strip_is_refused():
     np.testing.assert_allclose(rows[:, :16], rows[:, 16:], atol=1e-19)
 
 
-def test_a_dent_is_round_and_returns_with_the_period_of_a_strip():
+def test_ridges_are_endless_and_dents_round_and_periodic_in_a_strip():
+    ridge = {"kind": "ridge", "amplitude": 1e-6, "wavelength": 50e-6, "position": 200e-6}
+    assert np.ptp(gap(made(**ridge)), axis=0).max() == 0.0
+    short = -gap(made(**ridge, wavelength_across=120e-6))[:, 40]
+    expected = np.exp(-((2 * Y_NODES / 120e-6) ** 2))
+    np.testing.assert_allclose(short / short.max(), expected / expected.max(), atol=2e-3)
     dent = {"kind": "dent", "amplitude": 1e-6, "wavelength": 100e-6, "position": 200e-6}
     heights = -gap(made(**dent))
     x, y = X_NODES - X_NODES[0] - 200e-6, Y_NODES
@@ -195,24 +178,13 @@ def test_a_dent_is_round_and_returns_with_the_period_of_a_strip():
     np.testing.assert_allclose(in_strip.z[0].min(), -2e-6 * between, rtol=1e-6)
 
 
-def test_a_ridge_is_endless_unless_it_has_a_width_across():
-    ridge = {"kind": "ridge", "amplitude": 1e-6, "wavelength": 50e-6, "position": 200e-6}
-    assert np.ptp(gap(made(**ridge)), axis=0).max() == 0.0
-    short = -gap(made(**ridge, wavelength_across=120e-6))[:, 40]
-    expected = np.exp(-((2 * Y_NODES / 120e-6) ** 2))
-    np.testing.assert_allclose(short / short.max(), expected / expected.max(), atol=2e-3)
-
-
-def test_self_affine_heights_and_their_stretch():
+def test_self_affine_heights_their_stretch_and_period():
     keys = {"kind": "self-affine", "sq": 2e-7, "hurst": 0.8, "roll_off": 40e-6, "short_cutoff": 10e-6}
     isotropic = made(**keys, seed=1).parameters
     assert isotropic["Sq"] == pytest.approx(2e-7, rel=1e-12) and isotropic["Str"] > 0.8
     stretched = made(**keys, seed=1, peklenik=4.0).parameters
     assert stretched["Str"] == pytest.approx(0.25, abs=0.06)
     assert made(**keys, seed=1, scale=-2.0).sq == pytest.approx(4e-7, rel=1e-12)
-
-
-def test_random_surfaces_have_the_period_of_the_mesh_across():
     surface = made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=40e-6, short_cutoff=10e-6, seed=1)
     assert surface.Y[-1] - surface.Y[0] == pytest.approx(WIDTH, rel=1e-12)
     assert surface.across == surface.along == "periodic"
@@ -229,12 +201,9 @@ def test_ground_surfaces_have_their_height_skewness_and_lay():
     assert normal["Str"] == pytest.approx(1.0 / 3.0, abs=0.06)
 
 
-def test_a_direction_of_a_wave_is_refused():
+def test_a_direction_of_a_wave_and_too_fine_a_random_map_are_refused():
     with pytest.raises(ProfileError, match="^direction = 30: .*ground.*self-affine"):
         made(kind="sine", amplitude=1e-7, wavelength=30e-6, direction=30.0)
-
-
-def test_too_fine_a_random_map_is_refused():
     with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 16000000 "):
         made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=1e-3, short_cutoff=1e-6, seed=1)
 

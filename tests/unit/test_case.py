@@ -1,12 +1,15 @@
-"""The case file: values read from it, and messages about its faults."""
+"""The case file: values read from it, and messages about its faults, one for each."""
 
+import copy
 import math
 import pickle
+import re
 import tomllib
 
 import numpy as np
 import pytest
-from support import CASES, is_line_with
+from support import CASES, is_line_with, one_fault
+from support.maps import GEARS, LAYER, MAPS, POINT
 
 from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.errors import CaseError
@@ -14,6 +17,7 @@ from ehlpetsc.base.quantities import DEFAULT_FIELDS
 from ehlpetsc.base.toml_file import toml_text
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
+from ehlpetsc.case.loading import load
 from ehlpetsc.physics.oil.laws import viscosity
 
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
@@ -45,17 +49,12 @@ def write(tmp_path):
     return make
 
 
-@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_every_case_loads_and_has_a_description(path):
-    assert case.load(path).title
-    head = path.read_text().splitlines()[:2]
-    assert all(line.startswith("# ") for line in head)
-    own = "ball fzg mixed life micropitting traction cmod discs optical superfinished".split()
-    if path.stem.partition("_")[0] not in own:
-        assert "Holmes" in head[1] and "2005" in head[1]
-
-
-def test_omitted_sections_are_none_or_default():
+def test_values_are_read_as_written_and_left_out_ones_are_none_or_default():
+    c = case.load(ROUGH)
+    assert c.contact.youngs_modulus == (207e9, 207e9)
+    assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
+    assert c.surface.body_1.scale == 0.5
+    assert (c.time.travel, c.time.courant) == (6.0, 1.0)
     c = case.load(SMOOTH)
     assert (c.time, c.series, c.surface.body_1, c.surface.body_2) == (None,) * 4
     assert (c.mesh.near_field, c.output.every, c.output.precision) == (3, 1, "float64")
@@ -63,14 +62,10 @@ def test_omitted_sections_are_none_or_default():
     dry = case.load(CASES / "dry_hertz.toml")
     assert (dry.fluid, dry.motion) == (None, None)
     assert (dry.contact.boundary_friction, dry.contact.minimum_film) == (0.1, 0.0)
-
-
-def test_values_are_read_as_written():
-    c = case.load(ROUGH)
-    assert c.contact.youngs_modulus == (207e9, 207e9)
-    assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
-    assert c.surface.body_1.scale == 0.5
-    assert (c.time.travel, c.time.courant) == (6.0, 1.0)
+    contact = case.load(SMOOTH, {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.29}).contact
+    assert contact.youngs_modulus == (206e9, 206e9) and contact.poisson_ratio == (0.29, 0.29)
+    fluid = case.load(SMOOTH, {"fluid.gamma": None, "fluid.lambda": None}).fluid
+    assert (fluid.gamma, fluid.lambda_) == (2.3e-9, 1.7e-9)
 
 
 def test_overrides_replace_values_and_no_override_keeps_the_text():
@@ -79,15 +74,12 @@ def test_overrides_replace_values_and_no_override_keeps_the_text():
     assert (c.fluid.viscosity, c.output.fields, c.time.travel, c.title) == (0.003, ["pressure"], 2, "Mine")
     assert tomllib.loads(c.text)["output"]["fields"] == ["pressure"]
     assert case.load(ROUGH).text == ROUGH.read_text()
-
-
-def test_petsc_options_are_stored_as_text():
     options = {"ksp_rtol": 1e-8, "snes_vi_monitor": True, "ksp_view": False, "pc_type": "lu"}
     c = case.load(SMOOTH, {"petsc": options})
     assert c.petsc == {"ksp_rtol": "1e-08", "snes_vi_monitor": "", "pc_type": "lu"}
 
 
-def test_series_members_differ_in_the_series_key_only():
+def test_series_members_differ_in_the_series_key_only_and_all_are_checked():
     c = case.load(CASES / "fig4.toml")
     members = case.members(c)
     assert [value for value, _ in members] == c.series.values
@@ -96,6 +88,10 @@ def test_series_members_differ_in_the_series_key_only():
         assert member.series is None
         assert "series" not in tomllib.loads(member.text)
         assert member.motion == c.motion and member.surface == c.surface and member.path == c.path
+    found = faults(SMOOTH, "series.key='fluid.viscosity'", "series.values=[0.01, -1, 0.02, nan]")
+    assert len(found) == 2
+    assert "fluid.viscosity = -1" in found[0] and "fluid.viscosity = nan" in found[1]
+    assert "fluid.visc" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
 
 
 def test_all_faults_of_a_case_are_reported_together():
@@ -157,9 +153,6 @@ def test_missing_tables_are_named(write, tmp_path):
     assert [line.split(": ")[1].split()[0] for line in found] == ["title", "contact", "mesh"]
     line = fault(write("[motion]\nentrainment_speed = 5.0          # m/s, mean\nslide_roll_ratio = 0.25\n"))
     assert line.split(": ")[1].startswith("motion ") and "missing" in line
-
-
-def test_synthetic_surface_accepts_keys_of_its_kind():
     wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
     named = [line.partition(": surface.2.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)]
     assert named == ["wavelength", "ra"]
@@ -168,17 +161,16 @@ def test_synthetic_surface_accepts_keys_of_its_kind():
     assert is_line_with(fault(SMOOTH, mixed), "surface.2: level: ", "file", "synthetic")
 
 
-def test_every_series_member_is_checked():
-    found = faults(SMOOTH, "series.key='fluid.viscosity'", "series.values=[0.01, -1, 0.02, nan]")
-    assert len(found) == 2
-    assert "fluid.viscosity = -1" in found[0] and "fluid.viscosity = nan" in found[1]
-    assert "fluid.visc" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
-
-
-def test_invalid_toml_is_refused_with_its_line(tmp_path):
+def test_invalid_toml_and_names_of_two_lines_are_refused_and_a_byte_order_mark_ignored(tmp_path, write):
     path = tmp_path / "bad.toml"
     path.write_text("title = 'x'\n[contact\n")
     assert is_line_with(fault(path), f"{path}: ", "TOML", "line 2")
+    path = tmp_path / "a\nb.toml"
+    path.write_text(SMOOTH.read_text())
+    assert is_line_with(fault(path), r"a\nb.toml", "without line breaks; rename the file")
+    path = write()
+    path.write_text("\ufeff" + SMOOTH.read_text())
+    assert case.load(path).text == SMOOTH.read_text()
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
@@ -206,21 +198,12 @@ def test_the_cause_of_a_fault_of_toml_is_named(tmp_path, line, hint):
     assert fault(path).endswith(f"){hint}")
 
 
-def test_names_of_files_are_one_line(tmp_path):
-    """Messages and summaries of a result had two lines."""
-    path = tmp_path / "a\nb.toml"
-    path.write_text(SMOOTH.read_text())
-    assert is_line_with(fault(path), r"a\nb.toml", "without line breaks; rename the file")
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [
         (None, "file: "),
         ("0,0\n1e-6,0\n2e-6,0\n", ": 3 points; "),
         ("0,0\n1e-6,nan\n2e-6,0\n3e-6,0\n", ": 3 heights are not missing; "),
-        ("0,0\n1e-6,zero\n2e-6,0\n3e-6,0\n", ': line 2: "zero" is not a number; '),
-        ("0,0\n2e-6,0\n1e-6,0\n3e-6,0\n", "x = 1e-06 follows x = 2e-06"),
     ],
 )
 def test_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
@@ -237,9 +220,6 @@ def test_needs_that_are_not_met_are_named():
     assert fault(SMOOTH, "wear.coefficient=1e-18").endswith('wear: needs contact.model = "mixed" and [time]')
     mixed = ("contact.model='mixed'", "contact.boundary_film=1e-8", "contact.asperity_height=2e-8")
     assert "contact.boundary_film = 1e-08: needs contact.asperity_height left out (" in fault(SMOOTH, *mixed)
-
-
-def test_keys_that_follow_from_a_faulty_one_are_not_reported_as_missing():
     steel = {"contact.material": "16MnCr6", "contact.youngs_modulus": None, "contact.poisson_ratio": None}
     assert 'contact.material = "16MnCr6": allowed: one of "16MnCr5"' in fault(SMOOTH, *steel.items())
 
@@ -249,9 +229,6 @@ def test_values_of_a_case_can_be_sent_to_other_ranks():
     received = pickle.loads(pickle.dumps(sent))
     assert received == sent and (received.text, received.path) == (sent.text, sent.path)
     assert type(received.time.courant) is float and received.time != sent.mesh
-
-
-def test_a_table_declared_elsewhere_is_checked_as_the_case_is():
     thickness = Required("of both surfaces", "m", 1e-9, 1e-4, many="both")
     keys, shared = {"thickness": thickness, "share": Key("of 1", "", 0, 1)}, "left out: none"
     coating = KeyTable("coating", shared, keys, complete=lambda values: {"share": values.share or 0.5})
@@ -261,11 +238,6 @@ def test_a_table_declared_elsewhere_is_checked_as_the_case_is():
 
 
 OIL = {"fluid.law": "roelands", "fluid.reference_viscosity": None, "fluid.roelands_pressure": None}
-
-
-def test_single_value_applies_to_both_solids():
-    contact = case.load(SMOOTH, {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.29}).contact
-    assert contact.youngs_modulus == (206e9, 206e9) and contact.poisson_ratio == (0.29, 0.29)
 
 
 def test_omitted_roelands_constants_follow_from_the_pressure_coefficient():
@@ -280,25 +252,17 @@ def test_omitted_roelands_constants_follow_from_the_pressure_coefficient():
     assert "by viscosity and pressure_viscosity it is" in other
 
 
-def test_default_density_is_dowson_higginson():
-    fluid = case.load(SMOOTH, {"fluid.gamma": None, "fluid.lambda": None}).fluid
-    assert (fluid.gamma, fluid.lambda_) == (2.3e-9, 1.7e-9)
-
-
 @pytest.mark.parametrize("sign", ["\\u0000", "\\u0007", "\\n", "\\u007f"])
 def test_control_characters_in_a_title_are_refused(write, sign):
     assert "title = " in fault(write('title = "', f'title = "{sign}'))
 
 
-def test_byte_order_mark_of_a_case_is_ignored(write):
-    path = write()
-    path.write_text("\ufeff" + SMOOTH.read_text())
-    assert case.load(path).text == SMOOTH.read_text()
-
-
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_written_toml_and_stored_text_give_the_same_case(path):
-    tables = tomllib.loads(path.read_text())
+def test_every_case_has_a_description_and_is_the_same_written_and_stored(path):
+    tables, head = tomllib.loads(path.read_text()), path.read_text().splitlines()[:2]
+    assert tables["title"] and all(line.startswith("# ") for line in head)
+    own = "ball fzg mixed life micropitting traction cmod discs optical superfinished".split()
+    assert path.stem.partition("_")[0] in own or "Holmes" in head[1] and "2005" in head[1]
     tables["petsc"] = {'a "b"': "tab\t, \\, \u00e9", "": [[1, 2.5e-17], [True]], "c": {"d": {"e": -0.0}}}
     assert tomllib.loads(toml_text(tables)) == tables
     load = {"contact.load": "25 N" if path.stem in ("ball", "optical") else "400 N/mm"}
@@ -322,3 +286,68 @@ def test_mistyped_name_of_a_case_is_answered_by_a_close_one(name, message, tmp_p
     (tmp_path / "mine.toml").touch()
     with pytest.raises(CaseError, match=rf"{message}$"):
         case.load(tmp_path / name)
+
+
+def places(tables, above=()):
+    """Paths of all tables and keys."""
+    for name, value in tables.items():
+        yield (*above, name)
+        if isinstance(value, dict):
+            yield from places(value, (*above, name))
+
+
+def wrong_value(table, name):
+    table[name] = "no such value"
+
+
+def misspelt(table, name):
+    table[name + name[-1]] = table.pop(name)
+
+
+@pytest.mark.parametrize("fault", [wrong_value, misspelt])
+@pytest.mark.parametrize("base", MAPS)
+def test_any_fault_of_a_key_is_one_message(base, fault):
+    tables = tomllib.loads(MAPS[base])
+    assert load(copy.deepcopy(tables)).surface.body_1.z is not None
+    for *above, name in places(tables):
+        if name == "title" and fault is wrong_value or name in ("1", "z"):
+            continue
+        faulty = copy.deepcopy(tables)
+        table = faulty
+        for key in above:
+            table = table[key]
+        fault(table, name)
+        assert ".".join((*above, name)) in one_fault(load, faulty)
+
+
+def test_a_file_that_no_contact_can_use_is_reported_beside_other_faults(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "map.txt").write_text("\n".join(["0 1 0 2 1 0"] * 6))
+    faulty = tomllib.loads(POINT) | {
+        "surface": {"1": {"file": "no.txt"}, "2": {"file": "map.txt", "spacing": 1e-5}}
+    }
+    with pytest.raises(CaseError) as refused:
+        load(faulty, ["mesh.inlet=4"])
+    heads = sorted(line.split(": ")[1].split(" = ")[0] for line in refused.value.faults)
+    assert heads == ["mesh.inlet", "surface.1.file"]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("fank.csv", r"no such file: \S+; did you mean \S+flank\.csv\?"), ("", r"a folder: \S+")],
+)
+def test_a_surface_file_that_is_none_is_answered_by_a_close_one(tmp_path, name, message):
+    (tmp_path / "flank.csv").write_text("0 1")
+    fault = one_fault(load, CASES / "mixed.toml", {"surface": {"1": {"file": str(tmp_path / name)}}})
+    assert re.search(f"{message}$", fault)
+
+
+def test_bulk_temperature_of_losses_with_a_map_and_without_its_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert load(tomllib.loads(GEARS)).heat.bulk_temperature[0] > 313.0
+    fault = one_fault(load, tomllib.loads(GEARS), {"surface.1": {"file": "no.txt", "spacing": 1e-5}})
+    assert re.search("surface.1.* no such file", fault)
+
+
+def test_a_bound_by_another_key_is_not_checked_against_a_faulty_one():
+    assert "cutoff" in one_fault(load, tomllib.loads(LAYER.replace("cutoff = 3e-5", "cutoff = -1")))

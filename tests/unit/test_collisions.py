@@ -1,4 +1,4 @@
-"""Programs of the paper's figures: collisions, entrapment and contacts are found where they were put."""
+"""Programs of the paper's figures and pages: collisions, entrapment, shares of micropits."""
 
 import sys
 
@@ -12,8 +12,14 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter
 
 sys.path.append(str(ROOT / "cases" / "paper"))
+import sys
+
 import collisions
 import entrapment
+import micropits
+from support import ROOT
+
+from ehlpetsc.life.history import read_life
 
 X = np.linspace(-1.5, 1.5, 301)
 SPEED = 5.0
@@ -66,14 +72,7 @@ def test_collisions_are_found_at_their_positions(series):
     np.testing.assert_allclose(late.film, [0.1e-6, 0.05e-6, 0, 0], atol=1e-12)
     np.testing.assert_allclose(late.pressure, [1e9, 1e9, 1e9 * (1 + 2 / 0.6), 6e9])
     assert collisions.breakdowns([early, late]) == [late]
-
-
-def test_printed_film_in_contact_is_that_of_the_file(tmp_path):
-    """A bound above 0, as of a compliant layer: the film there was printed as 0."""
-    result = make(tmp_path / "b.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)], bound=0.0221)
-    (found,) = collisions.find([result])
-    assert found.film == pytest.approx((0.0221e-6,)) and found.dry == (True,)
-    assert " 0.0221,3.00" in collisions.report([found], [0.01], "fluid.viscosity", A)[2]
+    assert entrapment.find(series[-1]) == []
 
 
 def test_contacts_are_those_of_the_frame(tmp_path):
@@ -83,6 +82,10 @@ def test_contacts_are_those_of_the_frame(tmp_path):
     films = make(tmp_path / "film.h5", 0.01, [], fields=FIELDS[:2])
     with pytest.raises(OutputError, match="film.h5: does not store in_contact"):
         films.contacts_at(40)
+    result = make(tmp_path / "b.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)], bound=0.0221)
+    (found,) = collisions.find([result])
+    assert found.film == pytest.approx((0.0221e-6,)) and found.dry == (True,)
+    assert " 0.0221,3.00" in collisions.report([found], [0.01], "fluid.viscosity", A)[2]
 
 
 def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
@@ -103,5 +106,19 @@ def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
         np.testing.assert_allclose(above - below, 1e6 * result.frame("film_thickness", frame), atol=1e-9)
 
 
-def test_pressure_peak_outside_contacts_is_no_entrapment(series):
-    assert entrapment.find(series[-1]) == []
+def test_short_form_computes_once_prints_shares_and_draws(tmp_path, capsys):
+    words = [str(tmp_path / "lives"), "first", "--short", "-o", str(tmp_path / "signs.png")]
+    micropits.main(words)
+    first = capsys.readouterr().out
+    files = sorted((tmp_path / "lives").glob("*.life.h5"))
+    stamps = [file.stat().st_mtime_ns for file in files]
+    micropits.main(words)
+    assert capsys.readouterr().out == first and "first, ten seeds, 2 seeds: surface 1 " in first
+    assert [file.stat().st_mtime_ns for file in files] == stamps and len(files) == 2
+    assert (tmp_path / "signs.png").stat().st_size > 10_000
+    lives = [read_life(file) for file in files]
+    early, late = (micropits.shares(lives, passes) for passes in (0.3 * micropits.PASSES, micropits.PASSES))
+    assert (early[1] > early[0]).all() and (late > early).all()
+    with pytest.raises(SystemExit):
+        micropits.main([str(tmp_path), "frist"])
+    assert "scene frist; allowed: first, second" in capsys.readouterr().err

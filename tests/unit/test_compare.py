@@ -1,10 +1,15 @@
-"""Comparing results: equal, different and incomparable ones."""
+"""Results compared, and as tables of CSV: statistics, all steps, one frame."""
 
+import csv
+
+import h5py
 import numpy as np
 import pytest
 from support.made_results import P0, A, make_result
 
 from ehlpetsc.analysis.compare import compare, main
+from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.analysis.summary import weighted_percentiles
 from ehlpetsc.results.reader import read_result
 
 
@@ -29,6 +34,10 @@ def test_equal_results_compare_bitwise_equal(tmp_path, result, capsys):
     assert status == 0
     assert text.splitlines()[-1].startswith("same")
     assert "steps/load" in text and "DIFFERENT" not in text
+    assert differences(result, result)["steps/friction"].max == 0
+    status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
+    assert status == 1
+    assert "different: pressure;" in text
 
 
 def test_difference_has_size_and_position(tmp_path, result, capsys):
@@ -47,7 +56,6 @@ def test_difference_has_size_and_position(tmp_path, result, capsys):
 
 
 def test_finer_mesh_and_time_step_are_compared_at_common_nodes(tmp_path):
-    """Nodes and times of the coarser are among those of the finer, so nothing is lost by interpolation."""
     coarse = make_result(tmp_path / "one.h5", nodes=161, steps=41)
     found = differences(coarse, make_result(tmp_path / "two.h5", nodes=321, steps=81))
     for name in ("pressure", "film_thickness", "shear_stress_2", "void_fraction"):
@@ -56,9 +64,43 @@ def test_finer_mesh_and_time_step_are_compared_at_common_nodes(tmp_path):
     assert "in_contact" not in found and "steps/contacts" not in found  # numbers of the mesh
 
 
-def test_nan_in_one_result_is_a_difference(tmp_path, result, capsys):
-    """Friction is left out of both, which is the same; a nan in the pressure of one is not."""
-    assert differences(result, result)["steps/friction"].max == 0
-    status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
-    assert status == 1
-    assert "different: pressure;" in text
+@pytest.fixture
+def path(tmp_path):
+    return make_result(tmp_path / "r.h5", nodes=41, steps=11)
+
+
+def rows_of(capsys, *words):
+    assert summary([str(word) for word in words]) == 0
+    return list(csv.DictReader(capsys.readouterr().out.splitlines()))
+
+
+def test_statistics_are_weighted_by_the_time_step(path, capsys):
+    with h5py.File(path, "r+") as file:
+        dt = file["steps/dt"][:] = np.linspace(0.0, 1.0, 11)
+        load = file["steps/load"][:] = np.arange(11.0) ** 2
+    other = make_result(path.with_name("a.h5"))
+    (row,) = (
+        row for row in rows_of(capsys, path, other) if (row["scalar"], row["result"]) == ("load", "r.h5")
+    )
+    assert float(row["mean"]) == pytest.approx(np.average(load, weights=dt), rel=1e-5)
+    assert (row["unit"], row["min"], row["max"], row["steps"]) == ("N/m", "1", "100", "10")
+    values, weights = np.array([3.0, 1.0, 2.0]), np.array([1000.0, 3000.0, 1000.0])
+    repeated = np.repeat(values, weights.astype(int))
+    found = weighted_percentiles(values, weights, (30.0, 70.0, 90.0))
+    assert found == pytest.approx(np.percentile(repeated, (30.0, 70.0, 90.0)), abs=0.3)
+
+
+def test_steps_frames_and_scalars_are_listed(path, capsys):
+    rows = rows_of(capsys, path, "--steps")
+    with read_result(path) as result:
+        for name, unit in (("time", "s"), ("p_max", "Pa"), ("h_min", "m")):
+            found = [float(row[f"{name} [{unit}]"]) for row in rows]
+            np.testing.assert_allclose(found, result.steps(name), rtol=1e-8)
+    rows = rows_of(capsys, path, "--frame", 7)
+    with read_result(path) as result:
+        assert set(rows[0]) == {"x [m]"} | {f"{n} [{result[n].attrs['units']}]" for n in result.fields}
+        found = [float(row["pressure [Pa]"]) for row in rows]
+        np.testing.assert_allclose(found, result.frame("pressure", 7), rtol=1e-8)
+    with read_result(path) as result:
+        lines = str(result.steps).splitlines()
+    assert "(11,)" in lines[0] and any(line.split()[:2] == ["h_min", "m"] for line in lines)

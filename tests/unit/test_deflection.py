@@ -1,14 +1,41 @@
-"""The deflection in second differences, as one integral, and its far kernel as exponentials."""
+"""The deflection of lines in second differences and by kernels, that of planes by convolution."""
 
 import itertools
+import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.fft import next_fast_len
+from scipy.integrate import dblquad, quad
+from scipy.linalg import toeplitz
+from support import ROOT
+from support.convergence import observed_order
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line.curvature_product import Blocks, pack, unpack
-from ehlpetsc.discretisation.line.deflection import Deflection, PressureSums, curvature_kernel
+from ehlpetsc.discretisation.line.curvature_product import TOLERANCE, Blocks, pack, product, unpack
+from ehlpetsc.discretisation.line.curvature_product import exponentials as far_exponentials
+from ehlpetsc.discretisation.line.deflection import (
+    Deflection,
+    PressureSums,
+    SymmetricToeplitz,
+    curvature_kernel,
+    deflection_kernel,
+    fast_length,
+)
+from ehlpetsc.discretisation.plane.deflection import (
+    NEAR,
+    Convolution,
+    Transposition,
+    cell_potential,
+    differences_of_primitive,
+    free_kernel,
+    periodic_kernel,
+)
+from ehlpetsc.discretisation.plane.deflection import Deflection as PlaneDeflection
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of
 from ehlpetsc.nonlinear.line.banded_jacobian import GROUP, exponentials, grouped_kernel
 from ehlpetsc.nonlinear.line.system import line_problem
@@ -21,7 +48,6 @@ N, DX = 137, 0.021
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_integral_form_satisfies_second_differences(seed):
-    """Any pressure, smooth or not: the film of the integral form leaves no residual in any row."""
     rng = np.random.default_rng(seed)
     p, approach = rng.uniform(-1.0, 3.0, N), -0.7
     d = Deflection(N, DX, 0, N)
@@ -33,7 +59,6 @@ def test_integral_form_satisfies_second_differences(seed):
 
 
 def test_second_differences_satisfy_the_integral_form():
-    """The rows solved for the separation give the film of the integral: nothing is lost in differencing."""
     rng = np.random.default_rng(3)
     p, approach = rng.uniform(0.0, 2.0, N), 0.4
     d = Deflection(N, DX, 0, N)
@@ -63,7 +88,6 @@ def test_local_deflection_rows_equal_global_rows(cuts):
 
 @pytest.mark.parametrize("model", ["direct", "mixed"])
 def test_film_equation_has_zero_deflection_residual(model):
-    """Parabola, roughness, approach and deflection as `EHLProblem.film` has them, against its residual."""
     mesh = ["mesh.points_per_half_width=32", f"contact.model='{model}'"]
     case = load(CASE, mesh)
     scales = Scales.of(case)
@@ -99,9 +123,127 @@ def test_recurrence_sums_an_exponential():
     np.testing.assert_allclose(
         np.linalg.solve(matrix, 2 * np.sinh(rate) * p), np.exp(-rate * distance) @ p, rtol=1e-12
     )
-
-
-def test_grouped_kernel_is_the_mean_over_pairs_of_nodes():
     kernel = np.random.default_rng(0).standard_normal(40)
     i, j = np.arange(GROUP), 3 * GROUP + np.arange(GROUP)
     assert grouped_kernel(kernel)[3] == pytest.approx(kernel[np.subtract.outer(j, i)].mean())
+
+
+def test_kernel_product_by_transforms_of_fast_length():
+    assert [fast_length(n) for n in range(1, 5000)] == [next_fast_len(n, real=True) for n in range(1, 5000)]
+    kernel, p = curvature_kernel(101), np.random.default_rng(4).standard_normal(101)
+    np.testing.assert_allclose(SymmetricToeplitz(kernel)(p), toeplitz(kernel) @ p, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("nodes", [3, 32, 33, 64, 65, 97, 1000])
+def test_kernel_product_by_blocks(nodes):
+    """At the exponentials' error, whatever part of the last block the nodes fill, and in a second call."""
+    kernel, p = curvature_kernel(nodes), np.random.default_rng(4).standard_normal(nodes)
+    blocks, expected = Blocks.of(kernel), toeplitz(kernel) @ p
+    first = product(blocks, p)
+    product(blocks, np.ones(nodes))
+    np.testing.assert_allclose([first, product(blocks, p)], [expected, expected], rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("tolerance", [TOLERANCE, 1e-8, 1e-6])
+@pytest.mark.parametrize("n, nearest", [(34, 33), (50, 33), (301, 9), (801, 33), (12801, 9), (12801, 33)])
+def test_far_kernel_is_a_sum_of_exponentials(n, nearest, tolerance):
+    kernel = curvature_kernel(n)
+    rates, weights = far_exponentials(kernel, nearest, tolerance)
+    by_terms = np.exp(-np.outer(np.arange(n - nearest), rates)) @ weights
+    np.testing.assert_allclose(by_terms, kernel[nearest:], rtol=tolerance, atol=0)
+    assert (weights > 0.0).all()  # nothing cancels
+    assert len(rates) <= 5 - np.log(tolerance) * (0.4 + 0.16 * np.log(n / nearest))
+
+
+def test_exponentials_are_a_quadrature_of_the_laplace_transform():
+    kernel = curvature_kernel(30)
+    for k in (3, 4, 9, 29):
+        f = quad(lambda t, k=k: t * (np.sinh(t / 2) / (t / 2)) ** 4 * np.exp(-k * t), 0, 60, epsrel=1e-12)[0]
+        assert f == pytest.approx(kernel[k], rel=1e-10)
+
+
+CPU_FLAG_OF_KERNELS = {"Prescott": "sse3", "Haswell": "avx2", "SkylakeX": "avx512f"}
+TERMS = """
+import json
+from ehlpetsc.discretisation.line.curvature_product import exponentials
+from ehlpetsc.discretisation.line.deflection import curvature_kernel
+terms = [exponentials(curvature_kernel(n), nearest) for n, nearest in ((50, 33), (12801, 9), (12801, 33))]
+print(json.dumps([[rates.tolist(), weights.tolist()] for rates, weights in terms]))
+"""
+
+
+def test_exponentials_are_the_same_with_every_kernel_of_openblas():
+    """A least-squares fit had 36 terms with the kernels of Haswell and 52 with those of SkylakeX."""
+    flags = Path("/proc/cpuinfo").read_text().replace("pni", "sse3").split()
+    kernels = [name for name, flag in CPU_FLAG_OF_KERNELS.items() if flag in flags]
+    if len(kernels) < 2:
+        pytest.skip("one of these kernels alone runs on this processor, so there is nothing to compare")
+    plain = {"PATH": os.environ["PATH"], "HOME": "/", "PYTHONPATH": str(ROOT)}
+    runs = [
+        subprocess.Popen(
+            [sys.executable, "-c", TERMS], env=plain | {"OPENBLAS_CORETYPE": name}, stdout=subprocess.PIPE
+        )
+        for name in kernels
+    ]
+    first, *others = (json.loads(run.communicate(timeout=60)[0]) for run in runs)
+    for name, other in zip(kernels[1:], others, strict=True):
+        for (rates, weights), (expected_rates, expected_weights) in zip(other, first, strict=True):
+            assert rates == pytest.approx(expected_rates, rel=1e-15, abs=0.0), name
+            assert weights == pytest.approx(expected_weights, rel=1e-15, abs=0.0), name
+
+
+CELL_X, CELL_Y = 0.03, 0.05
+CIRCLE = 2.0 / np.pi**2  # C of a circular contact
+
+
+def test_kernel_is_the_integral_over_a_cell():
+    def integrand(t, s):
+        return (1.0 - abs(s) / CELL_X) / np.hypot(3 * CELL_X - s, 2 * CELL_Y - t)
+
+    parts = (
+        dblquad(integrand, *ends, -CELL_Y / 2, CELL_Y / 2, epsabs=1e-14)[0]
+        for ends in ((-CELL_X, 0.0), (0.0, CELL_X))
+    )
+    assert free_kernel(8, 8, CELL_X, CELL_Y)[2, 3] == pytest.approx(sum(parts), abs=1e-15)
+    exact = differences_of_primitive(NEAR + 20, NEAR + 20, CELL_X, CELL_Y)
+    expansion = cell_potential(np.arange(NEAR + 20) * CELL_X, np.arange(NEAR + 20) * CELL_Y, CELL_X, CELL_Y)
+    np.testing.assert_allclose(expansion[NEAR - 1 :, NEAR - 1 :], exact[NEAR - 1 :, NEAR - 1 :], rtol=1e-12)
+
+
+def test_strip_sums_to_the_line():
+    line = -2.0 * CELL_X * -(deflection_kernel(100) - np.log(CELL_X))
+    np.testing.assert_allclose(periodic_kernel(100, 24, CELL_X, CELL_Y).sum(axis=0), line, rtol=0, atol=1e-15)
+    n_y, periods = 20, 200
+    whole = free_kernel(30, (periods + 1) * n_y + 1, CELL_X, CELL_Y)
+    rows = np.abs(np.arange(n_y)[:, None] + np.arange(-periods, periods + 1) * n_y)
+    summed = whole[rows].sum(axis=1)
+    strip = periodic_kernel(30, n_y, CELL_X, CELL_Y)
+    waves, expected = (values - values.mean(axis=0) for values in (strip, summed))
+    np.testing.assert_allclose(waves, expected, rtol=0, atol=2e-5 * expected.max())  # ~ 1/periods^2
+
+
+def test_film_of_hertz_pressure_is_flat_to_second_order():
+    spreads, approaches = [], []
+    for points in (16, 32, 64):
+        x = np.arange(-2 * points, 2 * points + 1) / points
+        square = x**2 + x[:, None] ** 2
+        deflection = PlaneDeflection(
+            (len(x), len(x)), (1 / points, 1 / points), CIRCLE, 1.0, False, slice(None)
+        )
+        film = deflection.integral(np.sqrt(np.maximum(1.0 - square, 0.0)).ravel()) + 0.5 * square.ravel()
+        inside = film[square.ravel() < 0.81]
+        spreads.append(inside.std())
+        approaches.append(inside.mean() - 1.0)
+    assert spreads[-1] < 6e-5 and abs(approaches[-1]) < 4e-4
+    assert observed_order(spreads) > 1.8
+
+
+@pytest.mark.parametrize("periodic", (False, True))
+def test_convolution_has_the_precision_of_its_argument(periodic):
+    product = Convolution(
+        (periodic_kernel if periodic else free_kernel)(33, 24, CELL_X, CELL_Y), periodic, Transposition()
+    )
+    pressure = np.random.default_rng(5).random(24 * 33)
+    exact, single = product(pressure), product(pressure.astype(np.float32))
+    assert single.dtype == np.float32
+    assert 1e-9 < np.abs(single - exact).max() / np.abs(exact).max() < 1e-6

@@ -66,16 +66,7 @@ def test_full_disk_keeps_the_older_picture(tmp_path, capsys, words, name):
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["one.h5", name])
 
 
-def test_temporary_file_is_removed_after_an_error(tmp_path):
-    (tmp_path / "a.png").write_text("older")
-    fails = pytest.raises(OutputError, match=r"a\.png: not written, No space")
-    with fails, replacing(tmp_path / "a.png") as beside:
-        assert beside.suffix == ".png" and beside.parent == tmp_path
-        raise OSError(28, "No space left on device")
-    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
-
-
-def test_temporary_file_exists_only_while_it_has_content(tmp_path):
+def test_temporary_file_exists_while_it_has_content_and_is_removed_after_an_error(tmp_path):
     """A kill cannot be answered: what it leaves is at least not an empty file."""
     with replacing(tmp_path / "a.png") as beside:
         assert list(tmp_path.iterdir()) == []
@@ -86,6 +77,12 @@ def test_temporary_file_exists_only_while_it_has_content(tmp_path):
         replacing(tmp_path / "none" / "a.png"),
     ):
         raise AssertionError("the folder is checked first")
+    (tmp_path / "a.png").write_text("older")
+    fails = pytest.raises(OutputError, match=r"a\.png: not written, No space")
+    with fails, replacing(tmp_path / "a.png") as beside:
+        assert beside.suffix == ".png" and beside.parent == tmp_path
+        raise OSError(28, "No space left on device")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])

@@ -35,11 +35,15 @@ def of(overrides, case=SMOOTH, about=domain_warnings):
     return list(about(case, Scales.of(case)))
 
 
-def test_cases_have_no_domain_warning():
+def test_cases_have_no_domain_warning(tmp_path):
     for path in CASES.glob("*.toml"):
         case = load(path)
         found = domain_warnings(case, Scales.of(case)) + domain_faults(case, Scales.of(case))
         assert len(found) == (path.stem == "micropitting"), path  # coarse for the inlet: its page says so
+    (tmp_path / "strip.toml").write_text(template("strip"))
+    for path in [*CASES.glob("*.toml"), tmp_path / "strip.toml"]:
+        assert of({}, path, strip_warnings) == []
+    assert of({}, STRIP, strip_warnings) == []  # ridges by intention
 
 
 STRIP = {
@@ -65,7 +69,6 @@ AFFINE = self_affine(1e-7, 100e-6, 30e-6)
     ],
 )
 def test_a_strip_too_narrow_for_its_roughness_has_ridges(overrides, words, width):
-    """They were computed without a word; at the needed width about half of the variance is uniform."""
     (line,) = of(overrides, STRIP, strip_warnings)
     assert words in line and f"mesh.width = {width:g} or more" in line
     wide = load(STRIP, overrides | {"mesh.width": width})
@@ -75,13 +78,6 @@ def test_a_strip_too_narrow_for_its_roughness_has_ridges(overrides, words, width
         z = Roughness.of(case, Scales.of(case)).surface_1.given.z
         uniform.append(z.mean(axis=0).var() / z.var())
     assert uniform[1] < 0.51 < 0.8 < uniform[0]
-
-
-def test_cases_and_templates_are_wide_enough(tmp_path):
-    (tmp_path / "strip.toml").write_text(template("strip"))
-    for path in [*CASES.glob("*.toml"), tmp_path / "strip.toml"]:
-        assert of({}, path, strip_warnings) == []
-    assert of({}, STRIP, strip_warnings) == []  # ridges by intention
 
 
 def film(**overrides):
@@ -140,7 +136,6 @@ def light_ball(size, **keys):
 
 
 def test_film_of_a_light_ball_on_a_mesh_that_is_too_small_equals_the_solver_result():
-    """Of the width nothing was said, 63 % of the film for 20 %, and a flooded film that is 20 % too high."""
     films, left = [], []
     for size in (8.0, 32.0):
         case = light_ball(size)
@@ -181,15 +176,22 @@ def test_rigid_films_and_loads_of_ellipses_by_their_sources():
         assert load_outside(scales, film, 1e-3, 1e-3) < 0.9 * load_of_it
 
 
-def test_near_inlet_warning_gives_film_and_sufficient_inlet():
+def test_warnings_of_inlet_and_mesh_give_what_is_sufficient_and_no_film_is_refused():
     (line,) = of({"mesh.inlet": -1.05})
     assert line.startswith("mesh.inlet = -1.05 ") and " 43 % " in line
     further = float(line.split("mesh.inlet = ")[2].split()[0])
     assert -2.5 < further < -1.8 and of({"mesh.inlet": further}) == []
+    (line,) = of(SLOW | {"mesh.points_per_half_width": 400})
+    assert " 1.9 films " in line
+    points = int(line.split("points_per_half_width = ")[1].split(";")[0])
+    assert of(SLOW | {"mesh.points_per_half_width": points}) == []
+    (line,) = of(SLOW, about=domain_faults)
+    assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: ") and " 5.3 films " in line
+    with pytest.raises(ehlpetsc.CaseError, match=r"points_per_half_width = 200: .* 5\.3 films"):
+        ehlpetsc.Simulation(load(SMOOTH, SLOW))
 
 
 def test_film_on_a_mesh_too_coarse_for_the_inlet_is_as_predicted():
-    """Values of the docstring for openings of 0.25 and 1."""
     slow = {"motion__entrainment_speed": 0.1, "mesh__inlet": -1.5}
     case = load(SMOOTH, {"motion.entrainment_speed": 0.1})
     expected = expected_film(case, Scales.of(case))
@@ -200,30 +202,12 @@ def test_film_on_a_mesh_too_coarse_for_the_inlet_is_as_predicted():
         assert low < 1.0 - film(**slow, mesh__points_per_half_width=points) / fine < high
 
 
-def test_coarse_mesh_warning_gives_the_sufficient_mesh():
-    (line,) = of(SLOW | {"mesh.points_per_half_width": 400})
-    assert " 1.9 films " in line
-    points = int(line.split("points_per_half_width = ")[1].split(";")[0])
-    assert of(SLOW | {"mesh.points_per_half_width": points}) == []
-
-
-def test_mesh_without_a_film_is_refused():
-    """At a/200 the film of this smooth contact is zero, at a/1600 1.06 nm."""
-    (line,) = of(SLOW, about=domain_faults)
-    assert line.startswith(f"{SMOOTH}: mesh.points_per_half_width = 200: ") and " 5.3 films " in line
-    with pytest.raises(ehlpetsc.CaseError, match=r"points_per_half_width = 200: .* 5\.3 films"):
-        ehlpetsc.Simulation(load(SMOOTH, SLOW))
-
-
-def test_contact_at_the_domain_ends_is_an_error():
+def test_contact_or_pressure_at_the_ends_is_an_error():
     """A dent of 50 um: without oil its flanks carry at the ends of the mesh."""
     dent = {"kind": "dent", "amplitude": 50e-6, "wavelength": 600e-6, "position": 340e-6}
     changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"2": {"synthetic": dent}}}
     with pytest.raises(ehlpetsc.NotConverged, match=r"solids .* inlet, x = -1\.01 a: .* mesh\.inlet "):
         ehlpetsc.solve(load(CASES / "dry_hertz.toml", changed))
-
-
-def test_pressure_at_the_outlet_is_an_error():
     grid = Grid((np.linspace(-2.0, 1.2, 5),), (1e-4,), (1.0,), (1.0,), 0.5 * np.pi)
     dry = np.zeros(5, bool)
     check_ends(grid, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)

@@ -55,36 +55,26 @@ def test_law_and_effect_of_the_page_work_as_they_are(folder):
     assert "loss: in a half-width" in listed
 
 
-SATURATING = """
-import ehlpetsc, numpy, my_oil
-coarse = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}
-films = []
-for law in ({"fluid.law": "barus"}, {"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}):
-    case = ehlpetsc.load("table1_smooth.toml", coarse | law, laws=my_oil.LAWS)
-    films.append(ehlpetsc.solve(case).film_thickness)
-print(abs(films[1] / films[0] - 1.0).max())
+LIMITS = """
+import ehlpetsc, my_density, my_oil
+keys = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}
+
+def film(law, **own):
+    return ehlpetsc.solve(ehlpetsc.load("table1_smooth.toml", keys | law, **own)).film_thickness
+
+own = {"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}
+print(abs(film(own, laws=my_oil.LAWS) / film({"fluid.law": "barus"}) - 1.0).max())
+keys |= {"fluid.gamma": None, "fluid.lambda": None}
+rigid = film({"fluid.density": "incompressible"})
+for law in ({"fluid.density": "bulk", "fluid.bulk_modulus": 1e12}, {"fluid.density": "bulk"}):
+    print(abs(film(law, density_laws=my_density.DENSITY_LAWS) / rigid - 1.0).max())
 """
 
 
-def test_law_of_the_page_that_saturates_far_above_p0_is_that_of_barus(folder):
-    """In a process of its own, as laws stay in the tables."""
-    assert 0.0 < float(call(folder, "-c", SATURATING)) < 0.01
-
-
-STIFF = """
-import ehlpetsc, my_density
-coarse = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0, "fluid.gamma": None, "fluid.lambda": None}
-bulk, films = {"fluid.density": "bulk"}, []
-for law in ({"fluid.density": "incompressible"}, bulk | {"fluid.bulk_modulus": 1e12}, bulk):
-    case = ehlpetsc.load("table1_smooth.toml", coarse | law, density_laws=my_density.DENSITY_LAWS)
-    films.append(ehlpetsc.solve(case).film_thickness)
-print(*(abs(film / films[0] - 1.0).max() for film in films[1:]))
-"""
-
-
-def test_density_law_of_the_page(folder):
-    """With a stiff oil the films of the incompressible one; by its default the law compresses them."""
-    stiff, other = map(float, call(folder, "-c", STIFF).split())
+def test_laws_of_the_page_have_the_films_of_barus_and_of_incompressible_oil_as_limits(folder):
+    """In a process of its own, as laws stay in the tables; the density law by its default compresses."""
+    saturating, stiff, other = map(float, call(folder, "-c", LIMITS).split())
+    assert 0.0 < saturating < 0.01
     assert stiff == pytest.approx(1e-3, rel=0.2)  # p0 over the bulk modulus
     assert other > 0.05
 
@@ -122,35 +112,25 @@ def test_shear_law_of_the_page(folder):
     assert "fluid.cross_stress = 5000000.0: needs fluid.eyring_stress left out" in fault
 
 
-BAD = {
-    "LAWS": "from my_oil import LAWS\nLAWS = {'barus': LAWS['saturating']}",
-    "DENSITY_LAWS": "from my_oil import LAWS\nDENSITY_LAWS = {'incompressible': LAWS['saturating']}",
-    "SHEAR_LAWS": "from my_oil import LAWS\nSHEAR_LAWS = {'eyring': LAWS['saturating']}",
-    "key": "from my_oil import Key, LAWS\nLAWS['saturating'].keys['gamma'] = Key('of mine')",
-    "EFFECTS": "from my_supply import Starving\nStarving.name = 'wear'\nEFFECTS = [Starving]",
-    "table": "from my_supply import Starving, replace\n"
-    "Starving.table = replace(Starving.table, name='contact')\nEFFECTS = [Starving]",
-    "quantity": "from my_supply import Starving\n"
-    "Starving.scalars = {'h_min': Starving.scalars['supply']}\nEFFECTS = [Starving]",
-}
-REPLACED = {
-    "LAWS": '"barus": a viscosity law',
-    "DENSITY_LAWS": '"incompressible": a density law',
-    "SHEAR_LAWS": '"eyring": a shear law',
-    "key": '"gamma": a key of [fluid]',
-    "EFFECTS": '"wear": an effect',
-    "table": '"contact": a table or key',
-    "quantity": '"h_min": a quantity',
+LAW, EFFECT = "from my_oil import Key, LAWS\n", "from my_supply import Starving, replace\n"
+MINE = f"{EFFECT}EFFECTS = [Starving]\nStarving."
+BAD = {  # code of a module by what it would replace
+    '"barus": a viscosity law': f"{LAW}LAWS = {{'barus': LAWS['saturating']}}",
+    '"incompressible": a density law': f"{LAW}DENSITY_LAWS = {{'incompressible': LAWS['saturating']}}",
+    '"eyring": a shear law': f"{LAW}SHEAR_LAWS = {{'eyring': LAWS['saturating']}}",
+    '"gamma": a key of [fluid]': f"{LAW}LAWS['saturating'].keys['gamma'] = Key('of mine')",
+    '"wear": an effect': f"{MINE}name = 'wear'",
+    '"contact": a table or key': f"{MINE}table = replace(Starving.table, name='contact')",
+    '"h_min": a quantity': f"{MINE}scalars = {{'h_min': Starving.scalars['supply']}}",
 }
 
 
-@pytest.mark.parametrize("kind", BAD)
-def test_built_in_names_are_refused(folder, kind):
-    """A law named "barus" replaced the program's for the process, without a word."""
-    (folder / "bad.py").write_text(BAD[kind])
+@pytest.mark.parametrize(("replaced", "code"), BAD.items(), ids=BAD)
+def test_built_in_names_are_refused(folder, replaced, code):
+    (folder / "bad.py").write_text(code)
     done = called([PYTHON, "-m", "ehlpetsc", "keys", "fluid"], folder, SCRIPT | {"EHLPETSC_OWN": "bad"})
     assert done.returncode == 2
-    assert done.stderr == f"{REPLACED[kind]} of this name is built in; allowed: another name\n"
+    assert done.stderr == f"{replaced} of this name is built in; allowed: another name\n"
 
 
 BALL = {
@@ -172,7 +152,6 @@ print(state.supply / 0.15e-6, abs(oil / state.supply - 1.0).max())
 
 
 def test_effect_of_the_page_in_a_point(folder):
-    """The oil of every row at the inlet is the supply."""
     supply, difference = map(float, call(folder, "-c", IN_A_POINT).split())
     assert supply == pytest.approx(0.5**0.3, rel=1e-6)
     assert difference < 1e-6
@@ -220,9 +199,6 @@ def test_effects_change_oil_and_friction_one_after_the_other():
     thick = started("table1_smooth.toml", [], *keys, "fluid.viscosity=0.02")
     np.testing.assert_allclose(found.film_thickness, thick.film_thickness, rtol=1e-5)
     np.testing.assert_allclose(found.shear_stress_2, thick.shear_stress_2, rtol=1e-4)
-
-
-def test_an_effect_changes_the_boundary_friction():
     keys = ["contact.boundary_friction=0.1", "motion={entrainment_speed=1.0,slide_roll_ratio=0.5}"]
     plain = started("dry_hertz.toml", [], *keys)
     found = started("dry_hertz.toml", [Additive(SimpleNamespace())], *keys)

@@ -40,7 +40,6 @@ def test_members_that_differ_in_seeds_form_one_ensemble(tmp_path):
 
 
 def test_results_without_common_conditions_are_refused(tmp_path, capsys):
-    """A series over speeds: its table was of nan."""
     assert summary(["--ensemble", *made(tmp_path, (5.0, 1.0), [1])]) == 2
     (message,) = capsys.readouterr().err.splitlines()
     assert message.startswith("ehlpetsc summary: 2 results ") and not list(tmp_path.glob("*.csv"))
@@ -96,7 +95,6 @@ def test_ensemble_has_damage_quantiles(tmp_path):
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_bootstrap_bounds_are_those_of_the_mean(seed):
-    """Of normal values 1.645 standard errors either side; the same bounds in every call."""
     values = np.random.default_rng(seed).normal(3.0, 0.5, size=40)
     error = values.std() / np.sqrt(40)
     low, high = bootstrap_bounds(values)
@@ -107,7 +105,6 @@ def test_bootstrap_bounds_are_those_of_the_mean(seed):
 
 
 def test_ensemble_of_strips_has_lives_of_the_worst_points(tmp_path):
-    """Of the most damaged depth below each point, by each criterion; the band contains the mean."""
     paths = made(tmp_path, seeds=[1, 2, 3])
     s, y = np.arange(50.0), np.arange(4.0)
     for factor, path in enumerate(paths, 1):

@@ -45,17 +45,16 @@ def test_explain_figures_of_the_main_case():
     assert [part for part in parts if part not in text] == []
 
 
-def test_default_friction_of_solids_is_named_where_they_slide():
+def test_friction_of_solids_oil_and_start_are_named():
     (line,) = starting(lines("table1_smooth.toml"), "Solids: ")
     default = "0.1, the default of contact.boundary_friction, where they touch"
     assert line == f"Solids: coefficient of friction {default}"
     for name, keys in (("table1_rough.toml", ()), ("table1_smooth.toml", ["motion.slide_roll_ratio=0.0"])):
         assert starting(lines(name, *keys), "Solids: ") == []
-
-
-def test_source_of_a_named_oil_is_printed():
     (line,) = starting(lines("traction.toml"), "Oil fva3: ")
     assert line.endswith("Wingertszahn et al., Lubricants 11 (2023) 369, table A1")
+    begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
+    assert begun == ["Start: rough, after a ramp before time 0"]
 
 
 @pytest.mark.parametrize(("name", "count"), [("dry_rough.toml", 1), ("dry_hertz.toml", 0), ("ball.toml", 0)])
@@ -102,11 +101,6 @@ def test_heading_of_a_gear_run_has_the_steps_of_its_changing_conditions():
     steady = case.load(CASES / "table1_smooth.toml", ())
     assert " unknowns, steady; 1 rank" in forecast.banner(steady, Scales.of(steady), None, 1)[1]
     assert starting(lines("fzg.toml"), "Time: ")[0].endswith("; 3170 steps")
-
-
-def test_rough_start_is_named():
-    begun = starting(lines("table1_rough.toml", "time.start='rough'"), "Start: ")
-    assert begun == ["Start: rough, after a ramp before time 0"]
 
 
 @pytest.mark.parametrize(
@@ -176,7 +170,6 @@ def test_tilted_profile_warning_names_the_key(level):
 
 
 def test_mesh_within_ten_percent_has_no_warning():
-    """Where less than a tenth more points would do, the figure is noise."""
     base = ["motion.entrainment_speed=1"]
     for points, warned in ((300, False), (30, True)):
         c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={points}"])
@@ -188,7 +181,6 @@ def test_mesh_within_ten_percent_has_no_warning():
 
 
 def test_memory_of_a_large_map_is_that_of_reading_it(tmp_path, monkeypatch):
-    """A map of 5,000 x 5,000 took 1.9 GB, and 250 MB were expected."""
     monkeypatch.chdir(tmp_path)
     np.save("map.npy", np.random.default_rng(0).normal(0.0, 1e-8, (400, 500)))
     tables = case.load(CASES / "ball.toml", {"surface.1": None})._tables
@@ -202,7 +194,6 @@ def test_memory_of_a_large_map_is_that_of_reading_it(tmp_path, monkeypatch):
 
 
 def test_explain_refuses_what_a_run_refuses(capsys):
-    """It printed a line and ended with status 0."""
     coarse = ["contact.load=2.1e6", "motion.entrainment_speed=0.005"]
     words = [word for key in coarse for word in ("--set", key)]
     assert main([str(CASES / "table1_smooth.toml"), *words]) == 2

@@ -1,4 +1,4 @@
-"""Involute geometry, load sharing and losses of spur gears against published figures and closed forms."""
+"""Involute geometry, load sharing and losses of gear pairs against published figures and closed forms."""
 
 import json
 import math
@@ -14,11 +14,19 @@ from support import CASES, is_line_with, one_fault
 from ehlpetsc.analysis.gear_run import FlankDamage, GearRun
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.case.derived import rating_of
+from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.command import main
 from ehlpetsc.gears.faults import faults, notes
-from ehlpetsc.gears.load_sharing import corner_gap, edge_contact, pair_loads, share, single_stiffness
+from ehlpetsc.gears.load_sharing import (
+    END_STIFFNESS,
+    corner_gap,
+    edge_contact,
+    pair_loads,
+    share,
+    single_stiffness,
+)
 from ehlpetsc.gears.path import describe, gear_loss_factor, hertz, loss, mean_friction
 from ehlpetsc.gears.standards import bulk_temperatures, loss_factor, values_of
 from ehlpetsc.physics.contact.geometry import LINE
@@ -62,34 +70,19 @@ def at(path, name, values):
     return float(np.interp(path.time[path.index(name)], path.time, values))
 
 
-def test_command_takes_units_as_a_run_does(case, capsys):
-    with_units = {"module": "4.5 mm", "tip_diameter": ["82.5 mm", 0.1184], "torque": "302 Nm"}
-    with_units["speed"] = "2250 rpm"
-    printed = []
-    for path in (case(), case(**with_units)):
-        assert main([str(path), "--no-picture"]) == 0
-        printed.append(capsys.readouterr().out)
-    assert printed[0] == printed[1]
-    assert main([str(case(module="4.5 kg")), "--no-picture"]) == 2
-    assert 'gears.module = "4.5 kg": not a unit' in capsys.readouterr().err
-
-
 TIPS = ("centre_distance", "tip_diameter")
 TEETH, TEETH_BACK = ((16, 24), (82.5e-3, 118.4e-3)), ((24, 16), (118.4e-3, 82.5e-3))
 RING = FZG | {"teeth": [20, 60], "centre_distance": 0.09, "tip_diameter": [99e-3, 261.75e-3]}
 RING["internal"] = True
 
 
-def test_geometry_of_a_ring_is_that_of_khk():
+def test_geometry_of_a_ring_is_that_of_khk_and_its_flanks_roll_as_their_circles():
     """KHK, Gear technical reference, profile-shifted internal gear (its x2 counts outwards)."""
     shifted = {"profile_shift": (0.0, -0.5), "centre_distance": None, "tip_diameter": None}
     pair = GearPair(**RING | shifted | {"module": 3e-3, "teeth": (16, 24)})
     assert math.degrees(pair.working_angle) == pytest.approx(31.0937, abs=1e-4)
     assert 1e3 * pair.centre_distance == pytest.approx(-13.1683, abs=1e-4)
     assert np.multiply(pair.root_diameters, 1e3) == pytest.approx([40.5, -82.5])
-
-
-def test_flanks_of_a_ring_roll_and_slide_as_their_circles():
     path, pair = path_of_contact(RING), GearPair(**RING)
     (rho_1, rho_2), omega = (path.rho, path.rho - pair.line_of_action), pair.angular_speeds
     assert path.radius == pytest.approx(1.0 / (1.0 / rho_1 - 1.0 / rho_2))
@@ -155,18 +148,13 @@ def test_fzg_type_c_has_the_published_angle_ratio_and_load():
     assert path.pressure_angle == pytest.approx(22.439, abs=5e-4)
     assert path.contact_ratio == pytest.approx(1.443, abs=5e-4)
     assert at(path, "C", path.load) == pytest.approx(637.7e3, rel=1e-4)
+    stages = {70.0: 0.795, 98.9: 0.945, 132.5: 1.093, 171.6: 1.245, 215.6: 1.395, 265.1: 1.547}  # FVA 54/7
+    for torque, pressure in stages.items():
+        load = at(path, "C", path.load) * torque / 302.0
+        found = hertz_line(load, at(path, "C", path.radius), STEEL)[1]
+        assert 1e-9 * found == pytest.approx(pressure, rel=1e-2)
     a, p0 = hertz_line(at(path, "C", path.load), at(path, "C", path.radius), STEEL)
     assert a == pytest.approx(0.2452e-3, rel=1e-3) and p0 == pytest.approx(1.656e9, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("torque", "pressure"),
-    [(70.0, 0.795), (98.9, 0.945), (132.5, 1.093), (171.6, 1.245), (215.6, 1.395), (265.1, 1.547)],
-)
-def test_fva_54_7_load_stages_have_published_pressures(torque, pressure):
-    path = path_of_contact(FZG | {"torque": torque})
-    p0 = hertz_line(at(path, "C", path.load), at(path, "C", path.radius), STEEL)[1]
-    assert 1e-9 * p0 == pytest.approx(pressure, rel=1e-2)
 
 
 def test_speeds_are_the_derivatives_of_the_arcs_on_both_flanks():
@@ -175,14 +163,6 @@ def test_speeds_are_the_derivatives_of_the_arcs_on_both_flanks():
         # speeds are linear in time: the trapezoidal rule is exact
         swept = np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(path.time))
         np.testing.assert_allclose(arc[1:], swept, rtol=1e-9)
-
-
-def test_no_sliding_at_the_pitch_point():
-    pair = path_of_contact(FZG).pair
-    u_1, u_2 = pair.speeds(pair.points["C"])
-    omega_1, pitch_radius = pair.angular_speeds[0], 91.5e-3 * 16 / 40
-    assert u_1 == pytest.approx(u_2, rel=1e-14)
-    assert u_1 == pytest.approx(omega_1 * pitch_radius * math.sin(pair.working_angle), rel=1e-14)
 
 
 PITCH_POINT_BEYOND = {  # teeth, shifts, side
@@ -194,7 +174,6 @@ PITCH_POINT_BEYOND = {  # teeth, shifts, side
 
 @pytest.mark.parametrize("pair", PITCH_POINT_BEYOND)
 def test_path_is_from_a_to_e_where_the_pitch_point_lies_beyond_them(pair, tmp_path, capsys, monkeypatch):
-    """The path began or ended at the pitch point, where no teeth touch."""
     monkeypatch.chdir(tmp_path)
     teeth, side = PITCH_POINT_BEYOND[pair]
     gears = {"module": 3e-3, "face_width": 30e-3, "torque": 500.0, "speed": 1000.0} | teeth
@@ -262,7 +241,6 @@ def test_load_that_equilibrium_leaves_at_a(rule, at_a):
 
 
 def test_tip_edge_touches_before_a_where_the_bent_pair_lets_it():
-    """The flank turned until it meets the tip, point by point, has the gap of the closed form."""
     pair = GearPair(**(FZG | {"load_sharing": "stiffness"}))
     (r1, r2), points = pair.base_radii, pair.points
     before, tip = 0.8e-3, 0.5 * pair.tip_diameter[1]
@@ -318,7 +296,6 @@ def test_profile_shift_gives_the_play_free_pair():
 
 
 def test_helical_slice():
-    """Without helix the spur pair; of all slices the loads are the total; radius and overlap by formula."""
     spur, narrow = (
         GearPair(**OWN, profile_shift=(0.0, 0.0), load_sharing="stiffness", helix_angle=b) for b in (0, 1e-6)
     )
@@ -350,6 +327,8 @@ def test_load_over_the_path_of_a_file(case, tmp_path):
     (tmp_path / "tca.csv").write_text("path [mm], load [N/mm]\n4, 300\n-4, 300\n")
     with pytest.raises(CaseError, match="increases"):
         load(case(load_file="tca.csv"))
+    alike = {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.3}
+    assert load(case(), alike).time.travel == load(case()).time.travel > 10.0
 
 
 def rated(*keys):
@@ -496,12 +475,6 @@ def test_thin_tips_undercut_and_loads_that_hardly_fit_are_warned_of(change, part
     assert notes(GearPair(**FZG)) == []
 
 
-def test_one_modulus_for_both_flanks_gives_the_whole_path(case):
-    """The run was one half-width long."""
-    alike = {"contact.youngs_modulus": 206e9, "contact.poisson_ratio": 0.3}
-    assert load(case(), alike).time.travel == load(case()).time.travel > 10.0
-
-
 def test_gears_prints_the_table_and_writes_picture_and_csv(case, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = case(tip_relief=20e-6)
@@ -533,7 +506,6 @@ def write_damage(path):
 
 
 def test_runs_until_bulk_temperatures_are_those_of_the_losses(tmp_path, monkeypatch, capsys):
-    """And pictures of one run, of two side by side, of stages, each with figures of the standards."""
     monkeypatch.chdir(tmp_path)
     keys = ["heat.bulk_temperature=losses", "heat.reference_temperature=363", "surface={}", "time.courant=8"]
     words = [word for key in (*keys, "mesh.points_per_half_width=12") for word in ("--set", key)]
@@ -558,6 +530,12 @@ def test_scalars_are_averaged_over_a_fiftieth_of_the_path():
     k = np.arange(301.0)
     found = GearRun.averaged(SimpleNamespace(rho=k), k**2)[3:-3]  # over three steps either side
     np.testing.assert_allclose(found, k[3:-3] ** 2 + 4.0)
+    x, moved = np.linspace(-3.0, 1.5, 46), np.linspace(0.0, 20.0, 100)
+    s = body_points(x, 0.1, [moved])
+    through = s[passage(s, x, 0.1, moved).complete]
+    assert (through[0], through[-1]) == pytest.approx((-18.5, -3.0))
+    flank = s[passage(s, x, 0.1, moved, (-20.0, 0.0)).complete]
+    assert (flank[0], flank[-1]) == pytest.approx((-20.0, 0.0))
 
 
 def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
@@ -576,10 +554,77 @@ def test_flank_damage_is_indexed_by_arc_length_and_depth(tmp_path):
         FlankDamage(tmp_path / "bad.post.h5", (0.0, 0.0))
 
 
-def test_flank_points_pass_the_contact_over_the_whole_path():
-    x, moved = np.linspace(-3.0, 1.5, 46), np.linspace(0.0, 20.0, 100)
-    s = body_points(x, 0.1, [moved])
-    through = s[passage(s, x, 0.1, moved).complete]
-    assert (through[0], through[-1]) == pytest.approx((-18.5, -3.0))
-    flank = s[passage(s, x, 0.1, moved, (-20.0, 0.0)).complete]
-    assert (flank[0], flank[-1]) == pytest.approx((-20.0, 0.0))
+TALL = {"module": 3e-3, "teeth": (32, 48), "profile_shift": (0.0, 0.0), "addendum": 1.3}
+TALL |= {"face_width": 14e-3, "torque": 30.0, "speed": 2250.0}
+OLD = TALL | {"pressure_angle": 14.5, "addendum": 1.0, "tip_clearance": 0.157}
+
+
+def ratio_by_tip_angles(pair):
+    """Contact ratio of pairs without shift: z (tan of the tip's angle - tan alpha)/(2 pi), summed."""
+    cosine, tangent = math.cos(pair.working_angle), math.tan(pair.working_angle)
+    tips = [math.acos(z / (z + 2.0 * pair.addendum) * cosine) for z in pair.teeth]
+    return sum(z * (math.tan(tip) - tangent) for z, tip in zip(pair.teeth, tips, strict=True)) / (2 * math.pi)
+
+
+@pytest.mark.parametrize("keys", [TALL, OLD | {"teeth": (36, 60)}])
+def test_three_pairs_share_the_load_by_their_stiffness(keys):
+    path = path_of_contact(keys)
+    pair = path.pair
+    assert (
+        path.contact_ratio == pytest.approx(ratio_by_tip_angles(pair), rel=1e-12) and path.contact_ratio > 2
+    )
+    assert (pair.fewest_pairs, pair.rule) == (2, "stiffness")
+    points, pitch = pair.points, pair.base_pitch
+    assert points["B"] < points["D"]
+    rho = np.linspace(points["A"], points["A"] + pitch, 101)
+    np.testing.assert_allclose(sum(share(pair, rho + k * pitch) for k in range(-1, 4)), 1.0, rtol=1e-12)
+    middle = 0.5 * (points["A"] + points["E"])
+    xi = 0.5 + np.array([-1, 0, 1]) / pair.contact_ratio
+    k = END_STIFFNESS + 4 * (1 - END_STIFFNESS) * xi * (1 - xi)
+    np.testing.assert_allclose(share(pair, middle + pitch * np.arange(-1, 2)), k / k.sum(), rtol=1e-9)
+
+
+def test_relief_losses_and_undercut_of_tall_teeth():
+    pair = GearPair(**TALL | {"tip_relief": 20e-6})
+    at = np.array([pair.points["A"], pair.points["B"], pair.points["D"], pair.points["E"]])
+    loads = share(pair, at)
+    assert pair.rule == "tip-relief" and loads[0] == loads[3] == 0.0
+    assert loads[1:3] == pytest.approx(0.5, rel=1e-9)  # of equal pairs, a third one just unloaded
+    pair = GearPair(**TALL)
+    points, pitch = pair.points, pair.base_pitch
+    rho = np.linspace(points["A"], points["E"], 400_001)
+    pairs = np.floor((rho - points["A"]) / pitch) + np.floor((points["E"] - rho) / pitch) + 1
+    sliding = np.abs(rho - points["C"]) * sum(pair.angular_speeds) / pair.base_speed
+    expected = (sliding / pairs).mean() * pair.contact_ratio
+    assert set(pairs) == {2, 3} and loss_factor(pair) == pytest.approx(expected, rel=1e-4)
+    assert gear_loss_factor(path_of_contact(TALL)) == pytest.approx(expected, rel=0.15)
+    assert notes(GearPair(**OLD | {"teeth": (32, 48)})) == []
+    (note,) = notes(GearPair(**OLD | {"teeth": (31, 48)}))
+    assert "profile_shift = 0 of the pinion: a rack undercuts its teeth below 0.028" in note
+
+
+@pytest.mark.parametrize(
+    ("change", "parts"),
+    [
+        ({"load_sharing": "thirds"}, ['"thirds": of contact ratios below 2, here 2.149; ', '"stiffness"']),
+        ({"addendum": 2.0, "teeth": (90, 120)}, ["contact ratio 3.", "allowed: 1 to 3"]),
+    ],
+)
+def test_other_sharings_of_tall_teeth_are_refused_in_one_sentence(change, parts):
+    assert is_line_with(one_fault(path_of_contact, TALL | change), *parts)
+
+
+def test_a_crowned_section_is_a_point_contact(tmp_path, capsys):
+    (tmp_path / "g.toml").write_text(template("gears"))
+    words = [str(tmp_path / "g.toml"), "--crowned", "C"]
+    assert main([*words, "0.02 mm"]) == 0
+    (tmp_path / "c.toml").write_text(capsys.readouterr().out)
+    case = load(tmp_path / "c.toml")
+    path = path_of_contact(load(tmp_path / "g.toml").gears.pair)
+    assert case.kind == "point" and case.time is None and case.motion.slide_roll_ratio == 0.0
+    assert case.contact.load == pytest.approx(path.load[path.index("C")] * 14e-3, rel=1e-5)
+    assert case.contact.radius == pytest.approx(path.radius[path.index("C")], rel=1e-5)
+    assert case.contact.radius_across == pytest.approx(14e-3**2 / (8 * 20e-6), rel=1e-5)
+    for depth, message in (("5 um", "the ellipse is 23.3 mm wide, the face 14 mm"), ("soon", 'as "10 um"')):
+        assert main([*words, depth]) == 2
+        assert is_line_with(capsys.readouterr().err, message)

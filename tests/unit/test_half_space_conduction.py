@@ -52,7 +52,6 @@ def test_moving_band(peclet):
 
 @pytest.mark.parametrize("peclet", [1.0, 10.0, 100.0])
 def test_moving_flux_in_time(peclet):
-    """Steps through a body that is cold at first arrive at Jaeger's integral of the same flux."""
     half, nodes = 1e-4, 301
     dx, speed = half / 50, 2.0 * STEEL.diffusivity * peclet / half
     x = dx * np.arange(-(nodes // 2), nodes // 2 + 1)
@@ -68,15 +67,6 @@ def test_moving_flux_in_time(peclet):
     begun = one.record(flux, one.steady(flux, speed)[1])
     moved = one.advance(begun, 0.5 * dx, 0.5 * dx / speed, speed)
     np.testing.assert_allclose(moved.history + moved.response * flux, exact, atol=0.01 * exact.max())
-
-
-def test_heat_is_advected_from_upstream():
-    dx, nodes, speed = 2e-6, 101, 5.0
-    flux = np.zeros(nodes)
-    flux[50] = FLUX
-    forward, backward = (body(abs(u), dx, nodes).steady(flux, u)[0] for u in (speed, -speed))
-    np.testing.assert_allclose(forward, backward[::-1], rtol=1e-12)
-    assert forward[60] > 50.0 * forward[40]
 
 
 @pytest.mark.parametrize("ratio", [0.1, 2.0, 400.0])
@@ -106,7 +96,6 @@ def test_a_sinusoid_along_the_surface(ratio):
 
 
 def test_shifted_distance_origin_moves_no_heat():
-    """Before time 0 a run counts distances anew."""
     dx, speed = 2e-6, 5.0
     one, flux = body(speed, dx, 60), np.full(60, FLUX)
     begun = one.record(flux, one.steady(flux, speed)[1])

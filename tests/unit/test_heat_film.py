@@ -154,7 +154,6 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
 
 
 def test_exchange_is_continuous():
-    """From oil colder than both surfaces to oil warmer than both, the fluxes have no steps."""
     a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
     law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
     fluxes = [
@@ -163,15 +162,6 @@ def test_exchange_is_continuous():
     steps = np.diff(np.array(fluxes), axis=0)
     assert (steps > -1e-3).all()
     assert steps.max() < 12.0 * 0.14 / 1e-6 * 0.05
-
-
-def test_heat_of_a_film_that_closes():
-    """Below the thinnest film the heat of shear no longer grows."""
-    law = LAW._replace(thinnest=1e-9)
-    thin, thinner, closed = (solved(h=h, law=law) for h in (1e-9, 1e-12, 0.0))
-    assert thinner[0] == pytest.approx(closed[0], abs=1e-3)
-    assert closed[5] == pytest.approx(thin[5], rel=0.01)
-    assert solved(h=0.0)[5] == 0.0
 
 
 @pytest.mark.parametrize("sliding", [1e-17, 1e-9, 12.5])
@@ -192,12 +182,17 @@ def test_the_temperature_does_not_depend_on_the_guess(guess):
         assert solved(law=law, guess=guess)[0] == pytest.approx(solved(law=law)[0], abs=2e-5)
 
 
-def test_surfaces_in_contact_have_one_temperature():
+def test_surfaces_in_contact_have_one_temperature_and_no_heat_of_shear():
     t, _, _, q1, q2, shear, *_ = solved(h=0.0, left=1.0)
     walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:4], (q1, q2), strict=True)]
     assert walls[0] == pytest.approx(walls[1], abs=1e-9)
     assert t == pytest.approx(walls[0], abs=1e-9)
     assert shear == 0.0
+    law = LAW._replace(thinnest=1e-9)
+    thin, thinner, closed = (solved(h=h, law=law) for h in (1e-9, 1e-12, 0.0))
+    assert thinner[0] == pytest.approx(closed[0], abs=1e-3)
+    assert closed[5] == pytest.approx(thin[5], rel=0.01)
+    assert solved(h=0.0)[5] == 0.0
 
 
 def state(n):
@@ -350,8 +345,5 @@ def test_a_block_has_no_new_extremes_and_loses_no_heat():
     assert imbalance < 1e-12
     assert end[-1] < 1e-3  # nothing has left
     assert end.sum() == pytest.approx(begin.sum(), rel=1e-3)
-
-
-def test_both_ways_are_mirror_images():
     there, back = carried(block, 100)[1], carried(block, 100, way=-1.0)[1]
     np.testing.assert_allclose(back[::-1], there, atol=1e-9)

@@ -1,4 +1,4 @@
-"""Imports go one way: which room may import which, read from the source, also inside functions."""
+"""Which room imports which, read from the source; objects change themselves alone; what a scene loads."""
 
 import ast
 import re
@@ -7,8 +7,11 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
+from support import CASES
+from support.running import PYTHON, called
 
 from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.compiled import drop_stale_code
 
 PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {"base"}  # every room may import it; it imports no room
@@ -120,12 +123,6 @@ def reached(module):
     return seen
 
 
-def test_package_table_is_complete_and_acyclic():
-    assert set(MAY_IMPORT) == {room(module) for module in FILES} - {"ehlpetsc"}
-    assert all(below <= set(MAY_IMPORT) for below in MAY_IMPORT.values())
-    tuple(TopologicalSorter(MAY_IMPORT).static_order())
-
-
 @pytest.mark.parametrize("name", sorted(MAY_IMPORT))
 def test_packages_import_allowed_packages_only(name):
     allowed = MAY_IMPORT[name] | {name} | (GROUND if name not in GROUND else set())
@@ -139,11 +136,16 @@ def test_packages_import_allowed_packages_only(name):
     assert wrong == []
 
 
-def test_no_mutual_imports():
+def test_table_of_rooms_is_complete_and_imports_are_acyclic():
     try:
         tuple(TopologicalSorter({module: named(module) for module in FILES}).static_order())
     except CycleError as error:
         pytest.fail(" -> ".join(error.args[1]))
+    assert set(MAY_IMPORT) == {room(module) for module in FILES} - {"ehlpetsc"}
+    assert all(below <= set(MAY_IMPORT) for below in MAY_IMPORT.values())
+    tuple(TopologicalSorter(MAY_IMPORT).static_order())
+    unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
+    assert unknown == set()
 
 
 @pytest.mark.parametrize("library", sorted(LIBRARIES))
@@ -172,11 +174,6 @@ def test_parts_of_a_kind_of_contact_exist(kind):
     assert len(parts) == 3 + (kind == "line")
     for module, name in (part.split(":") for part in parts):
         assert defines(FILES[f"ehlpetsc.{module}"].read_text(encoding="utf-8"), name), f"{module}:{name}"
-
-
-def test_imported_names_exist():
-    unknown = {f"{m}: {name}" for m in FILES for name in ours(m) if name not in FILES}
-    assert unknown == set()
 
 
 ROLE = re.compile(r":(?:mod|func|class|meth|attr|data):`~?([^`]+)`")
@@ -209,3 +206,95 @@ def test_references_in_docstrings_exist():
     assert [(target, m) for target, m in named if not exists(target, m)] == []
     assert not exists(".band.BandEntries", "ehlpetsc.discretisation.contact.model")
     assert not exists("ehlpetsc.effects.heat.half_space_conduction", "ehlpetsc.effects.heat.effect")
+
+
+FOREIGN = {"sys"}  # a module with settings of its own
+LIBRARY = {"swmr_mode", "writeable", "initialize"}  # settings of h5py, numpy and mpi4py
+
+
+def foreign_assignments(source):
+    """Line and text of every assignment to an attribute of an object that the function does not make."""
+    found = []
+    for function in ast.walk(ast.parse(source)):
+        if not isinstance(function, ast.FunctionDef | ast.Module):
+            continue
+        body = list(_own_nodes(function))
+        made = {"self", "cls"} | {name for node in body for name in _made_here(node)}
+        for node in body:
+            if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+                root = node.value
+                while isinstance(root, ast.Attribute | ast.Call):
+                    root = root.value if isinstance(root, ast.Attribute) else root.func
+                name = root.id if isinstance(root, ast.Name) else ast.unparse(root)
+                direct = isinstance(node.value, ast.Name) and name in made
+                if not direct and name not in FOREIGN and node.attr not in LIBRARY:
+                    found.append((node.lineno, ast.unparse(node)))
+    return found
+
+
+def _own_nodes(function):
+    for node in ast.iter_child_nodes(function):
+        if not isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node
+            yield from _own_nodes(node)
+
+
+def _made_here(node):
+    """Names bound to what a constructor, or a copy, gives."""
+    if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+        called = ast.unparse(node.value.func).rpartition(".")[2]
+        if called[:1].isupper() or called in ("copy", "cls"):
+            yield from (target.id for target in node.targets if isinstance(target, ast.Name))
+
+
+def test_no_attribute_of_another_object_is_set():
+    found = {path: foreign_assignments(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
+    assert {path: lines for path, lines in found.items() if lines} == {}
+
+
+MAX_MODULES = 109
+CODE = """
+import sys
+from ehlpetsc.__main__ import main
+status = main(sys.argv[1:])
+print(status, *sorted(name for name in sys.modules if name.startswith("ehlpetsc")), sep="\\n")
+"""
+
+
+def test_smooth_dry_contact_loads_few_modules(tmp_path):
+    words = [CASES / "dry_hertz.toml", "--set", "mesh.points_per_half_width=20"]
+    done = called([PYTHON, "-c", CODE, *words], tmp_path)
+    status, *modules = done.stdout[done.stdout.rindex("wall=") :].split("\n")[1:-1]
+    assert status == "0", done.stderr
+    assert len(modules) <= MAX_MODULES
+    rooms = {name.split(".")[1] for name in modules if "." in name}
+    assert not rooms & {"post", "life", "analysis", "pictures"}
+    unneeded = {"series", "passes", "explain", "gauss_seidel", "mixed", "synthetic", "path"}
+    assert not {name.rpartition(".")[2] for name in modules} & unneeded
+
+
+def compiled_code_of(package, name):
+    kept = package / "room" / "__pycache__" / f"{name}.f-1.nbi"
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    kept.write_bytes(b"code")
+    return kept
+
+
+def test_compiled_code_of_changed_imported_and_moved_sources_is_removed(tmp_path):
+    package = tmp_path / "package"
+    room = package / "room"
+    law, other = compiled_code_of(package, "law"), compiled_code_of(package, "other")
+    (room / "base.py").write_text("C = 1\n")
+    (room / "law.py").write_text("from package.room.base import C\ndef f(): return C\n")
+    (room / "other.py").write_text("def f(): return 1\n")
+    drop_stale_code(package)
+    assert not law.exists() and not other.exists()  # of unknown sources
+    law, other = compiled_code_of(package, "law"), compiled_code_of(package, "other")
+    drop_stale_code(package)
+    assert law.exists() and other.exists()
+    (room / "base.py").write_text("C = 25\n")  # imported by law alone
+    drop_stale_code(package)
+    assert not law.exists() and other.exists()
+    (room / "other.py").rename(room / "moved.py")
+    drop_stale_code(package)
+    assert not other.exists()

@@ -1,4 +1,4 @@
-"""The Jacobian against differences of the residual; orthonormal vectors of the Krylov method."""
+"""The Jacobian against differences of the residual; vectors of the Krylov method; block LU."""
 
 from dataclasses import dataclass
 
@@ -15,6 +15,19 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.line.curvature_product import BLOCK
 from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
+from ehlpetsc.nonlinear.line.banded_jacobian import FILMS, GROUP, TERMS
+from ehlpetsc.nonlinear.line.block_lu import (
+    FROM_LEFT,
+    FROM_RIGHT,
+    LEFT,
+    RIGHT,
+    ROW_WIDTH,
+    SIZE,
+    STRIDE,
+    BlockLU,
+    backward_transposed,
+    forward,
+)
 from ehlpetsc.nonlinear.line.exchange import LINEAR_TOLERANCE, collective
 from ehlpetsc.nonlinear.line.gmres import MAX_IT, orthonormalise
 from ehlpetsc.nonlinear.line.jacobian import PIVOT_REGULARISATION, JacobianOperator, NearFieldMatrix
@@ -168,15 +181,15 @@ def test_restricted_operator_is_a_block_of_the_jacobian(name):
     np.testing.assert_array_equal(context.inactive_nodes, at.touching)
 
 
-SIZE, VECTORS = 300, 4
+LENGTH, VECTORS = 300, 4
 
 
 @pytest.mark.parametrize("left", [1.0, 1e-3, 1e-6, 1e-10, 1e-13])
 def test_krylov_remainder_is_orthonormal_with_exact_norm(left):
     """A preconditioner that is nearly exact leaves little; by differences alone 1e-8 would be rounding."""
     rng = np.random.default_rng(1)
-    basis = np.linalg.qr(rng.standard_normal((SIZE, VECTORS + 1)))[0].T
-    v, products = np.zeros((MAX_IT + 1, SIZE)), rng.standard_normal(VECTORS)
+    basis = np.linalg.qr(rng.standard_normal((LENGTH, VECTORS + 1)))[0].T
+    v, products = np.zeros((MAX_IT + 1, LENGTH)), rng.standard_normal(VECTORS)
     v[:VECTORS], v[VECTORS] = basis[:-1], products @ basis[:-1] + left * basis[-1]
     column, sums = np.zeros(MAX_IT + 1), np.zeros((1, MAX_IT + 2))
     norm = orthonormalise(v, VECTORS, column, sums, 0, collective(PETSc.COMM_SELF.tompi4py()))
@@ -189,7 +202,74 @@ def test_krylov_remainder_is_orthonormal_with_exact_norm(left):
 
 @pytest.mark.parametrize("value", [0.0, np.nan])
 def test_zero_and_nan_remainders(value):
-    v, sums = np.zeros((MAX_IT + 1, SIZE)), np.zeros((1, MAX_IT + 2))
+    v, sums = np.zeros((MAX_IT + 1, LENGTH)), np.zeros((1, MAX_IT + 2))
     v[0, 0], v[1] = 1.0, value
     norm = orthonormalise(v, 1, np.zeros(MAX_IT + 1), sums, 0, collective(PETSc.COMM_SELF.tompi4py()))
     np.testing.assert_equal(norm, value)
+
+
+def by_columns(rows):
+    columns = np.zeros((len(rows), ROW_WIDTH, STRIDE))
+    columns[:, :, :SIZE] = rows.transpose(0, 2, 1)
+    return columns
+
+
+def solved(lu, b, first=0):
+    """Solution for `b` (groups, SIZE); what stands in the room behind them must not matter."""
+    room = np.full((len(b), STRIDE), 7.0)
+    room[:first], room[:, :SIZE] = 0.0, b
+    lu.solve(room.ravel(), first)
+    return room[:, :SIZE]
+
+
+def dense(rows):
+    groups = len(rows)
+    matrix = np.zeros((groups * SIZE, (groups + 2) * SIZE))
+    for i, row in enumerate(rows):
+        here, before, behind = (np.arange(SIZE) + (i + k) * SIZE for k in (1, 0, 2))
+        at = np.concatenate([before[FROM_LEFT:], here, behind[FROM_RIGHT : FROM_RIGHT + RIGHT]])
+        matrix[i * SIZE : (i + 1) * SIZE, at] = row
+    return matrix[:, SIZE:-SIZE]
+
+
+def test_sizes_of_blocks_and_finite_solutions_of_singular_ones():
+    assert SIZE == TERMS + 2 * GROUP
+    assert LEFT == TERMS + GROUP + 2  # sums, pressures and, upwind, two films
+    assert RIGHT == LEFT and FROM_RIGHT == SIZE - FROM_LEFT - RIGHT  # the same from the right end
+    assert len(FILMS) == GROUP
+    assert STRIDE == 12 >= SIZE  # what take_off takes off
+    rows = np.random.default_rng(3).standard_normal((4, SIZE, ROW_WIDTH))
+    rows[2, 5] = 0.0
+    rows[1, :, LEFT + 4] = 0.0
+    rows[0, :, LEFT + SIZE + 4 - FROM_RIGHT] = rows[2, :, 4 - FROM_LEFT] = 0.0
+    lu, b = BlockLU(4), np.ones((4, SIZE))
+    lu.factor(by_columns(rows))
+    assert np.isfinite(solved(lu, b)).all()
+
+
+@pytest.mark.parametrize("groups", [1, 2, 30])
+@pytest.mark.parametrize("sparse", [False, True])
+def test_block_lu_solves(groups, sparse):
+    """Without dominance of the diagonal, so that rows are exchanged; `sparse`: with zeros there too."""
+    rng = np.random.default_rng(groups)
+    rows = rng.standard_normal((groups, SIZE, ROW_WIDTH))
+    if sparse:
+        rows[rng.random(rows.shape) < 0.6] = 0.0
+        rows[:, np.arange(SIZE), LEFT + (np.arange(SIZE) + 1) % SIZE] = 3.0
+    lu, matrix = BlockLU(groups), dense(rows)
+    lu.factor(by_columns(rng.standard_normal(rows.shape)))  # what it leaves must not matter
+    lu.factor(by_columns(rows))
+    for first in {0, groups // 2, groups - 1}:
+        b = rng.standard_normal((groups, SIZE))
+        b[:first] = 0.0
+        expected = np.linalg.solve(matrix, b.ravel())
+        found = solved(lu, b, first)
+        solution, coefficients = np.zeros((2, groups, STRIDE))
+        solution[:, :SIZE], coefficients[:, :SIZE] = b, rng.standard_normal(b.shape)
+        forward(lu.factors, solution.ravel(), first)
+        product = (coefficients[:, :SIZE] * found).sum()
+        rows = np.stack([coefficients.ravel(), 2.0 * coefficients.ravel(), -coefficients.ravel()])
+        backward_transposed(lu.factors[2], rows)  # the same sums over what is not substituted yet
+        expected_sums = pytest.approx(np.array([1.0, 2.0, -1.0]) * product, rel=1e-6, abs=1e-6)
+        assert rows @ solution.ravel() == expected_sums
+        np.testing.assert_allclose(found.ravel(), expected, rtol=0, atol=1e-8 * np.abs(expected).max())

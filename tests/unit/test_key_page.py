@@ -20,16 +20,10 @@ sys.path.append(str(ROOT / ".github" / "site"))
 import key_page
 
 
-def test_key_page_equals_the_table():
+def test_key_page_equals_the_table_and_lists_every_key_of_the_cases():
     assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == key_page.page()
-
-
-def test_equations_are_typeset():
     tex = key_page.tex("p_c <= beta E* exp(-h_a/sigma)^(1/n')")
     assert tex == r"p_c \le \beta E^{\ast} \exp(-h_a/\sigma)^{1/n'}"
-
-
-def test_every_key_of_the_cases_is_listed():
     listed = keys()
     for path in (ROOT / "cases").glob("*.toml"):
         text = path.read_text(encoding="utf-8").partition("[petsc]")[0]
@@ -41,6 +35,8 @@ def test_every_key_of_the_cases_is_listed():
     ("name", "words"),
     [
         ("contact.load", "load: load per length of contact, w, .*; a number >= 0.001"),
+        ("contact.load", "of a point contact its load [N]"),
+        ("output", "RESULT.xdmf"),
         ("fluid.viscosity", "required without grade"),
         ("asperity_height", 'contact.asperity_height: rms .* needs contact.model = "mixed"'),
         ("density", "fluid.grade.density: .*\n *heat.density: "),

@@ -88,26 +88,6 @@ def _both(viscosity, density, p, T):
     return laws.ln_viscosity(viscosity, p, T), laws.relative_density(density, p)
 
 
-@pytest.mark.parametrize("law, density", [("barus", "incompressible"), ("roelands", "dowson-higginson")])
-def test_compiled_loops_get_the_law_of_the_case(law, density):
-    fluid, p = oil(law=law, density=density), 1.1e9
-    viscosity = laws.viscosity_law(fluid)
-    found = _both(tuple(viscosity), tuple(laws.density_law(fluid)), p, viscosity.temperature)
-    assert found[0][:2] == pytest.approx(laws.viscosity(p, fluid), rel=1e-14)
-    assert found[1] == pytest.approx(laws.density(p, fluid), rel=1e-14)
-
-
-def test_walther_law_at_data_sheet_and_iso_vg_220():
-    a, b = WALTHER_CONSTANTS
-    assert viscosity_laws.walther(313.15, a, b)[0] == pytest.approx(220.0, rel=1e-12)
-    assert viscosity_laws.walther(373.15, a, b)[0] == pytest.approx(19.0, rel=1e-12)
-    assert 50.0 < viscosity_laws.walther(343.15, a, b)[0] < 60.0  # VI 97: charts show about 54 mm^2/s
-
-
-def test_gold_of_a_mineral_oil():
-    assert viscosity_laws.gold_pressure_viscosity(20.0) == pytest.approx(15.02e-9, rel=1e-3)
-
-
 def test_yasutomi_by_the_equation_in_degrees_celsius():
     """lg(eta/1e12) = -C1 (T - Tg) F/(C2 + (T - Tg) F), values [Pa s] of a second program."""
     p, celsius = np.array([1e5, 1e8, 3.5e8, 6e8]), np.array([20.0, 40.0, 80.0, 100.0])
@@ -153,10 +133,16 @@ def test_modulus_law_by_the_equation_of_its_source(heat):
     np.testing.assert_allclose(1e3 * case.fluid.viscosity * np.exp(found), expected, rtol=1e-9)
 
 
-def test_compiled_loops_get_the_modulus_law():
-    fluid, p = of_oil("pao100").fluid, 1.1e9
-    found = _both(tuple(laws.viscosity_law(fluid)), tuple(laws.density_law(fluid)), p, 313.15)
+@pytest.mark.parametrize(
+    "fluid",
+    [oil(law="barus", density="incompressible"), oil(), of_oil("pao100").fluid],
+    ids=lambda oil: oil.law,
+)
+def test_compiled_loops_get_the_law_of_the_case(fluid):
+    viscosity, p = laws.viscosity_law(fluid), 1.1e9
+    found = _both(tuple(viscosity), tuple(laws.density_law(fluid)), p, viscosity.temperature)
     assert found[0][:2] == pytest.approx(laws.viscosity(p, fluid), rel=1e-14)
+    assert found[1] == pytest.approx(laws.density(p, fluid), rel=1e-14)
 
 
 def test_eyring_stress_of_bair_and_winer():
@@ -168,10 +154,6 @@ def test_eyring_stress_of_bair_and_winer():
     under_pressure = fluid.eyring_stress * (1.0 + 1e9 * fluid.eyring_stress_pressure)
     assert under_pressure == pytest.approx(2.0 * 0.047 / secant, rel=1e-12)
     assert under_pressure == pytest.approx(7.19e6, rel=2e-3)
-
-
-def test_another_stress_of_a_measured_oil_grows_with_pressure_as_its_own():
-    """The growth was dropped: 1.3 times the stress lowered the friction by 8 %."""
     stress = of_oil("m100").fluid.eyring_stress
     own = of_oil("m100", **{"fluid.eyring_stress": 1.3 * stress}).fluid
     assert own.eyring_stress == 1.3 * stress
@@ -312,27 +294,19 @@ def test_viscosity_of_a_grade(celsius, nu):
     given = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"fluid.temperature": 350.0, "fluid.roelands_z": 0.55})
     nu = given.fluid.viscosity / 880e-6
     assert laws.viscosity(2e8, given.fluid)[0] == pytest.approx(2e8 * 9.904e-9 * nu**0.139, rel=1e-10)
+    assert 50.0 < viscosity_laws.walther(343.15, *WALTHER_CONSTANTS)[0] < 60.0  # charts: about 54 mm^2/s
     barus = load(CASE, GRADE | LEFT_OUT | BARUS | {"fluid.temperature": celsius + 273.15})
     assert barus.fluid.pressure_viscosity == pytest.approx(secant, rel=1e-10)
 
 
-def test_keys_of_the_case_override_the_grade():
+def test_grade_sets_the_thermal_law_and_keys_of_the_case_override_it():
     case = load(CASE, GRADE | {"fluid.temperature": 333.15})
     assert case.fluid.viscosity == 0.005 and case.fluid.pressure_viscosity == 11.1e-9
-
-
-def test_grade_sets_the_thermal_law():
     case = load(CASE, GRADE | LEFT_OUT | ROELANDS | {"heat.bulk_temperature": 373.15})
     assert case.fluid.viscosity == pytest.approx(880.0 * 19e-6, rel=1e-10)
     assert case.heat.oil_density == 880.0
     kind, _, _, reference = laws.temperature_constants(case.fluid, case.heat)
     assert kind == viscosity_laws.WALTHER and reference == 373.15
-
-
-def test_faulty_temperature_of_a_grade_is_the_only_fault():
-    """The viscosity, which then does not follow, was reported as well."""
-    fault = one_fault(load, CASE, GRADE | LEFT_OUT | {"fluid.temperature": 80})
-    assert "fluid.temperature = 80: " in fault and fault.endswith('; "80 degC"?')
 
 
 def test_named_oil_has_the_viscosities_of_its_class():
@@ -352,6 +326,8 @@ def test_faults():
         load(CASE, {"fluid.temperature": 350.0})  # would move the temperature of a viscosity that is given
     with pytest.raises(CaseError, match="v100"):
         load(CASE, {"fluid.grade": {"v40": 19e-6, "v100": 220e-6, "density": 880.0}})
+    fault = one_fault(load, CASE, GRADE | LEFT_OUT | {"fluid.temperature": 80})
+    assert "fluid.temperature = 80: " in fault and fault.endswith('; "80 degC"?')
 
 
 DOOLITTLE = {"law": "doolittle", "viscosity": 0.0156, **SQUALANE}
@@ -394,7 +370,6 @@ def test_film_of_doolittles_law_with_heat():
 
 @pytest.mark.parametrize("heat", [{}, {"heat.bulk_temperature": 313.15}], ids=["isothermal", "with heat"])
 def test_film_of_carreaus_law(heat):
-    """Newtonian for a high stress of the law; thinner for a low one."""
     newton, films = {"pressure_viscosity": None} | YASUTOMI_NEWTON, []
     for stress in (None, 1e12, 1e5):
         exponent = None if stress is None else 0.6

@@ -60,7 +60,6 @@ def test_jump_ends_where_wear_exposes_failed_cells(worn):
 
 
 def test_round_has_a_position_for_each_partner_and_the_largest_pressure():
-    """No more positions than the wheel has partners of a tooth."""
     gears = SimpleNamespace(pair=SimpleNamespace(partners=24))
     for partners, pair, positions in ((30, gears, 24), (3, gears, 3), (30, None, 30)):
         life, time = SimpleNamespace(partners=partners), SimpleNamespace(pass_shift=1e-5)
@@ -75,10 +74,6 @@ def test_passes_to_reach_a_sum(slope):
     assert laws.sum_over(laws.passes_to(0.7, 0.05, slope), 0.05, slope) == pytest.approx(0.7, rel=1e-13)
 
 
-def test_sum_below_the_amount_is_never_reached():
-    assert laws.passes_to(0.7, 0.0, 0.0) == np.inf and laws.passes_to(0.7, 0.05, -2e-3) == np.inf
-
-
 def test_rates_are_extrapolated_without_change_of_sign():
     rates = Rates(np.array([3.0, 1.0, 1.0]), np.zeros((1, 3)), 2.0)
     found = rates.continued((np.array([2.0, 0.9, 9.0]), np.zeros((1, 3)), 2.0), 10, column_area=0.1)
@@ -86,6 +81,7 @@ def test_rates_are_extrapolated_without_change_of_sign():
     assert found.after(20)[0] == pytest.approx([80.0, 22.0, 10.0])
     beyond = 20 * 1.5 + 200 * (1.5 - 0.81) / 10  # the columns
     assert found.after(20)[2] == pytest.approx(0.1 * 112.0 + beyond)
+    assert laws.passes_to(0.7, 0.0, 0.0) == np.inf and laws.passes_to(0.7, 0.05, -2e-3) == np.inf
 
 
 def test_wear_and_damage_converge_at_second_order():
@@ -129,27 +125,21 @@ def test_first_pit_is_independent_of_the_allowed_jump():
     assert bodies[0].failed[0, -1] == pytest.approx(np.exp(0.1) / 8e-5, rel=1e-12)
 
 
-def test_cells_reach_the_depth_and_grow_with_it():
+def test_cells_reach_the_depth_recede_with_the_surface_and_take_damage_between_depths():
     edges = laws.cell_edges(0.5, 100.0)
     assert edges[0] == 0.0 and edges[-1] >= 100.0 > edges[-2]
     assert np.diff(edges)[: laws.FINE_CELLS] == pytest.approx(0.5)
     assert np.diff(edges)[-1] / np.diff(edges)[-2] == pytest.approx(laws.CELL_GROWTH)
-
-
-def test_receding_surface_consumes_cells():
     depths = laws.cell_depths(EDGES, np.array([0.0, 0.5, 1.0, 3.0]))
     expected = [[0.5, 0.25, np.nan, np.nan], [1.5, 1.0, 0.5, np.nan], [3.0, 2.5, 2.0, 0.5]]
     assert depths == pytest.approx(np.array(expected), nan_ok=True)
-
-
-def test_damage_between_depths_is_exponential():
     depths, damage = np.array([0.0, 1.0, 3.0]), np.array([[1e-4], [1e-2], [0.0]])
     at = np.array([[0.0], [0.5], [1.0], [2.0], [3.0], [3.1], [np.nan]])
     found = laws.damage_at(depths, damage, at)
     assert found[:, 0] == pytest.approx([1e-4, 1e-3, 1e-2, 5e-3, 0.0, 0.0, 0.0], rel=1e-12)
 
 
-def test_failed_cells_break_out_if_connected_to_the_surface():
+def test_failed_cells_break_out_if_connected_to_the_surface_or_with_all_above():
     damage = np.zeros((3, 5))
     damage[0, 1] = damage[1, 1] = damage[1, 2] = 1.0  # at the surface, and beside it below
     damage[2, 4] = 1.0  # inside the body
@@ -164,9 +154,6 @@ def test_failed_cells_break_out_if_connected_to_the_surface():
     assert laws.broken_out(damage, EDGES, np.zeros(5), "connected").tolist() == [0.0, 2.0, 2.0, 1.0, 0.0]
     pitted = body(4)._replace(is_pitted=np.array([True, True, False, True]))
     assert pitted.pits == 2
-
-
-def test_failed_cell_breaks_out_with_all_cells_above_it():
     damage = np.zeros((3, 4))
     damage[1, 1] = damage[2, 2] = 1.0  # inside the body
     damage[2, 1], damage[1, 3] = 0.96, 0.97  # weakened: below a failed cell, and alone
@@ -233,34 +220,26 @@ def test_surfaces_outside_the_computed_length_have_mean_wear():
     assert field.means(faces) == pytest.approx([3.5, 2.0, 3.0, 4.0, 5.0, 3.5])
     pitted = one._replace(pit=np.where(np.arange(8) == 4, 9.0, 0.0)).gap_field((2.0, 5.0), (-3.0, 12.0))
     assert pitted.means(faces) == pytest.approx([3.5, 2.0, 3.0, 13.0, 5.0, 3.5]), "a pit makes no step there"
-
-
-def test_columns_within_a_stretch_reach_a_quarter_of_a_column_further():
     one = body()._replace(s=1e-5 * np.arange(8.0))
     assert np.flatnonzero(one.columns_within((2.2e-5, 4.8e-5))).tolist() == [2, 3, 4, 5]
     assert np.flatnonzero(one.columns_within((2.3e-5, 4.7e-5))).tolist() == [3, 4]
     assert one.faces() == pytest.approx(1e-5 * (np.arange(9.0) - 0.5))
 
 
-def test_body_field_grows_by_added_cells_only():
-    field = BodyField.zero(1.0).add(np.array([0.0, 1.0, 2.0]), np.ones(2))
-    assert (field.spacing, field.first, len(field.depth)) == (0.25, -1, 10)
-    assert len(field.add(np.array([0.0, 2.0]), np.ones(1)).depth) == 10
-    wider = field.add(np.array([3.0, 4.0]), np.ones(1))
-    assert (wider.first, len(wider.depth), wider.volume) == (-1, 18, pytest.approx(3.0))
-    assert wider.means(np.arange(5.0)) == pytest.approx([1.0, 1.0, 0.0, 1.0])
-
-
 def test_life_file_round_trip(tmp_path):
     life, path = LifeHistory("text", "title"), tmp_path / "a.life.h5"
+    strip = LifeBody.new(np.arange(5.0), np.ones((3, 5)), EDGES, np.arange(3.0))
     for passes in (10, 30):
-        life.add({"passes": passes, "jump": 10, "friction": 0.1}, (body(), body(5)), {"x.depth": np.ones(2)})
+        plastic = {"depth": np.arange(3.0 * (passes - 10)).reshape(3, -1), "first": passes}  # none at first
+        bodies = body(), strip._replace(volume=1.0 + passes)
+        life.add({"passes": passes, "jump": 10, "friction": 0.1}, bodies, plastic)
     save_life(life, path)
     found = read_life(path)
     assert found.rows == life.rows and found.done == 30 and found.case == "text"
     for one, other in zip(found.bodies[1], life.bodies[1], strict=True):
         assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
-    assert [record["x.depth"].tolist() for record in found.plastic] == 2 * [[1.0, 1.0]]
+    for one, other in zip(found.plastic, life.plastic, strict=True):
+        assert one["first"] == other["first"] and np.array_equal(one["depth"], other["depth"])
     path.write_bytes(path.read_bytes()[:100])
     with pytest.raises(OutputError):
         read_life(path)
@@ -345,12 +324,15 @@ def made_life(pits=0, ahead=0.5, rows=2):
     return found
 
 
-def test_line_of_a_round_names_its_figures():
+def test_line_of_a_round_names_its_figures_and_no_picture_is_drawn_unasked(tmp_path):
     figures = dict(entry.split("=") for entry in line_of(made_life(pits=2, rows=3), 3.4).split())
     assert figures.pop("friction") == "0.1000" and figures.pop("wall") == "3s"
     expected = {"solved": 3, "passes": 30, "D1": 0.3, "D2": 0.3, "pitted1": 0.1, "pitted2": 0.2}
     expected |= {"worn1": 3e-12, "worn2": 3e-12}
     assert {name: float(value) for name, value in figures.items()} == expected
+    save_life(made_life(), tmp_path / "a.life.h5")
+    assert main([str(tmp_path / "a.life.h5"), "--no-picture"]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["a.life.h5"]
 
 
 def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
@@ -360,12 +342,6 @@ def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
     assert drawn[0]._suptitle.get_text() == "title (100Cr6, 16MnCr5)"
     worn = next(axes for axes in drawn[0].axes if axes.get_ylabel() == "worn [µm²]")
     assert [line.get_linestyle() for line in worn.lines] == ["-", "--"], "surface 1 shows through"
-
-
-def test_stored_life_is_not_drawn_where_no_picture_is_wanted(tmp_path):
-    save_life(made_life(), tmp_path / "a.life.h5")
-    assert main([str(tmp_path / "a.life.h5"), "--no-picture"]) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["a.life.h5"]
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,11 @@
-"""Lives of a series: one a member, means over seeds with bounds, by the other settings."""
+"""Lives of a series: one a member, means over seeds with bounds; the band over fatigue criteria."""
 
 import json
 
 import numpy as np
 import pytest
 from support import COARSE_LIFE
+from support.made_loads import Scene, write
 from support.made_results import save_life
 
 from ehlpetsc.case.loading import load
@@ -12,6 +13,10 @@ from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.command import main
 from ehlpetsc.life.ensemble import band, read_lives, run_lives
 from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.life.one_pass import LIFE_CRITERIA, lines_of, passes_to_failure
+from ehlpetsc.life.one_pass import band as criteria_band
+from ehlpetsc.post.run import Job, run
+from ehlpetsc.results.post_result import PostResult
 
 SERIES = """
 [series]
@@ -36,7 +41,6 @@ def life(passes, damage):
 
 
 def test_mean_and_bounds_over_lives_with_rows_at_different_passes():
-    """Between the rows of a life its figures are interpolated, up to the end of the shortest life."""
     lives = [life([10, 40], [0.1, 0.4]), life([20, 30], [0.4, 0.6]), life([40], [0.8])]
     passes, (mean, low, high) = band(lives, "damaged_share_1")
     assert passes.tolist() == [10, 20, 30]
@@ -66,7 +70,6 @@ def test_lives_of_an_index_are_printed_and_drawn_by_their_other_settings(tmp_pat
 
 
 def test_each_member_of_a_series_has_a_life(tmp_path):
-    """Equal to that of the member alone; a second call computes nothing."""
     from mpi4py import MPI
 
     keys = {"mesh.points_per_half_width": 8, "time.travel": 3.6, "life.max_solved": 1}
@@ -78,3 +81,26 @@ def test_each_member_of_a_series_has_a_life(tmp_path):
     assert shown[0].startswith("[coefficient=1e-18] solved=1 ") and shown[2:] == shown[:2]
     assert high("wear_rate_1") == pytest.approx(10.0 * low("wear_rate_1"), rel=1e-6)
     assert read_life(tmp_path / "a_coefficient_1e-17.life.h5")("damage_1") == high("damage_1")
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    scene = Scene(per_width=20, ratio=0.5, travel=7.0)
+    return write(tmp_path_factory.mktemp("band") / "pass.h5", scene, depths=(0.0, 0.05))
+
+
+def test_passes_are_those_of_the_worst_point(result, tmp_path):
+    settings = ("post.mean_stress=goodman",)
+    run(Job(str(result), str(tmp_path / "o.h5"), settings=settings, precision="float64"))
+    stored = PostResult(tmp_path / "o.h5")
+    expected = [1 / np.nanmax(stored.damage[side]) for side in ("1", "2")]
+    assert passes_to_failure(result, settings) == pytest.approx(expected, rel=1e-12)
+
+
+def test_lines_give_ratios_and_the_factor_of_the_band(result):
+    found = criteria_band(result)
+    assert found.keys() == LIFE_CRITERIA.keys()
+    assert found["morrow"][0] > found["von-mises"][0]  # benefit of compression
+    lines = list(lines_of({"one": (2e6, 3e6), "two": (5e6, 1e6)}, (2e6, 2e6)))
+    assert lines[0].endswith("over 2e+06 passes: one 1, two 2.5 (band of a factor 2.5)")
+    assert lines[1].endswith("over 2e+06 passes: one 1.5, two 0.5 (band of a factor 3)")

@@ -5,11 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from support import COARSE_LIFE
-from support.made_results import save_life
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
-from ehlpetsc.life import laws, read_life, run_life
+from ehlpetsc.life import laws
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory
 from ehlpetsc.life.one_pass import OfBody
@@ -70,9 +69,6 @@ def test_pit_of_one_cell_is_a_cone_on_any_columns():
         assert depth[-1, 60] == pytest.approx(10.0 - 2.0 * slope * width)
         assert depth[1, 61] == depth[0, 60]
         assert width**2 * depth.sum() == pytest.approx(np.pi * 10.0**3, rel=2e-3)
-
-
-def test_walls_reach_all_rows_of_a_narrow_strip():
     bottom = np.zeros((2, 9))
     bottom[0, 4] = 3.0
     depth = laws.with_walls(bottom, np.zeros((2, 9)), (1.0, 1.0))
@@ -91,14 +87,6 @@ def test_pits_and_failed_cells_are_connected_across_the_period():
     assert found[0, 3] == found[3, 3] == 2.0 and np.count_nonzero(found) == 2
 
 
-def test_heights_lose_the_worn_volume_of_all_passes_and_the_pits():
-    """The volume is summed up over the passes, the heights change column by column."""
-    for body in life(6, "above"):
-        lost, broken_out = (depth.sum() / 6 for depth in (body.height - body.profile, body.pit))
-        assert min(broken_out, body.volume) > 1.0
-        assert lost == pytest.approx(body.volume + broken_out, rel=1e-12)
-
-
 def test_solver_gets_what_the_body_has_lost():
     rows, rng = 8, np.random.default_rng(2)
     one = LifeBody.new(
@@ -111,10 +99,13 @@ def test_solver_gets_what_the_body_has_lost():
     assert pit.min() == 0.0 < pit.max()
     inner = one.gap_field((0.0, 39.0), (0.0, 39.0)).means(one.faces())
     assert inner == pytest.approx(one.height - one.profile, abs=1e-12)
+    for body in life(6, "above"):
+        lost, broken_out = (depth.sum() / 6 for depth in (body.height - body.profile, body.pit))
+        assert min(broken_out, body.volume) > 1.0
+        assert lost == pytest.approx(body.volume + broken_out, rel=1e-12)
 
 
 def test_solver_meets_pits_of_a_strip_without_short_waves_across():
-    """A row of pits across has the volume that it had, and equal rows remain equal."""
     one = LifeBody.new(np.arange(40) * 1.0, np.zeros((6, 40)), EDGES, np.arange(6) * 1.0)
     pit = np.zeros((6, 40))
     pit[2, 20] = 1.0
@@ -126,25 +117,7 @@ def test_solver_meets_pits_of_a_strip_without_short_waves_across():
     assert np.ptp(found, axis=0).max() < 1e-15
 
 
-def test_life_file_of_a_strip(tmp_path):
-    stored = LifeHistory("text", "title")
-    for passes in (10, 30):
-        bodies = tuple(
-            LifeBody.new(np.arange(5.0), np.ones((3, 5)), EDGES, np.arange(3.0))._replace(volume=k + passes)
-            for k in (1, 2)
-        )
-        plastic = {"depth": np.arange(3.0 * (passes - 10)).reshape(3, -1), "first": passes}  # none at first
-        stored.add({"passes": passes, "jump": 10, "friction": 0.1}, bodies, plastic)
-    save_life(stored, tmp_path / "a.life.h5")
-    found = read_life(tmp_path / "a.life.h5")
-    for one, other in zip(found.plastic, stored.plastic, strict=True):
-        assert one["first"] == other["first"] and np.array_equal(one["depth"], other["depth"])
-    for one, other in zip(found.bodies[1], stored.bodies[1], strict=True):
-        assert all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
-
-
 def test_picture_of_a_strip_has_maps_of_damage_and_of_pits(tmp_path, monkeypatch):
-    """At some instants; cells that are gone are left out."""
     stored = LifeHistory('contact = { material = "100Cr6" }', "title")
     for passes, bodies in ((10, life(3, "none")), (40, life(3, "above"))):
         row = {"passes": passes, "jump": 10, "friction": 0.1}
@@ -166,25 +139,3 @@ def test_picture_of_a_strip_has_maps_of_damage_and_of_pits(tmp_path, monkeypatch
 def test_points_have_no_life():
     with pytest.raises(CaseError, match="of line and strip contacts, and this is a point"):
         load(COARSE_LIFE, {"contact.radius": [0.02, 0.02], "contact.load": 100.0})
-
-
-def test_strip_of_ridges_wears_and_ages_as_the_line(tmp_path):
-    """Solved to the same tolerance; stress histories of a life are in double precision."""
-    tight = {"petsc.snes_rtol": 1e-12, "petsc.snes_atol": 1e-12, "petsc.ksp_rtol": 1e-8}
-    keys = {"mesh.points_per_half_width": 8, "time.travel": 3.6, "wear.coefficient": 1e-17}
-    keys |= {
-        f"surface.{k}.{key}": value for k in (1, 2) for key, value in (("scale", 1.0), ("short_cutoff", 6e-5))
-    }
-    lives = [
-        run_life(
-            load(COARSE_LIFE, tight | keys | more), tmp_path / f"{len(more)}.life.h5", unresolved=True, most=1
-        )
-        for more in ({}, {"mesh.width": 0.125})
-    ]
-    line, strip = (found.bodies[-1] for found in lives)
-    assert lives[0]("passes").tolist() == lives[1]("passes").tolist()
-    for one, other in zip(line, strip, strict=True):
-        assert other.wear.shape == (2, one.s.size) and one.wear.min() > 0.0
-        assert other.wear == pytest.approx(np.tile(one.wear, (2, 1)), rel=1e-9)
-        assert other.volume == pytest.approx(one.volume, rel=1e-9)
-        assert other.damage == pytest.approx(np.repeat(one.damage[:, None], 2, axis=1), rel=1e-9)

@@ -43,9 +43,6 @@ def test_friction_beyond_that_of_oils_has_a_limit_line():
     assert limit_lines(overrides=heat, friction_coefficient=0.12) == []
     rubbing = [*heat, "contact.model=mixed", "contact.boundary_film=10e-9", "contact.boundary_friction=0.2"]
     assert limit_lines(overrides=rubbing, friction_coefficient=0.19) == []
-
-
-def test_friction_of_solids_that_an_effect_changes_is_not_blamed_on_the_oil():
     heat = ["heat.bulk_temperature=363.0"]
     assert limit_lines(overrides=heat, boundary_friction=0.3, friction_coefficient=0.25) == []
     (line,) = limit_lines(overrides=heat, boundary_friction=0.1, friction_coefficient=0.25)
@@ -76,13 +73,10 @@ def test_friction_of_solids_that_is_left_out_has_a_limit_line(name, keys, totals
         assert limit_lines(name, [*heat, "motion.slide_roll_ratio=0.0"], **totals) == []
 
 
-def test_unresolved_asperities_are_given_with_their_height_fraction():
+def test_unresolved_asperities_and_a_flattened_layer_have_limit_lines():
     found = limit_lines("table1_rough", ["mesh.points_per_half_width=50"])
     for side, line in zip("12", found, strict=True):
         assert line.startswith(f"mesh: surface.{side}: ") and " 51.1 % of its height variance " in line
-
-
-def test_a_flattened_layer_has_a_limit_line():
     (line,) = limit_lines("stribeck", h_min=1.3e-9)
     assert line.startswith("layer: flattened from 132 nm to a film of 1.3 nm")
     assert limit_lines("stribeck", h_min=1.4e-9) == []

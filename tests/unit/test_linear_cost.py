@@ -115,7 +115,6 @@ def nodes_of_all_kinds():
 
 
 def test_reduction_of_all_kinds_of_nodes():
-    """Quantities of a reduced node are those of its two unknowns, and these follow from them again."""
     names, state, kinds = nodes_of_all_kinds()
     reduced = reduction_of(state.derivatives(), kinds == BOUND)
     np.testing.assert_array_equal(reduced.kind, kinds)

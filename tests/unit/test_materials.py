@@ -3,7 +3,6 @@
 import math
 
 import pytest
-from support.made_loads import Scene, write
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.materials import STEELS, fatigue_constants, flow_pressure, steel_of_hardness
@@ -12,8 +11,6 @@ from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.case.tables.outputs import POST
 from ehlpetsc.post import Material
 from ehlpetsc.post.loads import materials_of
-from ehlpetsc.post.run import Job, run
-from ehlpetsc.results.post_result import PostResult
 
 RUNNING_IN = "cases/running_in.toml"
 
@@ -38,10 +35,6 @@ def test_constants_from_hardness():
     assert steel.cyclic_hardening == pytest.approx(steel.b / steel.c)
     with pytest.raises(ValueError, match="150 to 700"):
         steel_of_hardness(720, 200e9)
-
-
-def test_constants_from_hardness_match_a_published_application():
-    """Metals 15 (2025) 780, Roessle-Fatemi method: 866.75 MPa, -0.09, 0.5941, -0.56 at 151 HB and 210 GPa."""
     steel = steel_of_hardness(151, 210e9)
     assert steel.fatigue_strength == pytest.approx(866.75e6, rel=1e-12)
     assert round(steel.fatigue_ductility, 4) == 0.5941
@@ -72,6 +65,8 @@ def test_steel_sets_elastic_constants_and_yield_limit():
     case = with_material(material=["16MnCr5", "42CrMo4"], yield_pressure="material")
     assert case.contact.yield_pressure[1] == pytest.approx(yields_at("42CrMo4"))
     assert stored_case(case.text).contact == case.contact
+    material = materials_of(load(RUNNING_IN))["1"]
+    assert material == Material(207e9, 0.3, cyclic_strength=Material().hardening_coefficient)
 
 
 def test_single_keys_override_the_steel():
@@ -85,11 +80,6 @@ def test_single_keys_override_the_steel():
     assert materials_of(strength)["2"].hardening_coefficient == pytest.approx(
         1e9 / STEELS["100Cr6"].fatigue_ductility ** (0.09 / 0.56)
     )
-
-
-def test_default_fatigue_constants_are_those_of_the_reference():
-    material = materials_of(load(RUNNING_IN))["1"]
-    assert material == Material(207e9, 0.3, cyclic_strength=Material().hardening_coefficient)
 
 
 @pytest.mark.parametrize(
@@ -106,16 +96,3 @@ def test_default_fatigue_constants_are_those_of_the_reference():
 def test_unknown_and_missing_steels_are_refused(keys, words):
     with pytest.raises(CaseError, match=words):
         with_material(**keys)
-
-
-def test_harder_steel_has_less_damage(tmp_path):
-    found = {}
-    for name in ("42CrMo4", "16MnCr5"):
-
-        def edit(file, name=name):
-            file.attrs["case"] = file.attrs["case"].replace("[contact]", f'[contact]\nmaterial = "{name}"')
-
-        path = write(tmp_path / f"{name}.h5", Scene(per_width=20, travel=9.0), depths=(0.0,), edit=edit)
-        run(Job(str(path), str(tmp_path / "o.h5"), surfaces=("2",)))
-        found[name] = PostResult(tmp_path / "o.h5").passed("2").max()
-    assert found["16MnCr5"] < 0.01 * found["42CrMo4"]

@@ -47,6 +47,11 @@ def test_table_sets_conditions_and_reference_state(with_table):
     assert operation.at(1e-4) == pytest.approx((527e3, 0.020, 5.5, 3.0))
     assert operation.at(4e-4) == pytest.approx((527e3, 0.020, 5.5, 3.0))
     assert 300e3 < operation.at(2e-4).load < 527e3
+    plain = load(with_table(TABLE)).conditions
+    text = "time [us], load (N/mm), radius [mm], speed 1 [mm/s], speed 2 [m/s]\n"
+    case = load(with_table(text + "0,400,19,5000,4\n100,527,20,5500,3\n300,300,18,4000,4.5\n"))
+    for one, other in zip(case.conditions[:5], plain[:5], strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-15)
 
 
 @pytest.mark.parametrize("head", ["t,w,r,u1,u2", "time;load;radius;speed_1;speed_2"])
@@ -58,19 +63,13 @@ def test_table_columns_by_alias_and_separator(with_table, head):
     np.testing.assert_array_equal(case.conditions.u2, [4.0, 3.0, 4.5])
 
 
-def test_omitted_column_is_constant(with_table):
+def test_omitted_column_is_constant_and_a_table_begins_at_its_first_time(with_table):
     case = load(with_table("time, load\n0, 527e3\n1e-4, 600e3\n"))
     assert set(case.conditions.radius) == {0.0191}
     u1, u2 = case.conditions.u1[0], case.conditions.u2[0]
     assert (0.5 * (u1 + u2), u1 - u2) == pytest.approx((5.0, 1.25))
-
-
-def test_units_of_a_heading_are_read(with_table):
-    plain = load(with_table(TABLE)).conditions
-    text = "time [us], load (N/mm), radius [mm], speed 1 [mm/s], speed 2 [m/s]\n"
-    case = load(with_table(text + "0,400,19,5000,4\n100,527,20,5500,3\n300,300,18,4000,4.5\n"))
-    for one, other in zip(case.conditions[:5], plain[:5], strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-15)
+    later = load(with_table("time [ms], load\n5, 527e3\n7, 600e3\n")).conditions
+    np.testing.assert_allclose(later.time, [0.0, 2e-3], atol=1e-18)
 
 
 @pytest.mark.parametrize(
@@ -118,11 +117,6 @@ def test_columns_from_the_case_or_from_python():
         load(CASE, overrides | {"operation.time": [0.0, 0.0]})
 
 
-def test_a_table_begins_at_its_first_time(with_table):
-    later = load(with_table("time [ms], load\n5, 527e3\n7, 600e3\n")).conditions
-    np.testing.assert_allclose(later.time, [0.0, 2e-3], atol=1e-18)
-
-
 @pytest.mark.parametrize("time", [1e-4, "0.1 ms"])
 def test_a_number_in_place_of_a_column_is_refused(time):
     fault = one_fault(load, CASE, {"operation": {"time": time, "load": [5e5, 6e5]}})
@@ -151,21 +145,6 @@ def make(repeat=1, courant=0.5, **columns):
     return VariableOperation(table, courant, 1e-6, half_width, 1.0)
 
 
-def test_distances_are_integrals_of_speeds():
-    operation = make(repeat=3, u1=[0.0, 2.0, 1.0, 0.0], u2=[-1.0, 1.0, 0.5, -1.0])
-    for begin, end in ((0.0, 1.2e-3), (2.5e-3, 3.7e-3), (0.3e-3, 8.9e-3)):
-        count = 10_000
-        times = begin + (np.arange(count) + 0.5) / count * (end - begin)
-        mean = np.mean([operation.at(t)[2:] for t in times], axis=0)
-        way = operation.displacement(begin, end - begin)
-        np.testing.assert_allclose(way, mean * (end - begin), atol=2e-9)
-    parts = [operation.displacement(k * 1e-3, 1e-3) for k in range(9)]
-    np.testing.assert_allclose(np.sum(parts, axis=0), operation.travelled(9e-3), rtol=1e-12)
-    places = np.array([operation.travelled(t) for t in np.linspace(0.0, 9e-3, 3001)])
-    ends = np.stack([places.min(0), places.max(0)], axis=1)
-    np.testing.assert_allclose(operation.extent(), ends, atol=1e-8)
-
-
 @pytest.mark.parametrize("last", [0.0, 1.2])
 def test_speeds_that_are_rounding_of_rest_or_rolling_are_zero(last):
     """Else the friction of solids, mu p with the sign of u1 - u2, is that of a rounding error."""
@@ -180,6 +159,18 @@ def test_interpolation_does_not_overshoot():
     operation = make(load=[1e5, 5e5, 5e5, 1e5])
     loads = [operation.at(t).load for t in np.linspace(0.0, 3e-3, 999)]
     assert min(loads) == 1e5 and max(loads) == 5e5
+    operation = make(repeat=3, u1=[0.0, 2.0, 1.0, 0.0], u2=[-1.0, 1.0, 0.5, -1.0])
+    for begin, end in ((0.0, 1.2e-3), (2.5e-3, 3.7e-3), (0.3e-3, 8.9e-3)):
+        count = 10_000
+        times = begin + (np.arange(count) + 0.5) / count * (end - begin)
+        mean = np.mean([operation.at(t)[2:] for t in times], axis=0)
+        way = operation.displacement(begin, end - begin)
+        np.testing.assert_allclose(way, mean * (end - begin), atol=2e-9)
+    parts = [operation.displacement(k * 1e-3, 1e-3) for k in range(9)]
+    np.testing.assert_allclose(np.sum(parts, axis=0), operation.travelled(9e-3), rtol=1e-12)
+    places = np.array([operation.travelled(t) for t in np.linspace(0.0, 9e-3, 3001)])
+    ends = np.stack([places.min(0), places.max(0)], axis=1)
+    np.testing.assert_allclose(operation.extent(), ends, atol=1e-8)
 
 
 def test_time_levels_end_with_the_run_and_follow_the_film():

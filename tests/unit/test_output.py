@@ -72,7 +72,7 @@ def assert_same_content(one, other):
         np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
 
-def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
+def test_every_dataset_names_unit_and_dimensions_and_provenance_is_complete(tmp_path):
     with h5py.File(written(tmp_path / "r.h5", range(3)), "r") as file:
         datasets = []
         file.visititems(lambda _, item: datasets.append(item) if isinstance(item, h5py.Dataset) else None)
@@ -86,6 +86,12 @@ def test_every_dataset_names_its_unit_and_dimensions(tmp_path):
         assert file["surface/1"].attrs["speed"] == 5.6
         assert file["surface/1"].attrs["ra"] == 0.4e-6
         assert "2" not in file["surface"]
+    path = written(tmp_path / "r.h5", range(3), attributes={"versions": {"petsc": "3.18.5"}})
+    with read_result(path) as r:
+        assert r.attrs["format_version"] == 1
+        assert (r.attrs["title"], r.attrs["case"], r.attrs["status"]) == ("ä", 'title = "ä"\n', "done")
+        assert r.attrs["restarts"] == 0
+        assert {"ehlpetsc", "numpy", "petsc"} <= {item.split()[0] for item in r.attrs["versions"].split(", ")}
 
 
 @pytest.mark.parametrize("in_memory", [True, False])
@@ -112,15 +118,6 @@ def test_damaged_field_is_not_read(tmp_path):
         with pytest.raises(OSError, match="read"):
             result.frame("pressure", 1)
         assert result.frame("film_thickness", 1)[3] == 1.03
-
-
-def test_provenance_is_complete(tmp_path):
-    path = written(tmp_path / "r.h5", range(3), attributes={"versions": {"petsc": "3.18.5"}})
-    with read_result(path) as r:
-        assert r.attrs["format_version"] == 1
-        assert (r.attrs["title"], r.attrs["case"], r.attrs["status"]) == ("ä", 'title = "ä"\n', "done")
-        assert r.attrs["restarts"] == 0
-        assert {"ehlpetsc", "numpy", "petsc"} <= {item.split()[0] for item in r.attrs["versions"].split(", ")}
 
 
 def test_xarray_reads_coordinates_and_units(tmp_path):
@@ -151,9 +148,6 @@ def test_frames_are_thinned_and_steps_are_not(tmp_path):
         assert result.nearest_frame(time=0.0) == 0
         assert result.profile("2") is None
         assert result.profile("1")[2] == 5.6
-
-
-def test_fewer_fields_and_single_precision(tmp_path):
     path = written(tmp_path / "r.h5", range(3), fields=["pressure"], precision="float32")
     with read_result(path) as result:
         assert result.fields == ["pressure"]
@@ -366,7 +360,3 @@ def test_a_new_scalar_of_the_steps_is_one_entry_of_the_table(monkeypatch):
 def test_unit_of_an_integral_is_per_metre_but_in_a_point_contact(contact, unit):
     volume = Field("m^3", "volume", integrated=True)
     assert quantities.unit_in(volume, contact) == unit
-
-
-def test_fields_lie_over_the_axes_of_the_grid():
-    assert quantities.dims_in(FIELDS["pressure"], ("y", "x")) == ("time", "y", "x")

@@ -10,7 +10,7 @@ from support import one_fault
 
 import ehlpetsc
 from ehlpetsc.base.errors import UsageError
-from ehlpetsc.case.keys import keys, template
+from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
@@ -42,13 +42,11 @@ def test_load_has_the_unit_of_its_contact(tables, load_text, message):
     assert message in fault(tables, contact__load=load_text)
 
 
-def test_load_of_a_point_is_converted():
+def test_load_of_a_point_is_converted_and_xdmf_is_not_of_a_line():
     assert load(copy.deepcopy(POINT), {"contact.load": "2 kN"}).contact.load == 2000.0
     assert load(copy.deepcopy(STRIP), {"contact.load": "50 N/mm"}).contact.load == 5e4
-
-
-def test_wrong_unit_of_the_load_is_one_sentence_in_a_line_contact(tmp_path):
-    assert "contact.load" in fault(tomllib.loads(template("roller")), contact__load="20 N")
+    text = fault(tomllib.loads(template("roller")), output__xdmf=True)
+    assert "output.xdmf: of strip and point contacts, and this is a line" in text
 
 
 WAVE = {"kind": "sine", "amplitude": 1e-8, "wavelength": 5e-5}
@@ -107,18 +105,13 @@ def test_refused_values_of_a_point(overrides, message):
     assert message in fault(POINT, **overrides)
 
 
-def test_xdmf_is_not_of_a_line_contact():
-    text = fault(tomllib.loads(template("roller")), output__xdmf=True)
-    assert "output.xdmf: of strip and point contacts, and this is a line" in text
-
-
 def test_sweeps_are_not_of_a_point():
     case = load(copy.deepcopy(POINT), {"contact.model": "direct"})
     with pytest.raises(UsageError, match="the paper's sweeps solve line contacts, not a point"):
         ehlpetsc.Simulation(case, options={"ehl_scheme": "sweep"})
 
 
-def test_explanation_of_a_point():
+def test_explanation_of_points_strips_and_ridges():
     text = explain(load(copy.deepcopy(POINT)))
     assert "a point, radii 0.0095 m along, 0.0095 m across, load 20 N, reduced" in text
     assert "half-widths a = 0.107805 mm along, b = 0.107805 mm across" in text
@@ -126,22 +119,13 @@ def test_explanation_of_a_point():
     assert "Mesh: 97 x 85 nodes from -2.5 to 1.5 a along, -1.75 to 1.75 b across" in text
     assert "Waves of surface 1: short_cutoff of 25 um: 5.6; " in text
     assert "Sa 0.02" in text and "memory: about" in text
-
-
-def test_explanation_of_a_point_under_a_table_states_its_loads():
     text = explain(
         load(copy.deepcopy(POINT), {"operation": {"time": [0, 1e-3], "load": ["12 N", "0.02 kN"]}})
     )
     assert "Conditions of a table: load 12 to 20 N, radius 9.5 mm; above, those of the widest" in text
-
-
-def test_explanation_of_a_strip_states_its_width():
     text = explain(load(copy.deepcopy(STRIP)))
     assert "load 100000 N/m" in text and "Strip: 0.1058 mm of its length, periodic across" in text
     assert "129 x 32 nodes" not in text and "x 32 nodes from -4 to 1.5 a along, -0.5 to 0.5 a across" in text
-
-
-def test_profile_on_a_plane_is_a_ridge():
     ridge = {"synthetic": {"kind": "ridge", "amplitude": 1e-7, "wavelength": 5e-5}}
     assert "a ridge across the width" in explain(load(POINT | {"surface": {"1": ridge}}))
     profile = {"z": [0.0, 1e-8, 0.0, -1e-8] * 50, "spacing": 1e-5}
@@ -149,15 +133,12 @@ def test_profile_on_a_plane_is_a_ridge():
     assert "1.99 mm long, 200 points 10 um apart; a profile: a ridge across the width" in text
 
 
-def test_tilted_or_rough_map_is_reported():
+def test_tilted_or_rough_map_is_reported_with_the_points_needed_along_both_axes():
     z = 3e-8 * np.random.default_rng(1).standard_normal((60, 200)) + np.linspace(0, 3e-7, 60)[:, None]
     case = load(POINT | {"surface": {"1": {"z": z.tolist(), "spacing": 5e-6}}})
     notes = "\n".join(warnings(case, Scales.of(case)))
     assert "of the height variance is a plane (" in notes and "0.3 um over 0.295 mm" in notes
     assert "the mesh is too coarse for the map" in notes
-
-
-def test_needed_points_are_two_where_the_spacings_differ():
     case = load(copy.deepcopy(POINT), {"mesh.points_per_half_width": [24, 12]})
     (note,) = (line for line in warnings(case, Scales.of(case)) if "too coarse for the map" in line)
     along, across = (int(n) for n in note.partition("= [")[2].partition("]")[0].split(", "))
@@ -216,11 +197,6 @@ def test_forecast_grows_with_the_nodes_and_the_precision():
     assert 2 * 3 < times[1] / times[0] < 2 * 4**1.15  # twice the steps
     sizes = [file_size(case, Scales.of(case)) for case in (single, coarse, fine)]
     assert sizes[0] < 0.55 * sizes[1] and 7 < sizes[2] / sizes[1] < 9
-
-
-def test_keys_state_the_unit_of_a_point():
-    assert "of a point contact its load [N]" in keys("contact.load")
-    assert "RESULT.xdmf" in keys("output")
 
 
 def test_heights_of_a_map_are_stored_as_their_digest():

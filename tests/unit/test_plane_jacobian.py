@@ -191,7 +191,6 @@ def test_balance_of_single_cells_is_that_of_the_mesh(name):
 
 
 def test_settled_pressures_balance_thin_oil():
-    """Films of a state with a few pressures gone wrong: they are found again."""
     system, state, inputs = scene("rolling")
     reynolds, rng = system.problem.reynolds, np.random.default_rng(7)
     inlet = np.arange(system.n) % reynolds.n_x < 8

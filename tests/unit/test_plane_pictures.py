@@ -90,19 +90,16 @@ def test_sections_through_the_middle_follow_both_axes(point):
         np.testing.assert_allclose(hertz.get_ydata(), expected, atol=1e-12)
 
 
-def test_section_across_is_in_view(point, drawn):
+def test_hertz_pressure_of_sections_is_that_at_their_place(point, drawn):
+    assert draw(point, "--section", 1.2) == 0
+    hertz = next(line for line in drawn[-1].axes[0].lines if line.get_linestyle() == ":")
+    assert hertz.get_ydata().max() == pytest.approx(1e-9 * P0 * 0.8, rel=1e-3)  # y/b = 0.6
+    assert drawn[-1]._suptitle.get_text().replace("\n", " ").endswith(", section at y = 1.2 a")
     assert draw(point, "--window", 0.6, 1.6) == 0
-    axes = drawn[0].axes[4]
+    axes = drawn[-1].axes[4]
     assert axes.get_xlabel() == "y/a along x = 0.64 a"
     hertz = next(line for line in axes.lines if line.get_linestyle() == ":")
     assert hertz.get_ydata().max() == pytest.approx(1e-9 * P0 * (1.0 - 0.6429**2) ** 0.5, rel=1e-3)
-
-
-def test_hertz_pressure_of_a_section_is_that_at_its_place(point, drawn):
-    assert draw(point, "--section", 1.2) == 0
-    hertz = next(line for line in drawn[0].axes[0].lines if line.get_linestyle() == ":")
-    assert hertz.get_ydata().max() == pytest.approx(1e-9 * P0 * 0.8, rel=1e-3)  # y/b = 0.6
-    assert drawn[0]._suptitle.get_text().replace("\n", " ").endswith(", section at y = 1.2 a")
 
 
 def test_strip_and_line_are_compared_along_one_section(tmp_path, drawn):
@@ -148,7 +145,8 @@ def test_any_field_is_drawn_by_its_unit_and_name(tmp_path, kind, drawn, capsys):
         np.testing.assert_allclose(values, at, atol=1e-12)
 
 
-def test_field_in_movie_and_page(point):
+def test_field_in_movie_and_page(point, monkeypatch):
+    monkeypatch.setattr(frames, "MOVIE_DPI", 40)
     assert draw(point, "--field", "void_fraction", "--movie") == 0
     assert draw(point, "--field", "void_fraction", "--report") == 0
     page = point.with_name("point.void_fraction.html").read_text(encoding="utf-8")
@@ -159,23 +157,17 @@ def test_field_in_movie_and_page(point):
     assert highest == pytest.approx(0.3)
 
 
-def test_fringes_are_bright_at_whole_waves_and_fade():
-    film = np.arange(5) * plane.WAVELENGTHS["green"] / (4.0 * plane.OIL_INDEX)
-    np.testing.assert_allclose(plane.monochromatic(film, plane.OIL_INDEX), [1, 0, 1, 0, 1], atol=1e-12)
-    far = 50 * film[-1]
-    np.testing.assert_allclose(plane.coloured(np.array([0.0, far]), 1.5), [[1.0] * 3, [0.5] * 3], atol=1e-3)
-
-
-def test_fringes_name_wavelengths_and_resolve_the_film(point):
+def test_fringes_resolve_the_film_and_contacts_are_shares_of_all_steps(point):
     with read_result(point) as r:
         figure = plane.draw_fringes([r], OPTIONS)
     titles = [axes.get_title() for axes in figure.axes[:2]]
     assert titles == ["wavelength 530 nm", "wavelengths 630, 530, 460 nm"]
     assert max(figure.axes[0].images[0].get_array().shape) == plane.PIXELS
     assert figure.axes[1].images[0].get_array().shape[2] == 3
-
-
-def test_contacts_are_shares_of_all_steps(point):
+    film = np.arange(5) * plane.WAVELENGTHS["green"] / (4.0 * plane.OIL_INDEX)
+    np.testing.assert_allclose(plane.monochromatic(film, plane.OIL_INDEX), [1, 0, 1, 0, 1], atol=1e-12)
+    far = 50 * film[-1]
+    np.testing.assert_allclose(plane.coloured(np.array([0.0, far]), 1.5), [[1.0] * 3, [0.5] * 3], atol=1e-3)
     with read_result(point) as r:
         shown = plane.draw_contacts([r], OPTIONS).axes[0].images[0].get_array()
         assert shown.max() == 100.0 * r.contact_count.max() / 5 > 0.0
@@ -191,6 +183,7 @@ def test_movie_has_every_frame_with_common_colours(point, monkeypatch):
             super().grab_frame(**keys)
 
     monkeypatch.setattr(frames, "PillowWriter", Writer)
+    monkeypatch.setattr(frames, "MOVIE_DPI", 40)
     assert draw(point, "--movie") == 0
     with image.open(point.with_suffix(".gif")) as shown:
         assert shown.n_frames == 5

@@ -211,9 +211,6 @@ def test_default_instant_has_the_maximum_load_on_the_solids_or_pressure(tmp_path
     for share, name in ((0.3, "contact_share"), (1e-4, "p_max")):
         with read_result(with_solids(make_result(tmp_path / f"{share}.h5"), share)) as r:
             assert r.steps(name)[drawing.frame_to_show(r)] == r.steps(name).max()
-
-
-def test_default_instant_excludes_the_entering_profile_edge(tmp_path):
     with read_result(make_result(tmp_path / "r.h5", speed=50.0, rough=True)) as r:
         filled = both_fill(r, r.time)
         assert 0 < filled.sum() < 41
@@ -286,7 +283,7 @@ def test_plot_faults_are_reported(result, options, parts, capsys):
     assert fault.startswith("ehlpetsc plot: ") and is_line_with(fault, *parts)
 
 
-def test_passing_profile_length_follows_from_travel():
+def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     case = load(CASES / "fig1.toml")
     scales = Scales.of(case)
     profile = Roughness.of(case, scales).surface_1
@@ -296,14 +293,6 @@ def test_passing_profile_length_follows_from_travel():
     short = load(CASES / "fig1.toml", ["time.travel=3"])
     scales = Scales.of(short)
     assert np.ptp(passing(Roughness.of(short, scales).surface_1, short, scales)) == 0.0
-
-
-def test_case_picture_of_a_gear_does_not_give_one_slide_roll_ratio():
-    title = draw_case(CASES / "fzg.toml")._suptitle.get_text()
-    assert "slide/roll" not in title and "of the widest contact; conditions over time" in title
-
-
-def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     out = tmp_path / "c.png"
     assert draw(CASES / "table1_rough.toml", "-o", out) == 0
     assert capsys.readouterr().out == f"{out}\n"
@@ -312,3 +301,5 @@ def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     figure = draw_case(CASES / "table1_rough.toml", ["time.travel=5"])
     title = figure.axes[0].get_title(loc="left")
     assert title.startswith("Ra 0.079 µm") and "Rsk 0.08" in title and "travel 1.50 a of 5 a" in title
+    title = draw_case(CASES / "fzg.toml")._suptitle.get_text()
+    assert "slide/roll" not in title and "of the widest contact; conditions over time" in title

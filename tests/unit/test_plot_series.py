@@ -14,6 +14,7 @@ from ehlpetsc.pictures.command import FIGURES, arguments, main
 from ehlpetsc.results.index import open_all
 from ehlpetsc.results.reader import read_result
 
+pytestmark = pytest.mark.usefixtures("coarse_pictures")
 SPEEDS = (0.001, 0.02, 0.5, 5.0, 20.0)
 OPTIONS = arguments().parse_args(["x"])
 HEAT = {"heat.bulk_temperature": 350.0}

@@ -117,11 +117,19 @@ def test_grid_has_each_direction_once(components):
     assert planes_and_directions(components=components)[:, 2].max() < np.pi - 1e-3
 
 
-def test_plane_search_equals_exhaustive_search():
+def test_plane_search_equals_exhaustive_search_also_in_reversed_time_and_in_blocks():
     for seed in range(3):
         parts = contact_like(seed)
         tried = on_planes(planes_and_directions(np.radians(9.0)), *parts)
         assert critical_plane(*parts, STEEL).damage >= 0.98 * tried > 0
+    parts = np.array(contact_like(7))
+    forwards = critical_plane(*parts, STEEL).damage
+    assert critical_plane(*parts[:, ::-1], STEEL).damage == pytest.approx(forwards, rel=0.02)
+    parts = np.array([contact_like(k) for k in range(4)]).transpose(1, 0, 2).reshape(3, 2, 2, -1)
+    found = critical_plane(*parts, STEEL)
+    assert found.damage.shape == found.tilt.shape == (2, 2)
+    single = critical_plane(*parts[:, 1, 0], STEEL)
+    assert np.ndim(single.damage) == 0 and single.damage == found.damage[1, 0]
 
 
 def test_critical_planes_may_be_closed_at_all_times():
@@ -144,12 +152,6 @@ def test_path_reduction_keeps_ends_and_bends(direction):
     path[:, 8] += 0.2 * np.roll(direction, 1)
     count = turning_samples(path, 21, places)
     assert 8 in places[:count] and count <= 5
-
-
-def test_criterion_is_time_reversible():
-    parts = np.array(contact_like(7))
-    forwards = critical_plane(*parts, STEEL).damage
-    assert critical_plane(*parts[:, ::-1], STEEL).damage == pytest.approx(forwards, rel=0.02)
 
 
 def test_proportional_load_keeps_its_plane():
@@ -186,16 +188,6 @@ def test_tension_and_residual_stress():
     assert pulled.damage > 1.5 * plain and pressed.damage == pytest.approx(plain, rel=1e-9)
 
 
-def test_dang_van_is_one_at_both_limits():
-    limits = Criteria(torsion_limit=4e8, bending_limit=6e8)
-    assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits) == pytest.approx(1, rel=1e-9)
-    assert dang_van(NONE, 6e8 * WAVE, NONE, 0.0, limits) == pytest.approx(1, rel=1e-9)
-    assert dang_van(0 * PULSE, 0 * PULSE, 4e8 * PULSE, 0.3, limits) == pytest.approx(0.5, rel=1e-9)
-    residual = dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=3e8)
-    assert residual == pytest.approx(1 + limits.hydrostatic_slope * 2e8 / 4e8, rel=1e-9)
-    assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=-3e8) == pytest.approx(1)
-
-
 def test_dang_van_under_hertz_reaches_one_at_the_iso_281_limit():
     """The default limit is read from 1.5 GPa of ISO 281: half a half-width below the contact U is 1."""
     x = np.linspace(-6, 6, 1201)
@@ -203,6 +195,13 @@ def test_dang_van_under_hertz_reaches_one_at_the_iso_281_limit():
     use = [dang_van(*stress(x, z, pressure, None, 0.3), 0.3) for z in (0.0, 0.3, 0.5, 0.7)]
     assert use[2] == pytest.approx(1.0, rel=1e-3) and max(use) == use[2]
     assert use[0] == pytest.approx((1 - 0.6) * 1.5e9 / 4 / 375e6, rel=1e-6)  # out of the section
+    limits = Criteria(torsion_limit=4e8, bending_limit=6e8)
+    assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits) == pytest.approx(1, rel=1e-9)
+    assert dang_van(NONE, 6e8 * WAVE, NONE, 0.0, limits) == pytest.approx(1, rel=1e-9)
+    assert dang_van(0 * PULSE, 0 * PULSE, 4e8 * PULSE, 0.3, limits) == pytest.approx(0.5, rel=1e-9)
+    residual = dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=3e8)
+    assert residual == pytest.approx(1 + limits.hydrostatic_slope * 2e8 / 4e8, rel=1e-9)
+    assert dang_van(NONE, NONE, 4e8 * WAVE, 0.3, limits, residual_stress=-3e8) == pytest.approx(1)
 
 
 @pytest.mark.slow
@@ -233,11 +232,3 @@ def test_strain_rule_applies_on_planes():
     dsv = np.sqrt(3) * 1.8e9
     assert neuber == pytest.approx(1 / cycles_to_failure(dsv, uniaxial, strain="neuber"), rel=1e-8)
     assert neuber < direct / 10
-
-
-def test_blocks_keep_their_shape():
-    parts = np.array([contact_like(k) for k in range(4)]).transpose(1, 0, 2).reshape(3, 2, 2, -1)
-    found = critical_plane(*parts, STEEL)
-    assert found.damage.shape == found.tilt.shape == (2, 2)
-    single = critical_plane(*parts[:, 1, 0], STEEL)
-    assert np.ndim(single.damage) == 0 and single.damage == found.damage[1, 0]

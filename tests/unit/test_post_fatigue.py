@@ -1,4 +1,4 @@
-"""Life and damage against the restored equations; elastic-plastic rules and closed loops against theirs."""
+"""Life and damage against the restored equations: elastic-plastic rules, mean stress, closed loops."""
 
 from functools import partial
 
@@ -9,9 +9,12 @@ from support.made_loads import Scene, write
 from support.running import PYTHON, called
 
 from ehlpetsc import post
+from ehlpetsc.base.materials import MEAN_STRESSES
+from ehlpetsc.case.tables.outputs import POST_KEYS
 from ehlpetsc.post import Material, cycles_to_failure
 from ehlpetsc.post.command import main
-from ehlpetsc.post.fatigue.cycles import loop_of
+from ehlpetsc.post.fatigue.accumulate import CORRECTIONS, reversed_range
+from ehlpetsc.post.fatigue.cycles import RESIDUALS, loop_of
 from ehlpetsc.post.fatigue.strain_life import STRAINS, life_table, log_local_range, look_up
 from ehlpetsc.results.post_result import PostResult
 
@@ -48,10 +51,12 @@ def test_restored_values():
     assert cycles_to_failure(RANGES, STEEL) == pytest.approx(
         [2.106877e6, 2.565758e4, 1093.558, 12.21644, 0.5], rel=1e-6
     )
+    with np.errstate(all="raise"):
+        lives = cycles_to_failure(np.array([0.0, 1e-300, 1e-30, 1e30, np.inf]), STEEL)
+    assert lives[0] == lives[1] == np.inf and lives[2] > 1e300 and lives[3] < 1e-30 and lives[4] == 0
 
 
 def test_inversion_to_1e10_over_23_decades():
-    """Find the stress range of each life by bisection, then get the life back."""
     lives = np.logspace(-3, 20, 47)
     wanted = life_curve(lives, STEEL)
     low, high = np.full_like(lives, 1.0), np.full_like(lives, 1e13)
@@ -65,19 +70,18 @@ def test_inversion_to_1e10_over_23_decades():
     assert life_curve(lives_back, STEEL) == pytest.approx(wanted, rel=1e-12)
 
 
-def test_extremes_do_not_overflow():
-    with np.errstate(all="raise"):
-        lives = cycles_to_failure(np.array([0.0, 1e-300, 1e-30, 1e30, np.inf]), STEEL)
-    assert lives[0] == lives[1] == np.inf and lives[2] > 1e300 and lives[3] < 1e-30 and lives[4] == 0
-
-
-def test_one_pulse_is_one_cycle():
+def test_one_pulse_is_one_cycle_and_no_stress_no_damage():
     size = 2e9
     result = damage(*pulse(size), STEEL)
     dsv = size * np.sqrt(1 - 0.3 + 0.09)  # sx = 0, sy = nu sz
     assert result.peak_range == pytest.approx(dsv, rel=1e-12)
     assert result.cycles == 1
     assert result.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL), rel=1e-9)
+    result = damage(np.zeros((2, 9)), np.zeros((2, 9)), np.zeros((2, 9)), STEEL)
+    assert (result.damage == 0).all() and (result.cycles == 0).all() and (result.peak_range == 0).all()
+    t = np.linspace(0, 2 * np.pi, 81)
+    parts = np.zeros(81), np.zeros(81), 5e8 * np.sin(t)
+    assert damage(*parts, STEEL).peak_range == pytest.approx(np.sqrt(3) * 1e9, rel=1e-6)
 
 
 @pytest.mark.parametrize("first", [True, False])
@@ -89,13 +93,7 @@ def test_component_of_most_damage_counts_not_that_of_the_largest_range(first):
     assert both.peak_range == pytest.approx(1.5e9 * np.sqrt(0.79))
 
 
-def test_rotating_shear_is_counted_at_constant_von_mises_stress():
-    t = np.linspace(0, 2 * np.pi, 81)
-    parts = np.zeros(81), np.zeros(81), 5e8 * np.sin(t)
-    assert damage(*parts, STEEL).peak_range == pytest.approx(np.sqrt(3) * 1e9, rel=1e-6)
-
-
-def test_morrow_lengthens_life_under_compression_to_a_floor():
+def test_morrow_lengthens_life_under_compression_to_a_floor_and_residual_stress_enters():
     result = damage(*pulse(1e9), STEEL, mean_stress="morrow")
     dsv = 1e9 * np.sqrt(0.79)
     assert 1.3 * -0.5e9 < -dsv / 2  # the trace asks for more than the floor gives
@@ -105,16 +103,6 @@ def test_morrow_lengthens_life_under_compression_to_a_floor():
     assert tension.damage == pytest.approx(1 / cycles_to_failure(dsv, STEEL, 1.3 * 0.5e9), rel=1e-9)
     beyond = cycles_to_failure(1e9, STEEL, 3e9)  # mean above the strength: the plastic term alone
     assert np.isfinite(beyond) and 0 < beyond < cycles_to_failure(1e9, STEEL)
-
-
-def test_benefit_of_contact_pressure_is_limited():
-    """Ten times the hydrostatic pressure about the same cycle gives the same damage."""
-    sx, sz, txz = pulse(1e9)
-    lives = [damage(sx - p, sz - p, txz, STEEL, mean_stress="morrow").damage for p in (2e9, 2e10)]
-    assert lives[0] == pytest.approx(lives[1], rel=1e-6)
-
-
-def test_residual_stress_enters_the_mean():
     dsv = 1e9 * np.sqrt(0.79)
     tension, residual = pulse(-1e9), -2e8
     result = damage(*tension, STEEL, mean_stress="morrow", residual_stress=residual)
@@ -123,11 +111,9 @@ def test_residual_stress_enters_the_mean():
     assert damage(*tension, STEEL, residual_stress=residual).damage == damage(*tension, STEEL).damage
     with pytest.raises(ValueError, match="residual_stress"):
         damage(*tension, STEEL, residual_stress=np.nan)
-
-
-def test_no_stress_no_damage():
-    result = damage(np.zeros((2, 9)), np.zeros((2, 9)), np.zeros((2, 9)), STEEL)
-    assert (result.damage == 0).all() and (result.cycles == 0).all() and (result.peak_range == 0).all()
+    sx, sz, txz = pulse(1e9)
+    lives = [damage(sx - p, sz - p, txz, STEEL, mean_stress="morrow").damage for p in (2e9, 2e10)]
+    assert lives[0] == pytest.approx(lives[1], rel=1e-6)
 
 
 SCRIPT = """
@@ -163,17 +149,9 @@ def local_range(rule):
     return np.exp([log_local_range(value, *curve, STRAINS.index(rule))[0] for value in np.log(ELASTIC)])
 
 
-def test_loop_extends_over_samples_equal_to_its_ends():
-    series = np.array([0.0, 1.0, 0.0, 3.0, 3.0, -1.0])
-    assert loop_of(series, series.size, 2, 3) == (0, 5)
-
-
-def test_neuber_rule_conserves_the_product():
+def test_neuber_rule_conserves_the_product_and_glinkas_the_strain_energy():
     local = local_range("neuber")
     assert local * strain_range(local, STEEL) == pytest.approx(ELASTIC**2 / STEEL.youngs_modulus, rel=1e-12)
-
-
-def test_glinka_rule_conserves_the_strain_energy():
     for elastic, local in zip(ELASTIC, local_range("glinka"), strict=True):
         share = np.linspace(0, 1, 20001) ** 0.25  # fine where the curve bends
         stress = local * share
@@ -194,7 +172,6 @@ def test_damage_by_direct_entry_over_neuber_and_glinka():
 
 @pytest.mark.parametrize("rule", STRAINS)
 def test_table_error_is_below_1e9(rule):
-    """Direct: also beyond the ends of the table."""
     low, high = (1e2, 1e12) if rule == "direct" else (2e3, 2e11)
     table = life_table(STEEL, rule)
     ranges = np.exp(np.random.default_rng(0).uniform(np.log(low), np.log(high), 2000))
@@ -222,6 +199,8 @@ def test_loop_of_an_inner_cycle_and_of_the_whole():
     assert loop_of(series, 10, 3, 5) == (2, 5)  # 5, 2, 4, 6, 3
     assert loop_of(series, 10, 8, 0)[1] == 10
     assert loop_of(series, 10, 9, 1)[1] == 9  # round the end: all but 12
+    series = np.array([0.0, 1.0, 0.0, 3.0, 3.0, -1.0])
+    assert loop_of(series, series.size, 2, 3) == (0, 5)
 
 
 def test_command_overrides_rule_and_steel(tmp_path, capsys):
@@ -240,12 +219,68 @@ def test_command_overrides_rule_and_steel(tmp_path, capsys):
     assert "post.b = 0.3: allowed: a number > -2 and < 0" in capsys.readouterr().err
 
 
-def test_few_points_are_a_warning(tmp_path, capsys):
-    """Of 6.05 half-widths of travel surface 2 covers 4.03: one node more than the mesh is wide."""
-    scene = Scene(per_width=20, ratio=0.4, travel=6.05)
-    path = write(tmp_path / "a.h5", scene, depths=(0.0,))
-    assert main([str(path)]) == 0
-    message = capsys.readouterr()
-    assert "surface 2 that passed the whole contact: 1;" in message.err
-    assert "raise time.travel" in message.err and "of surface 1 that passed" not in message.err
-    assert "nan" not in message.out
+TENSILE = Material(tensile_strength=1.5e9, walker_exponent=0.6)
+EQUIVALENT = np.sqrt(1 - 0.3 + 0.09)  # equivalent range of a range of sz in plane strain
+
+
+def swing(low, high):
+    """Histories of sz alone between two stresses."""
+    sz = np.array([low, high, low, high, low])
+    return np.zeros(5), sz, np.zeros(5)
+
+
+@pytest.mark.parametrize(
+    "name, expected",
+    [
+        ("goodman", lambda a, m: a / (1 - m / 1.5e9)),
+        ("gerber", lambda a, m: a / (1 - (m / 1.5e9) ** 2)),
+        ("swt", lambda a, m: np.sqrt(a * (a + m))),
+        ("walker", lambda a, m: (a + m) ** 0.4 * a**0.6),
+    ],
+)
+def test_equations(name, expected):
+    """Range 800 MPa of sz about a mean of 300 MPa: the mean is that of the sum of the normal stresses."""
+    found = post.damage(*swing(-1e8, 7e8), TENSILE, mean_stress=name)
+    amplitude, mean = 4e8 * EQUIVALENT, 1.3 * 3e8
+    life = cycles_to_failure(2 * expected(amplitude, mean), TENSILE, strain="neuber")
+    assert found.damage == pytest.approx(found.cycles / life, rel=1e-8)
+
+
+@pytest.mark.parametrize("name", CORRECTIONS)
+def test_no_mean_no_correction(name):
+    plain = post.damage(*swing(-5e8, 5e8), TENSILE)
+    assert post.damage(*swing(-5e8, 5e8), TENSILE, mean_stress=name).damage == pytest.approx(
+        plain.damage, rel=1e-9
+    )
+
+
+def test_order_under_tension_and_under_compression():
+    tension = [
+        post.damage(*swing(0, 8e8), TENSILE, mean_stress=name).damage
+        for name in ("none", "gerber", "goodman")
+    ]
+    assert tension == sorted(tension) and tension[0] < tension[2] / 2
+    pressed = {
+        name: post.damage(*swing(-9e8, -1e8), TENSILE, mean_stress=name).damage for name in MEAN_STRESSES
+    }
+    assert pressed["swt"] == pressed["walker"] == 0  # never in tension
+    assert pressed["gerber"] == pressed["none"] > pressed["goodman"] > 0
+    assert post.damage(*swing(1.6e9, 1.7e9), TENSILE, mean_stress="goodman").damage > 1e300
+    assert reversed_range(3, 1e8, 2e9, 1.5e9, 0.6) == np.inf
+
+
+def test_estimates_of_a_steel():
+    """42CrMo4 of 295 HB: 3.45 HB in MPa, Dowling's exponent."""
+    strength, exponent = Material(fatigue_strength=4.25e6 * 295 + 225e6).mean_stress_constants()
+    assert strength == pytest.approx(1018e6, abs=1e6)
+    assert exponent == pytest.approx(0.678, abs=1e-3)
+    assert ("none", "morrow", *CORRECTIONS) == MEAN_STRESSES
+    assert POST_KEYS["residual"].choices == RESIDUALS
+
+
+def test_half_cycles_have_half_the_damage():
+    once = np.zeros(5), np.array([0.0, 1.5e9, 0.0, 0.0, 0.0]), np.zeros(5)
+    whole, half = (post.damage(*once, TENSILE, residual=name) for name in RESIDUALS)
+    assert whole.cycles == half.cycles == 1  # up and down: two halves
+    up = tuple(part[:2] for part in once)
+    assert post.damage(*up, TENSILE, residual="half").damage == pytest.approx(whole.damage / 2)

@@ -9,11 +9,16 @@ from support.made_planes import FRICTION, sphere, write_plane
 from ehlpetsc.pictures import damage_maps as gallery
 from ehlpetsc.post import damage, dang_van, stress_plane
 from ehlpetsc.post.command import main
+from ehlpetsc.post.criteria import critical_plane
+from ehlpetsc.post.criteria.critical_plane import count_on_planes
+from ehlpetsc.post.criteria.dang_van import count_utilisation
+from ehlpetsc.post.criteria.planes import Criteria
 from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.fatigue.statistics import asperities
 from ehlpetsc.post.fatigue.strain_life import Material
 from ehlpetsc.post.loads import Loads, prepare
 from ehlpetsc.post.run import Job, histories, run
+from ehlpetsc.post.stresses import block_stress
 from ehlpetsc.post.stresses.block_stress import ORDER, BlockStress
 from ehlpetsc.post.stresses.body_stress import offset_weights
 from ehlpetsc.results.post_result import PostResult
@@ -50,13 +55,17 @@ def scene():
 
 
 def test_strip_of_ridges_is_the_line(scene, tmp_path):
-    """Every row has the damage and the utilisation of the line contact."""
     y = 0.1 * A * np.arange(3)
     p = np.repeat(scene.pressures[:, None], 3, axis=1)
     write(tmp_path / "line.h5", scene)
     write_plane(tmp_path / "strip.h5", scene, "strip", y, p)
     for name in ("line", "strip"):
-        run(Job(str(tmp_path / f"{name}.h5"), str(tmp_path / f"{name}.post.h5"), criteria=("dang-van",)))
+        job, shares = (
+            Job(str(tmp_path / f"{name}.h5"), str(tmp_path / f"{name}.post.h5"), criteria=("dang-van",)),
+            [],
+        )
+        run(job, show=shares.append)
+    assert 0.0 < shares[0] < 0.1 and shares[-1] == pytest.approx(1.0) and (np.diff(shares) > 0.0).all()
     line, strip = PostResult(tmp_path / "line.post.h5"), PostResult(tmp_path / "strip.post.h5")
     assert strip.y == pytest.approx(y) and strip.damage["1"].shape == (3, 3, line.s.size)
     for side in ("1", "2"):
@@ -69,7 +78,6 @@ def test_strip_of_ridges_is_the_line(scene, tmp_path):
 
 
 def test_history_of_a_body_point(scene, tmp_path):
-    """In a frame, against the stresses of its smooth load on a finer mesh."""
     y, fine = scene.x[18:31] - scene.x[24], 20
 
     def load(x):
@@ -94,7 +102,6 @@ def test_history_of_a_body_point(scene, tmp_path):
 
 
 def test_command_on_a_point(scene, tmp_path, capsys):
-    """Symmetric across; the damage of rows beyond the contact is less; the peaks of the maps have places."""
     y = scene.x[14:35] - scene.x[24]
     p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
     s = scene.profiles["1"][0]
@@ -119,7 +126,6 @@ def test_command_on_a_point(scene, tmp_path, capsys):
 
 
 def test_temperatures_of_a_plane(scene, tmp_path):
-    """Row by row: a rise that grows across and moves with the surface."""
     y = scene.x[20:29] - scene.x[24]
     p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
     rise = np.arange(y.size)[:, None] * np.exp(-((scene.x / A) ** 2))
@@ -178,21 +184,25 @@ def test_six_components_of_plane_strain_are_three(mean_stress):
     assert found.T == pytest.approx(np.array(expected), rel=1e-6)
 
 
-def test_utilisation_does_not_depend_on_the_axes():
-    from ehlpetsc.post.criteria.dang_van import count_utilisation
-    from ehlpetsc.post.criteria.planes import Criteria
-
+def test_criteria_of_six_components_are_those_of_three_in_any_axes():
     line, six = random_histories(2)
     expected = dang_van(*np.moveaxis(line, 1, 0), NU)
     for angle in (0.0, 0.4, np.pi / 2):
         turned = np.ascontiguousarray(rotated(six, angle))
         found = count_utilisation(turned, np.full(4, 40), 0.0, NU, Criteria())
         assert found[:, 0] == pytest.approx(expected, rel=1e-7)
+    line, six = random_histories(3)
+    constants = {"material": Material(), "constants": Criteria(), "strain": "neuber"}
+    expected = count_on_planes(line, np.full(4, 40), 0.0, **constants)[:, 0]
+    for angle in (0.0, 0.5):
+        turned = np.ascontiguousarray(rotated(six, angle))
+        found = count_on_planes(turned, np.full(4, 40), 0.0, **constants)[:, 0]
+        assert found == pytest.approx(expected, rel=0.05)
+    assert (expected > 0).all()
 
 
 @pytest.mark.usefixtures("coarse_pictures")
 def test_pictures_of_a_plane(scene, tmp_path, capsys):
-    """Maps over the surface, a section through the worst row, stresses below, Weibull plots with bounds."""
     y = scene.x[14:35] - scene.x[24]
     p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
     path = write_plane(tmp_path / "point.h5", scene, "point", y, p, depths=(0.0, 0.1, 0.2, 0.3))
@@ -217,25 +227,8 @@ def test_pictures_of_a_plane(scene, tmp_path, capsys):
     assert abs(section.section_y) < A / 4  # under the middle of the sphere
 
 
-def test_critical_plane_of_six_components():
-    """As of three under plane strain, to the resolution of the search, and in axes turned by any angle."""
-    from ehlpetsc.post.criteria.critical_plane import count_on_planes
-    from ehlpetsc.post.criteria.planes import Criteria
-
-    line, six = random_histories(3)
-    constants = {"material": Material(), "constants": Criteria(), "strain": "neuber"}
-    expected = count_on_planes(line, np.full(4, 40), 0.0, **constants)[:, 0]
-    for angle in (0.0, 0.5):
-        turned = np.ascontiguousarray(rotated(six, angle))
-        found = count_on_planes(turned, np.full(4, 40), 0.0, **constants)[:, 0]
-        assert found == pytest.approx(expected, rel=0.05)
-    assert (expected > 0).all()
-
-
 def test_planes_are_sought_where_the_damage_is_worst(scene, tmp_path, monkeypatch):
     """The worst hundredth of a rippled strip is that of a search everywhere; elsewhere is a lower bound."""
-    from ehlpetsc.post.criteria import critical_plane
-
     monkeypatch.setattr(critical_plane, "MIN_SOUGHT", 1)
     y, rng = scene.dx * np.arange(12), np.random.default_rng(4)
     p = scene.pressures[:, None] * (1 + 0.3 * rng.uniform(-1, 1, size=(12, scene.x.size)))
@@ -255,8 +248,6 @@ def test_planes_are_sought_where_the_damage_is_worst(scene, tmp_path, monkeypatc
 
 def test_far_kernels_are_those_of_the_cubics():
     """From eight elements on, nine hats on the nodes replace the 127 of a cubic."""
-    from ehlpetsc.post.stresses import block_stress
-
     reach, y = block_stress.HAT_REACH, np.arange(3.0)
     distance = np.arange(block_stress.NEAR_ELEMENTS, 20)
     wider = np.arange(distance[0] - reach, distance[-1] + reach + 1.0)
@@ -264,14 +255,3 @@ def test_far_kernels_are_those_of_the_cubics():
         found = block_stress._far(block_stress.hat_kernels(wider, y, z, NU), offset)
         expected = block_stress._near(distance, y, z, NU, offset)
         assert found == pytest.approx(expected, abs=5e-7)
-
-
-def test_progress_begins_with_the_stresses(scene, tmp_path):
-    y = 0.1 * A * np.arange(3)
-    path = write_plane(
-        tmp_path / "strip.h5", scene, "strip", y, np.repeat(scene.pressures[:, None], 3, axis=1)
-    )
-    shares = []
-    run(Job(str(path), str(tmp_path / "strip.post.h5"), ("1",)), show=shares.append)
-    assert 0.0 < shares[0] < 0.1 and shares[-1] == pytest.approx(1.0)
-    assert (np.diff(shares) > 0.0).all()

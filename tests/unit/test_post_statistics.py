@@ -14,6 +14,10 @@ def test_textbook_data():
     fit = weibull_fit(DATA)
     assert (fit.beta, fit.alpha) == pytest.approx((1.43966, 76.1096), rel=4e-6)
     assert 0.99 < fit.r_squared < 1
+    fit = weibull_likelihood(DATA)
+    assert (fit.beta, fit.alpha) == pytest.approx((1.933, 73.526), rel=1e-3)
+    expected = weibull_min.fit(DATA, floc=0)
+    assert (fit.beta, fit.alpha) == pytest.approx((expected[0], expected[2]), rel=1e-5)
 
 
 def quantiles():
@@ -64,13 +68,6 @@ def test_nearly_equal_values_have_no_shape(spread):
     assert np.isfinite(weibull_fit(7.0 * (1 + 1e-4 * np.linspace(0, 1, 20)))).all()
 
 
-def test_likelihood_of_textbook_data():
-    fit = weibull_likelihood(DATA)
-    assert (fit.beta, fit.alpha) == pytest.approx((1.933, 73.526), rel=1e-3)
-    expected = weibull_min.fit(DATA, floc=0)
-    assert (fit.beta, fit.alpha) == pytest.approx((expected[0], expected[2]), rel=1e-5)
-
-
 def test_censored_lives_of_one_shape():
     """With a given shape the scale is (sum x^beta/failures)^(1/beta), survivors in the sum alone."""
     values, survived = np.array([16.0, 34, 53, 75, 93, 120, 120, 120]), np.arange(8) > 4
@@ -82,9 +79,6 @@ def test_censored_lives_of_one_shape():
     assert fit.alpha > weibull_likelihood(values[:5]).alpha
     undamaged = np.where(survived, np.inf, values)
     assert weibull_likelihood(undamaged).beta > fit.beta  # known to exceed 93 only
-
-
-def test_failures_before_the_first_value_count():
     lives = 5 * np.random.default_rng(1).weibull(3, 100_000)
     fit = weibull_likelihood(np.where(lives < 2, -1.0, lives))
     assert (fit.alpha, fit.beta) == pytest.approx((5, 3), rel=0.01)

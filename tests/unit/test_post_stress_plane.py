@@ -66,7 +66,7 @@ def sphere(per_radius, extent=1.5):
     return x, np.sqrt(np.clip(1 - x * x - x[:, None] ** 2, 0, None))
 
 
-def test_hertz_on_the_axis_of_a_sphere():
+def test_stresses_on_the_axis_of_a_pressed_and_of_a_sliding_sphere():
     """Johnson (3.45): 1e-3 of p0 asked for, 3e-4 found with 40 nodes a radius."""
     x, p = sphere(40)
     z = np.array([0.0, 0.05, 0.2, 0.48, 1.0, 2.0])
@@ -75,9 +75,15 @@ def test_hertz_on_the_axis_of_a_sphere():
     along = -(1 + NU) * (1 - z * np.arctan2(1, z)) + 0.5 / (1 + z * z)
     for field, exact in ((fields.sx, along), (fields.sy, along), (fields.sz, -1 / (1 + z * z))):
         assert field[:, middle, middle] == pytest.approx(exact, abs=3e-4)
+    x, p = sphere(40)
+    z = np.array([0.0, 0.05, 0.3, 1.0])
+    fields = stress_plane(x, x, z, np.zeros_like(p), p, NU)
+    middle = x.size // 2
+    exact = -1 + 1.5 * z * np.arctan2(1, z) - z * z / (2 * (1 + z * z))
+    assert fields.txz[:, middle, middle] == pytest.approx(exact, abs=3e-4)
 
 
-def test_hertz_at_the_edge_of_a_sphere():
+def test_stresses_at_the_surface_of_a_pressed_and_of_a_sliding_sphere():
     """Radial tension (1 - 2 nu)/3 p0 at the surface, equal compression around (Johnson (3.44))."""
     x, p = sphere(120, extent=1.05)
     fields = stress_plane(x, x, 0.0, p, None, NU)
@@ -85,10 +91,6 @@ def test_hertz_at_the_edge_of_a_sphere():
     assert fields.sx[middle, edge] == pytest.approx((1 - 2 * NU) / 3, abs=1e-3)
     assert fields.sy[middle, edge] == pytest.approx(-(1 - 2 * NU) / 3, abs=1e-3)
     assert fields.sy[edge, middle] == pytest.approx((1 - 2 * NU) / 3, abs=1e-3)
-
-
-def test_sliding_sphere_at_the_surface():
-    """Hamilton (1983): linear in x and y in the contact."""
     x, p = sphere(120, extent=1.05)
     fields = stress_plane(x, x, 0.0, np.zeros_like(p), p, NU)
     inner = np.hypot(x, x[:, None]) < 0.9
@@ -101,16 +103,6 @@ def test_sliding_sphere_at_the_surface():
     }
     for name, values in exact.items():
         assert getattr(fields, name)[inner] == pytest.approx(values[inner], abs=1e-3), name
-
-
-def test_sliding_sphere_on_the_axis():
-    """Hamilton (1983), shear stress below the centre."""
-    x, p = sphere(40)
-    z = np.array([0.0, 0.05, 0.3, 1.0])
-    fields = stress_plane(x, x, z, np.zeros_like(p), p, NU)
-    middle = x.size // 2
-    exact = -1 + 1.5 * z * np.arctan2(1, z) - z * z / (2 * (1 + z * z))
-    assert fields.txz[:, middle, middle] == pytest.approx(exact, abs=3e-4)
 
 
 def test_load_constant_across_a_period_is_the_line():
@@ -160,9 +152,6 @@ def test_free_load_is_not_felt_from_beyond_the_ends():
     fields = stress_plane(x, x, 2.0, p, None, NU)
     exact = point_loads(np.array([61.0]), np.array([61.0]), 2.0)[0, :, 0]
     assert [field[62, 62] for field in fields] == pytest.approx(exact, rel=1e-3)
-
-
-def test_batches_and_shapes():
     x, y = np.linspace(-1, 1, 16), np.linspace(0, 1, 8)
     p = np.random.default_rng(0).uniform(size=(3, 2, 8, 16))
     whole = stress_plane(x, y, [0.1, 0.2], p, p, NU)
@@ -170,9 +159,6 @@ def test_batches_and_shapes():
     single = stress_plane(x, y, 0.2, p[1, 0], p[1, 0], NU)
     for many, one in zip(whole, single, strict=True):
         assert many[1, 0, 1] == pytest.approx(one, abs=1e-13)
-
-
-def test_loads_that_do_not_fit_the_nodes_are_refused():
     x = np.linspace(-1, 1, 16)
     with pytest.raises(ValueError, match="one value a node"):
         stress_plane(x, x[:8], 0.1, np.zeros((16, 8)), None, NU)

@@ -41,17 +41,6 @@ def test_ripple_on_a_uniform_film_is_advected_by_whole_nodes(model):
     np.testing.assert_allclose(w[3:], rough.w[:-3], rtol=1e-9)
 
 
-def test_smooth_solution_is_its_own_prediction():
-    """Nothing moves where there is nothing but the smooth film, however uneven that is."""
-    problem = problem_of()
-    film, x = problem.film_scale, problem.x
-    q0 = np.where(x < 1.0, 0.7 / (1.0 + x**2), -0.5)
-    smooth = TimeLevel(0.0, q0, film * (1.0 + np.maximum(x**2 - 1.0, 0.0)))
-    q, w = predict(problem, smooth, [smooth._replace(travelled=1e-6)], [2.4])
-    np.testing.assert_allclose(q, smooth.q, rtol=1e-12)
-    np.testing.assert_allclose(w, smooth.w, rtol=1e-12)
-
-
 def test_cavity_is_not_advected_into_oil():
     """A cavity of the smooth film in which the layer keeps the gap full stays full; one of both stays one."""
     problem = problem_of("mixed")
@@ -62,10 +51,6 @@ def test_cavity_is_not_advected_into_oil():
     q, _ = predict(problem, smooth, [level], [2.4])
     assert (q[x < 0.5] > 0.0).all()
     assert (q[x > 0.6] < 0.0).all() and q.min() >= -1.0
-
-
-def test_valley_without_pressure_does_not_get_that_of_the_smooth_film():
-    """At the edge of the contact, where the smooth pressure rises from node to node."""
     problem = problem_of("mixed")
     smooth, _ = smooth_and_rough(problem)
     smooth = smooth._replace(q=np.where(problem.x > -1.0, 0.06, 0.0))
@@ -84,6 +69,13 @@ def test_prediction_uses_the_level_nearest_to_whole_nodes():
         q, _ = predict(problem, smooth, levels, nodes)
         alone, _ = predict(problem, smooth, [levels[taken]], [nodes[taken]])
         np.testing.assert_array_equal(q, alone)
+    problem = problem_of()
+    film, x = problem.film_scale, problem.x
+    q0 = np.where(x < 1.0, 0.7 / (1.0 + x**2), -0.5)
+    smooth = TimeLevel(0.0, q0, film * (1.0 + np.maximum(x**2 - 1.0, 0.0)))
+    q, w = predict(problem, smooth, [smooth._replace(travelled=1e-6)], [2.4])
+    np.testing.assert_allclose(q, smooth.q, rtol=1e-12)
+    np.testing.assert_allclose(w, smooth.w, rtol=1e-12)
 
 
 @pytest.mark.parametrize("way", [0.3, 1.5, 2.9])
@@ -103,7 +95,6 @@ def test_predicted_films_and_voids_stay_within_bounds(way):
 
 @pytest.mark.parametrize("way, moved", [(2.0, 2), (1.6, 2), (2.4, 2)])
 def test_contact_pressure_is_advected_unchanged(way, moved):
-    """In mixed contact: their pressure neither spreads nor fades between nodes."""
     problem = problem_of("mixed")
     smooth, rough = smooth_and_rough(problem)
     rough.w[50:53] = [-0.1, -0.3, -0.2]

@@ -1,14 +1,11 @@
 """Profile files as instruments write them: read, or refused with the key that settles it."""
 
-import re
 import sys
 
 import numpy as np
 import pytest
-from support import CASES, one_fault
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.case import loading as case
 from ehlpetsc.surfaces.files.profiles import Layout, checked, read_profile
 
 X, Z = np.arange(6) * 2e-6, np.array([0.0, 1e-7, -2.5e-7, 3e-7, 1.5e-7, -1e-8])
@@ -83,23 +80,39 @@ def test_decreasing_x_is_reversed(tmp_path):
     assert len(notes) == 1 and notes[0].startswith("x falls")
 
 
-def test_missing_heights_are_filled_up_to_the_length_stated(tmp_path):
+def long_profile(path, left_out=(), words=()):
+    """A profile whose heights are words here and there, or whose lines are left out; x and heights."""
     x = np.arange(400) * 1e-6
-    z = 1e-7 * np.sin(x / 3e-5)
-    words = [f"{v:.12e}" for v in z]
-    for gap, how in ((slice(50, 53), "nan"), (slice(200, 201), ""), (slice(0, 2), "---")):
-        words[gap] = [how] * (gap.stop - gap.start)
+    z, words = 1e-7 * np.sin(x / 3e-5), dict(words)
+    kept = np.setdiff1d(np.arange(400), left_out)
+    path.write_text("".join(f"{x[k]:.7e};{words.get(k, f'{z[k]:.12e}')}\n" for k in kept))
+    return x, z
+
+
+@pytest.mark.parametrize(
+    ("changes", "count", "begin"),
+    [
+        ({"words": {0: "---", 1: "---", 50: "nan", 51: "nan", 52: "nan", 200: ""}}, 6, 2),
+        ({"left_out": [50, 51, 52, 200]}, 4, 0),  # a spline would bridge them without a warning
+    ],
+)
+def test_missing_heights_and_lines_are_filled_up_to_the_length_stated(tmp_path, changes, count, begin):
     path = tmp_path / "p.csv"
-    path.write_text("".join(f"{a:.7e};{word}\n" for a, word in zip(x, words, strict=True)))
-    with pytest.raises(ProfileError, match="^6 .* 4e-06 m .* x = 4.9e-05; .* fill_gaps = 4e-06 "):
+    x, z = long_profile(path, **changes)
+    with pytest.raises(ProfileError, match=f"^{count} .* 4e-06 m .* x = 4.9e-05; .* fill_gaps = 4e-06 "):
         read_profile(path)
     with pytest.raises(ProfileError, match="fill_gaps = 4e-06 "):
         read_profile(path, Layout(fill_gaps=3.9e-6))
-    X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
-    assert len(X) == 398 and X[0] == 0.0  # the ends are not guessed
-    np.testing.assert_allclose(filled, z[2:], atol=1e-12)
-    (note,) = notes
-    assert note.startswith("6 missing ") and note.endswith(" 4 um")
+    X, filled, (note,) = read_profile(path, Layout(fill_gaps=4.1e-6))
+    np.testing.assert_allclose(X, x[begin:] - x[begin], atol=1e-15)  # the ends are not guessed
+    np.testing.assert_allclose(filled, z[begin:], atol=1e-12)
+    assert note.startswith(f"{count} missing ") and note.endswith(" 4 um")
+
+
+def test_more_than_half_of_the_lines_omitted_is_refused(tmp_path):
+    long_profile(tmp_path / "p.csv", left_out=np.arange(60, 399))
+    with pytest.raises(ProfileError, match="1e-06 m apart, .* 0.00034 m .* x = 5.9e-05; .* half"):
+        read_profile(tmp_path / "p.csv", Layout(fill_gaps=1.0))
 
 
 @pytest.mark.parametrize(
@@ -113,34 +126,8 @@ def test_markers_of_a_missing_height(tmp_path, marker, separator):
         read_profile(path)
 
 
-def test_omitted_lines_are_missing_heights(tmp_path):
-    """The spline would bridge them without a warning, and the spacing printed would be a mean."""
-    x = np.arange(400) * 1e-6
-    z = 1e-7 * np.sin(x / 3e-5)
-    path = tmp_path / "p.csv"
-
-    def write(left_out):
-        kept = np.setdiff1d(np.arange(400), left_out)
-        path.write_text("".join(f"{x[k]:.7e};{z[k]:.12e}\n" for k in kept))
-
-    write([50, 51, 52, 200])
-    message = "^4 .* 4e-06 m .* x = 4.9e-05; .* fill_gaps = 4e-06 "
-    with pytest.raises(ProfileError, match=message):
-        read_profile(path)
-    X, filled, notes = read_profile(path, Layout(fill_gaps=4.1e-6))
-    np.testing.assert_allclose(X, x, atol=1e-15)
-    np.testing.assert_allclose(filled, z, atol=1e-12)
-    (note,) = notes
-    assert note.startswith("4 missing ") and note.endswith(" 4 um")
-    write(np.arange(60, 399))
-    message = "1e-06 m apart, .* 0.00034 m .* x = 5.9e-05; .* half"
-    with pytest.raises(ProfileError, match=message):
-        read_profile(path, Layout(fill_gaps=1.0))
-
-
 @pytest.mark.parametrize("x", [np.r_[0, 100:120, 220], np.cumsum(1.0 + np.arange(400) % 3)])
 def test_uneven_spacing_is_no_gap(tmp_path, x):
-    """A shape made by hand, and one whose spacing varies all along."""
     path = tmp_path / "p.csv"
     path.write_text("".join(f"{1e-6 * place:.7e};{1e-7 * np.sin(place):.9e}\n" for place in x))
     X, _, notes = read_profile(path)
@@ -186,25 +173,6 @@ def test_refused_profile_names_the_layout_key(tmp_path, text, layout, message):
     assert "\n" not in str(caught.value)
 
 
-def measured(tmp_path, x=1.0, z=1.0):
-    """A measured profile in another unit beside a case."""
-    table = np.loadtxt(CASES / "profiles" / "alicona_meander_profile.csv", delimiter=",")
-    np.savetxt(tmp_path / "p.csv", table * (x, z), delimiter=",")
-    text = (CASES / "table1_smooth.toml").read_text() + "\n[surface.2]\nfile = 'p.csv'\n"
-    (tmp_path / "c.toml").write_text(text)
-    return tmp_path / "c.toml"
-
-
-@pytest.mark.parametrize(
-    ("x", "z", "message"),
-    [(1e3, 1e3, "points 500 um apart .* 336 um: "), (1, 1e6, r"Rq 1\.98e\+05 um ")],
-)
-def test_implausible_profile_is_refused(tmp_path, x, z, message):
-    assert re.search(
-        f"surface.2.file.*{message}.* another unit", one_fault(case.load, measured(tmp_path, x, z))
-    )
-
-
 def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
     class Topography:
         dim = 2
@@ -237,7 +205,6 @@ def wave(count=400):
 )
 @pytest.mark.parametrize("tilt", [0.0, 0.1])
 def test_repeated_no_data_values_are_missing_heights(tmp_path, value, shown, tilt):
-    """Also of a tilted profile whose heights reach from below the value to above."""
     x, z = wave()
     z = z + tilt * (x - x.mean())
     written = 1e6 * z
@@ -285,9 +252,6 @@ def test_spikes_are_noted_and_bridged_on_request():
     _, bridged, (note,) = checked(x, faulty, Layout(bridge_spikes=True))
     np.testing.assert_allclose(bridged, z, atol=2e-7)
     assert note.endswith("x = 30 um, bridged")
-
-
-def test_heights_beside_a_drop_out_are_no_spike():
     x, z, _ = with_spikes()
     z[100:120] = np.nan
     _, _, notes = checked(x, z, Layout(fill_gaps=2e-5))
@@ -361,6 +325,7 @@ def test_softgauges_have_spacing_and_scale_in_their_header(tmp_path, name):
         ("flank.prf", "SPACING CX 2.0e-003\n", "", "^SMD: x without spacing; "),
         ("flank.prf", "UM 1.000000e-006", "KM 1", "^SMD: unit KM of CZ; allowed: m, mm, um, nm$"),
         ("flank.prf", "-250000", "-25o000", '^SMD: "-25o000" is not a number; '),
+        ("flank.prf", "-250000", "BAD", "^1 heights missing, .* x = 2e-06; "),
         ("flank.smd", "\x03", "", "^SMD: fewer than 3 records; "),
         ("profile.sdf", "Zscale", "Zskale", "^SDF: Zscale is missing; "),
         ("map.SDF", "NumPoints = 6", "NumPoints = 5", "^SDF: 18 heights, NumPoints NumProfiles = 15 "),
@@ -370,11 +335,4 @@ def test_damaged_softgauge_is_refused(tmp_path, name, old, new, message):
     path = tmp_path / name
     path.write_text(softgauges()[name].replace(old, new))
     with pytest.raises(ProfileError, match=message):
-        read_profile(path)
-
-
-def test_bad_heights_of_a_softgauge_are_missing(tmp_path):
-    path = tmp_path / "p.prf"
-    path.write_text(softgauges()["flank.prf"].replace("-250000", "BAD"))
-    with pytest.raises(ProfileError, match="^1 heights missing, .* x = 2e-06; "):
         read_profile(path)

@@ -42,9 +42,6 @@ def test_case_from_a_dict_equals_the_file():
     one = ehlpetsc.load(data, {"fluid.viscosity": np.float64(0.003)})
     assert one == ehlpetsc.load(path, ["fluid.viscosity=0.003"])
     assert ehlpetsc.load(tomllib.loads(one.text)) == one  # the text of the result runs the same case
-
-
-def test_none_omits_a_key():
     assert ehlpetsc.load(CASES / "table1_rough.toml", {"time": None, "surface": None}).time is None
 
 
@@ -57,17 +54,6 @@ def test_profiles_may_be_arrays():
         case = ehlpetsc.load(CASES / "table1_rough.toml", {"surface.1": given, "surface.2": None})
         profile = ehlpetsc.Simulation(case).roughness.surface_1
         assert profile.statistics["ra"] == pytest.approx(np.abs(z - z.mean()).mean(), rel=1e-9)
-
-
-def test_profile_of_many_points_is_solved_in_memory():
-    """The text of the case, with all heights in it, is longer than the header of an HDF5 object."""
-    x = np.linspace(0.0, 2e-3, 20_000)
-    surface = {"2": {"x": x, "z": 1e-8 * np.cos(x / 1e-5)}}
-    case = ehlpetsc.load(
-        ROOT / "cases" / "dry_hertz.toml", {"mesh.points_per_half_width": 20, "surface": surface}
-    )
-    with ehlpetsc.solve(case, options={}) as result:
-        assert result.attrs["case"] == case.text and len(case.text) > 500_000
 
 
 @pytest.mark.parametrize(
@@ -86,7 +72,7 @@ def test_invalid_profile_arrays_are_refused(surface, fault):
     assert re.search(fault, str(caught.value))
 
 
-def test_result_in_memory_has_fields_scalars_and_attributes(case, result, tmp_path):
+def test_result_in_memory_has_fields_scalars_and_attributes_as_that_on_disk(case, result, tmp_path):
     assert result.pressure.shape == result.film_thickness.shape == (len(result.time), len(result.x))
     assert len(result.time) == len(result.steps.h_min) == 5
     assert result.steps.h_min[-1] == result.film_thickness[-1].min()
@@ -95,9 +81,6 @@ def test_result_in_memory_has_fields_scalars_and_attributes(case, result, tmp_pa
     with pytest.raises(AttributeError, match="^presure: "):
         result.presure  # noqa: B018
     assert not list(tmp_path.iterdir())
-
-
-def test_result_on_disk_equals_that_in_memory(case, result, tmp_path):
     stored = ehlpetsc.solve(case, output=tmp_path / "run.h5")
     assert [p.name for p in tmp_path.iterdir()] == ["run.h5"]
     np.testing.assert_array_equal(stored.pressure, result.pressure)
@@ -116,6 +99,11 @@ def test_iteration_over_states_can_be_resumed(case, result):
     assert [state.step for state in rest] == [3, 4] and simulation.finished
     np.testing.assert_array_equal(rest[-1].film_thickness, result.film_thickness[-1])
     assert rest[-1].scalars["h_min"] == rest[-1].h_min == result.steps.h_min[-1]
+    thick = ehlpetsc.load(CASES / "table1_rough.toml", QUICK | {"fluid.viscosity": 0.01})
+    alone = [state.h_min for state in ehlpetsc.Simulation(thick)]
+    pairs = list(zip(ehlpetsc.Simulation(case), ehlpetsc.Simulation(thick), strict=True))
+    np.testing.assert_array_equal([one.h_min for one, _ in pairs], result.steps.h_min)
+    np.testing.assert_array_equal([other.h_min for _, other in pairs], alone)
 
 
 def test_petsc_options_are_restored(case, capfd):
@@ -132,14 +120,6 @@ def test_petsc_options_are_restored(case, capfd):
     out = capfd.readouterr().out
     assert out.count("Nonlinear solve converged") == 5
     assert "step 4 from" in out
-
-
-def test_interleaved_runs_are_independent(case, result):
-    thick = ehlpetsc.load(CASES / "table1_rough.toml", QUICK | {"fluid.viscosity": 0.01})
-    alone = [state.h_min for state in ehlpetsc.Simulation(thick)]
-    pairs = list(zip(ehlpetsc.Simulation(case), ehlpetsc.Simulation(thick), strict=True))
-    np.testing.assert_array_equal([one.h_min for one, _ in pairs], result.steps.h_min)
-    np.testing.assert_array_equal([other.h_min for _, other in pairs], alone)
 
 
 def test_divergence_raises_with_the_last_good_state(case, result, tmp_path, monkeypatch):
@@ -161,29 +141,15 @@ def test_divergence_raises_with_the_last_good_state(case, result, tmp_path, monk
     assert caught.value.state is None and not list(tmp_path.iterdir())
 
 
-def test_series_is_solved_member_by_member():
+def test_series_is_solved_member_by_member_and_post_is_an_attribute():
     case = ehlpetsc.load(CASES / "fig4.toml")
     with pytest.raises(ehlpetsc.CaseError, match=r"fig4\.toml: .*\[series\]: .*ehlpetsc\.members\(case\)"):
         ehlpetsc.solve(case)
     assert [value for value, _ in ehlpetsc.members(case)][0] == 0.01
-
-
-def test_run_continues_from_a_restart_file(case, result, tmp_path):
-    recorded = tmp_path / "run.h5"
-    from ehlpetsc.run.recorder import Recorder
-
-    simulation = ehlpetsc.Simulation(case)
-    with Recorder(simulation, recorded) as recorder:
-        for _ in range(3):
-            recorder.write(simulation.advance())
-        recorder.checkpoint()
-    whole = ehlpetsc.solve(case, recorded, restart=tmp_path / "run.restart.h5")
-    assert list(whole.steps.step) == [0, 1, 2, 3, 4]
-    np.testing.assert_allclose(whole.pressure, result.pressure, rtol=1e-9)
+    assert ehlpetsc.post.weibull_fit.__module__.startswith("ehlpetsc.post.") and "post" in dir(ehlpetsc)
 
 
 def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):
-    """Ctrl-C ends a call as it ends the command: the state is saved, and the same call continues."""
     advance, before = ehlpetsc.Simulation.advance, signal.getsignal(signal.SIGINT)
 
     def interrupted(self, **given):
@@ -201,12 +167,6 @@ def test_interrupted_call_continues(case, result, tmp_path, monkeypatch):
     whole = ehlpetsc.solve(case, output=tmp_path / "r.h5")
     assert list(whole.step) == list(result.step)
     np.testing.assert_allclose(whole.pressure, result.pressure, rtol=0.0, atol=1e-9 * result.attrs["p0"])
-
-
-def test_picture_shows_the_requested_frame(result):
-    figure = result.plot(step=3)
-    drawn = next(line for line in figure.axes[0].lines if len(line.get_xdata()) == len(result.x)).get_ydata()
-    np.testing.assert_allclose(drawn, 1e-9 * result.pressure[3])
 
 
 def test_picture_is_written_to_a_file_of_its_name(result, tmp_path):
@@ -316,7 +276,3 @@ def test_a_number_is_no_case(case):
 def test_output_without_a_name_is_refused(output):
     with pytest.raises(ehlpetsc.OutputError, match="a folder, not a file .*give the name of a file"):
         ehlpetsc.solve(CASES / "dry_hertz.toml", output=output)
-
-
-def test_post_is_an_attribute_of_the_package():
-    assert ehlpetsc.post.weibull_fit.__module__.startswith("ehlpetsc.post.") and "post" in dir(ehlpetsc)

@@ -39,7 +39,7 @@ def test_page_links_exist(page):
     assert dead == []
 
 
-def test_files_of_the_program_map_exist():
+def test_files_and_functions_of_the_program_map_exist():
     package = ROOT / "ehlpetsc"
     text = (package / "README.md").read_text(encoding="utf-8")
     folder = package
@@ -47,10 +47,6 @@ def test_files_of_the_program_map_exist():
         if "/" in name:  # those after it lie beside it
             folder = (ROOT if name.startswith("tests/") else package) / Path(name).parent
         assert (folder / Path(name).name).exists() or (package / name).exists(), name
-
-
-def test_functions_of_the_program_map_exist():
-    """`module.function`, `Class.method`: both in one file."""
     package = ROOT / "ehlpetsc"
     sources = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
     names = set(re.findall(r"`([\w.]+\.\w+)`", (package / "README.md").read_text(encoding="utf-8")))
@@ -68,20 +64,14 @@ def test_every_case_is_described_with_its_picture():
         else:
             (row,) = re.findall(rf"^\| `{case.name}` .*$", text, re.MULTILINE)
             assert re.search(r"\(pictures/\w+\.png\)", row), case.name
-
-
-def test_every_committed_picture_is_on_a_page():
     shown = set(re.findall(r"pictures/([\w.]+\.png)\)", "".join(TEXTS.values())))
     assert {path.name for path in (ROOT / "cases" / "pictures").iterdir()} == shown
 
 
-def test_every_key_of_a_profile_file_is_on_its_page():
+def test_keys_and_parameters_on_the_page_of_surfaces_are_current(capsys):
     table = TEXTS["cases/surfaces"]
     assert [key for key in LAYOUT_KEYS if f"`{key}" not in table] == []
     assert [ending for ending in TEXT_ENDINGS if f"`{ending}`" not in table] == []
-
-
-def test_parameters_on_the_page_are_current(capsys):
     file = "cases/profiles/alicona_meander_profile.csv"
     assert surface([str(ROOT / file), "--no-picture"]) == 0
     _, *lines = capsys.readouterr().out.splitlines()
@@ -116,20 +106,14 @@ needs_generator = pytest.mark.skipif(
 )
 
 
-def test_site_contains_every_page_once():
+def test_site_contains_every_page_once_numbered_equations_and_a_mathjax():
     paths = (path for path in ROOT.rglob("*.md") if not any(part.startswith(".") for part in path.parts))
     here = {str(path.relative_to(ROOT).with_suffix("")) for path in paths}
     assert sorted(page for page in SITE if not page.startswith(".")) == sorted(here)
-
-
-def test_theory_equations_are_numbered_consecutively():
     displayed = re.findall(r"\$\$(.*?)\$\$", TEXTS["ehlpetsc/model"], re.DOTALL)
     assert not re.search(r"\\[^a-zA-Z]", "".join(displayed))  # which Markdown would take for an escape
     numbers = [re.findall(r"\\tag\{(\d+)\}", equation) for equation in displayed]
     assert numbers == [[str(k)] for k in range(1, len(displayed) + 1)] and len(numbers) > 10
-
-
-def test_site_without_debians_mathjax_takes_that_of_sphinx():
     path = ROOT / ".github" / "site" / "conf.py"
     text = path.read_text(encoding="utf-8").replace('"/usr/share/javascript/mathjax"', '"/none"')
     found: dict = {}

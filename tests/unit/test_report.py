@@ -1,14 +1,21 @@
-"""Progress lines and the summary line."""
+"""What a run says: progress, the summary line, long compilation, ranks that wait for their cores."""
 
 import io
 import re
 from types import SimpleNamespace
 
 import pytest
+from numba.core import event
 
+from ehlpetsc.base import command_line as progress_line
+from ehlpetsc.base import compiled
+from ehlpetsc.base.command_line import ERASE, ProgressLine
+from ehlpetsc.base.compiled import COMPILING, announce_compilation
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.results.means import Totals
 from ehlpetsc.run import recorder as report
+from ehlpetsc.run import solve as busy_cores
+from ehlpetsc.run.solve import WATCHED_STEPS, BusyCores
 
 SCALARS = dict(dt=1.5e-7, newton=4, contacts=2, h_min=0.1234e-6, p_max=1.25e9)
 
@@ -55,6 +62,12 @@ def test_progress_lines_are_few_with_fixed_columns(clock):
     assert lines[0].split() == names
     assert lines[1].split() == ["1", "1.0000", "0.15000", "4", "0.12340", "1.2500", "2", "?"]
     assert lines[-1].split()[::7] == ["100", "0s"]
+    stream = io.StringIO()
+    progress = started(50e-6, 100e-6, stream)
+    for step in (55, 60):
+        clock.append(clock[-1] + 5.0)
+        show(progress, step, step * 1e-6)
+    assert stream.getvalue().split()[-1] == "40s"
 
 
 def test_remaining_time_follows_the_recent_rate(clock):
@@ -77,15 +90,6 @@ def test_progress_on_a_terminal_is_one_line_in_place(clock, monkeypatch):
     assert drawn[4].split()[::7] == ["5", "5s"]
 
 
-def test_progress_of_a_restarted_run_counts_from_its_restart(clock):
-    stream = io.StringIO()
-    progress = started(50e-6, 100e-6, stream)
-    for step in (55, 60):
-        clock.append(clock[-1] + 5.0)
-        show(progress, step, step * 1e-6)
-    assert stream.getvalue().split()[-1] == "40s"
-
-
 @pytest.mark.parametrize(
     "seconds, text",
     [(0.4, "0s"), (59.4, "59s"), (59.6, "1m00s"), (725, "12m05s"), (12000, "3h20m"), (187200, "2d04h")],
@@ -105,3 +109,70 @@ def test_summary_line_is_parsable():
     assert line.startswith("ehlpetsc: done steps=")
     values = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", line)}
     assert values == figures | means | {"wall": 12.3}
+
+
+@pytest.fixture
+def now(monkeypatch):
+    """Clock, in an environment without mpirun."""
+    time = [100.0]
+    monkeypatch.setattr(progress_line, "clock", SimpleNamespace(monotonic=lambda: time[0]))
+    for name in ("OMPI_COMM_WORLD_RANK", "EHLPETSC_TERMINAL"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    return time
+
+
+def written(stream, now):
+    line = ProgressLine("post a.h5", 8.0, stream)
+    for _ in range(2):
+        now[0] += 30.0
+        line.add(1.0)
+    line.clear()
+    return stream.getvalue()
+
+
+def test_line_is_written_over_itself_with_the_time_remaining(now):
+    text = written(Terminal(), now)
+    assert [entry.rstrip() for entry in text.split("\r")[1:3]] == [
+        "post a.h5: 12 %, 3m30s remaining",
+        "post a.h5: 25 %, 3m00s remaining",
+    ]
+    assert "\n" not in text and text.endswith(ERASE)
+    assert written(io.StringIO(), now) == ""
+
+
+@pytest.mark.parametrize("terminal, shown", [("1", True), ("", False)])
+def test_under_mpirun_the_script_knows_whether_there_is_a_terminal(now, monkeypatch, terminal, shown):
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "0")
+    monkeypatch.setenv("EHLPETSC_TERMINAL", terminal)
+    assert bool(written(Terminal(), now)) == shown
+
+
+@pytest.mark.parametrize("seconds, said", [((0.2, 0.3), []), ((0.8, 0.8, 2.0, 0.1), [COMPILING])])
+def test_long_compilation_is_announced_once(monkeypatch, seconds, said):
+    now, shown, registered = [0.0], [], []
+    monkeypatch.setattr(compiled, "clock", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(event, "register", lambda kind, listener: registered.append(listener))
+    announce_compilation(shown.append)
+    (listener,) = registered
+    for length in seconds:
+        for _ in range(2):  # of a function and of one that it calls
+            listener.on_start(None)
+        now[0] += length
+        for _ in range(2):
+            listener.on_end(None)
+    assert shown == said
+
+
+@pytest.mark.parametrize("share, ranks, words", [(0.25, 2, "3.0 times"), (0.9, 2, ""), (0.25, 1, "")])
+def test_note_of_a_share_of_the_core(monkeypatch, share, ranks, words):
+    wall = [0.0]
+    times = SimpleNamespace(monotonic=lambda: wall[0], process_time=lambda: share * wall[0])
+    monkeypatch.setattr(busy_cores, "clock", times)
+    said: list[str] = []
+    comm = SimpleNamespace(size=ranks, rank=0, allreduce=lambda value, operation: value)
+    output = BusyCores(comm, said.append)
+    for step in range(3 * WATCHED_STEPS):
+        output.write(SimpleNamespace(step=step))
+        wall[0] += 0.01 * (step + 1)
+    assert len(said) == bool(words) and all(words in line and "-n 1" in line for line in said)

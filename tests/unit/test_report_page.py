@@ -122,7 +122,6 @@ VISITOR = (Path(__file__).parents[1] / "data" / "report_visitor.js").read_text(e
 @pytest.mark.slow
 @pytest.mark.skipif(BROWSER is None, reason="no browser is installed; the other tests read text and data")
 def test_slider_map_and_zoom_of_the_page(tmp_path, page):
-    """What a visitor sees who slides, clicks into the map and zooms, without a network."""
     path = with_solids(make_result(tmp_path / "r.h5"))
     page(path)
     found = visited(path.with_suffix(".html"), VISITOR)

@@ -48,7 +48,6 @@ def cross_factor(kind, sigma, zeta, h=1e-7, eta=0.5):
 
 @pytest.mark.parametrize("zeta", [0.1, 10.0, 1e4])
 def test_limits_of_the_cross_flow_of_an_eyring_film(zeta):
-    """Against the profile of both stresses through the film, along x even, across linear."""
     assert cross_factor(rheology.NEWTON, 5.0, zeta) == pytest.approx(1.0, rel=1e-12)
     assert cross_factor(rheology.EYRING, 5.0, 0.0) == pytest.approx(7.124316769, rel=1e-9)
     z = (np.arange(4000) + 0.5) / 4000 - 0.5

@@ -122,6 +122,13 @@ def test_surface_keys_are_applied_in_order():
     assert turned.surface_1.statistics["ra"] == pytest.approx(4 * base.surface_1.statistics["ra"])
     filtered, _ = rough("table1_rough.toml", "surface.1.cutoff=20e-6", "surface.1.level=true")
     assert filtered.surface_1.rq < 0.7 * base.surface_1.rq
+    spec = "surface.2.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
+    first, again, other = (
+        rough("table1_smooth.toml", spec.format(seed), travel)[0].surface_2.given.z[0]
+        for seed, travel in ((1, "time.travel=2"), (1, "time.travel=9"), (2, "time.travel=2"))
+    )
+    np.testing.assert_array_equal(first, again)
+    assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
 
 
 def test_heights_move_with_body_points():
@@ -188,7 +195,7 @@ def test_cell_mean_has_a_ramp_and_converges():
     assert (profile(X, z).mean_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
 
 
-def test_profile_enters_at_the_inlet_with_its_first_point():
+def test_profile_enters_with_its_first_point_at_the_inlet_or_moving_back_at_the_outlet():
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=2.0)
     inlet, t = -2.5 * A, 4e-4
@@ -197,6 +204,12 @@ def test_profile_enters_at_the_inlet_with_its_first_point():
     np.testing.assert_allclose(p.height(x - 2.0 * t), np.interp(beyond_ramp, X, z), atol=1e-15)
     assert (p.height(np.linspace(inlet + 2.0 * t, 1.5 * A, 100) - 2.0 * t) == 0.0).all()
     assert (phi(Roughness(p, p), np.linspace(-2.5, 1.5, 100) * A, 0.0) == 0.0).all()
+    X, z, _ = read_profile(ALICONA)
+    p = profile(X, z, speed=-2.0)
+    t, at = 4e-4, np.arange(0.2e-3, 0.8e-3, 0.5e-6)
+    x = 1.5 * A + at - 2.0 * t
+    np.testing.assert_allclose(p.height(x + 2.0 * t), np.interp(at, X, z), atol=1e-15)
+    assert (p.height(np.linspace(-2.5, 1.5, 100) * A) == 0.0).all()
 
 
 def test_height_is_continuous_where_the_profile_begins():
@@ -223,15 +236,6 @@ def test_short_profile_is_mirrored_smoothly():
         assert abs(np.diff(beside)[0]) < 2e-3 * 1e-9  # level at the end, where slopes elsewhere reach 0.2
 
 
-def test_backward_moving_surface_enters_at_the_outlet():
-    X, z, _ = read_profile(ALICONA)
-    p = profile(X, z, speed=-2.0)
-    t, at = 4e-4, np.arange(0.2e-3, 0.8e-3, 0.5e-6)
-    x = 1.5 * A + at - 2.0 * t
-    np.testing.assert_allclose(p.height(x + 2.0 * t), np.interp(at, X, z), atol=1e-15)
-    assert (p.height(np.linspace(-2.5, 1.5, 100) * A) == 0.0).all()
-
-
 @pytest.mark.parametrize(("speed", "moving"), [(0.0, True), (3.0, False)])
 def test_stationary_profile_covers_the_domain(speed, moving):
     X, z, _ = read_profile(ALICONA)
@@ -252,28 +256,22 @@ def test_stored_profile_equals_the_heights_used():
         np.testing.assert_allclose(-one, p.z[here], atol=1e-15)
 
 
-def test_smooth_surfaces_have_no_roughness_and_load_no_spline():
-    assert rough("table1_smooth.toml")[0] is None
-    r, _ = rough("ridge.toml")
-    assert r.surface_1 is None and r.surface_2 is not None
-
-
-def test_ridge_case_is_its_gaussian():
+def test_ridge_case_is_its_gaussian_and_a_dent_its_negative():
     r, s = rough("ridge.toml")
     t = (2.5 + 0.4) * s.a / s.u2  # centre at x = 0
     x = np.linspace(-0.5, 0.5, 401) * s.a
     np.testing.assert_allclose(phi(r, x, t), -0.1e-6 * np.exp(-((x / s.a / 0.1) ** 2)), atol=2e-12)
     assert np.abs(phi(r, s.x * s.a, t)).max() == pytest.approx(0.1e-6)
-
-
-def test_dent_is_a_negative_ridge():
     ridge, s = rough("ridge.toml")
     dent, _ = rough("ridge.toml", "surface.2.synthetic.kind='dent'")
     x, t = s.x * s.a, 2.9 * s.a / s.u2
     np.testing.assert_array_equal(phi(dent, x, t), -phi(ridge, x, t))
+    assert rough("table1_smooth.toml")[0] is None
+    r, _ = rough("ridge.toml")
+    assert r.surface_1 is None and r.surface_2 is not None
 
 
-def test_wave_continues_with_its_amplitude():
+def test_waves_continue_with_their_amplitude():
     wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, wavelength=2e-5}"
     r, s = rough("table1_smooth.toml", wave, "time.travel=30")
     t = 20 * s.a / s.u2
@@ -281,33 +279,10 @@ def test_wave_continues_with_its_amplitude():
     abscissa = s.x[0] * s.a - x + s.u2 * t
     np.testing.assert_allclose(phi(r, x, t), -1e-7 * np.cos(2 * np.pi * abscissa / 2e-5), atol=1e-13)
     assert r.surface_2.rq == pytest.approx(1e-7 / np.sqrt(2), rel=0.02)
-
-
-def test_square_wave_stays_within_its_amplitude():
     r, s = rough("table1_smooth.toml", "surface.2.synthetic={kind='square', amplitude=1e-7, wavelength=1e-4}")
     z = phi(r, np.linspace(-4, 1.5, 20001) * s.a, 0.0)
     assert np.abs(z).max() <= 1e-7 * (1 + 1e-6)
     assert (np.abs(z) > 0.99e-7).mean() > 0.8
-
-
-@pytest.mark.parametrize("skewness", [-1.5, -0.5, 0.0, 1.0])
-def test_ground_heights_have_their_specified_statistics(skewness):
-    spec = f"{{kind='ground', ra=0.3e-6, correlation=25e-6, skewness={skewness}, seed=4}}"
-    r, _ = rough("table1_smooth.toml", f"surface.2.synthetic={spec}")
-    assert r.surface_2.statistics["ra"] == pytest.approx(0.3e-6)
-    assert r.surface_2.statistics["rsk"] == pytest.approx(skewness, abs=1e-6)
-    z = r.surface_2.given.z[0] - r.surface_2.given.z.mean()
-    assert z[10:] @ z[:-10] / (z @ z) == pytest.approx(np.exp(-1), abs=0.1)  # one correlation length apart
-
-
-def test_ground_heights_depend_on_their_seed_only():
-    spec = "surface.2.synthetic={{kind='ground', ra=0.3e-6, correlation=25e-6, seed={}}}"
-    first, again, other = (
-        rough("table1_smooth.toml", spec.format(seed), travel)[0].surface_2.given.z[0]
-        for seed, travel in ((1, "time.travel=2"), (1, "time.travel=9"), (2, "time.travel=2"))
-    )
-    np.testing.assert_array_equal(first, again)
-    assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
 
 
 def test_self_affine_profile_has_its_height_and_waves():
@@ -337,21 +312,18 @@ def test_invalid_self_affine_spectrum_is_refused(keys, message):
         rough("table1_smooth.toml", spec)
 
 
-def test_coarse_mesh_note_has_its_figure():
-    for points, share in ((200, None), (100, "7.3 %"), (50, "51.1 %")):
-        c = case.load(CASES / "table1_rough.toml", [f"mesh.points_per_half_width={points}"])
-        scales = Scales.of(c)
-        notes = mesh_warnings(Roughness.of(c, scales), scales)
-        assert [share in note for note in notes] == ([True, True] if share else [])
-    assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
-
-
 def test_fraction_of_short_waves_is_that_of_the_variance():
     X = np.arange(8193) * 1e-6
     z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)
     p = profile(X, z).given
     assert p.unresolved_variance(5e-6) == pytest.approx(0.1, abs=1e-3)  # 4 nodes are 20 um: the 16 um wave
     assert p.unresolved_variance(3.9e-6) < 1e-3
+    for points, share in ((200, None), (100, "7.3 %"), (50, "51.1 %")):
+        c = case.load(CASES / "table1_rough.toml", [f"mesh.points_per_half_width={points}"])
+        scales = Scales.of(c)
+        notes = mesh_warnings(Roughness.of(c, scales), scales)
+        assert [share in note for note in notes] == ([True, True] if share else [])
+    assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
 
 
 def test_constant_offset_is_removed_with_a_note(tmp_path):
@@ -362,6 +334,11 @@ def test_constant_offset_is_removed_with_a_note(tmp_path):
     assert len(given.notes) == 1 and "height of 1 um " in given.notes[0]
     np.testing.assert_allclose(given.z[0], 0.5 * z, atol=1e-14)
     assert samples(ALICONA.parent, values_of(PROFILE, {"file": ALICONA.name})).notes == ()
+    X = np.linspace(0.0, 4e-3, 10_001)
+    z = 1e-7 * np.cos(2 * np.pi * X / 1e-4)
+    np.testing.assert_allclose(levelled(X, z + 3e-3 * X - 7e-6), levelled(X, z), atol=1e-18)
+    np.testing.assert_allclose(levelled(X, z), z - np.polynomial.Polynomial.fit(X, z, 1)(X), atol=1e-20)
+    np.testing.assert_allclose(without_form([X], z + 3e-3 * X, 1), levelled(X, z), atol=1e-18)
 
 
 def test_travel_to_entry_and_filling():
@@ -390,11 +367,3 @@ def test_surface_at_rest_in_the_reference_state_enters_slowly():
     scales = SimpleNamespace(u1=0.02, u2=0.0, u_max=0.02)
     later = SimpleNamespace(conditions=SimpleNamespace(directions=lambda: (1.0, -1.0)))
     assert directed_speeds(later, scales) == pytest.approx((0.02, -2e-5))
-
-
-def test_levelling_removes_a_line_only():
-    X = np.linspace(0.0, 4e-3, 10_001)
-    z = 1e-7 * np.cos(2 * np.pi * X / 1e-4)
-    np.testing.assert_allclose(levelled(X, z + 3e-3 * X - 7e-6), levelled(X, z), atol=1e-18)
-    np.testing.assert_allclose(levelled(X, z), z - np.polynomial.Polynomial.fit(X, z, 1)(X), atol=1e-20)
-    np.testing.assert_allclose(without_form([X], z + 3e-3 * X, 1), levelled(X, z), atol=1e-18)

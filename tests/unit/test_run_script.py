@@ -57,10 +57,12 @@ def test_default_ranks_folder_and_python(script, tmp_path, ranks, table):
     assert done.stderr == ""
 
 
-def test_options_after_the_case_are_passed_on(script):
+@pytest.mark.parametrize("status", [1, 4])
+def test_options_after_the_case_and_the_exit_status_are_passed_on_silently(script, status):
     options = ["-n", "7", "-h", "-snes_monitor", "-options_left", "--set", "title=two words"]
-    done = script("-n", "1", "case.toml", *options)
+    done = script("-n", "1", "case.toml", *options, STATUS=str(status), **AT_ONCE)
     assert f"ARGS {['case.toml', *options]} SIZE 1" in done.stdout
+    assert (done.returncode, done.stderr) == (status, "")
 
 
 def test_script_runs_with_the_package_on_its_path(script, tmp_path):
@@ -71,13 +73,6 @@ def test_script_runs_with_the_package_on_its_path(script, tmp_path):
     linked = [tmp_path / "elsewhere" / "linked" / "ehlpetsc", "python", "mine.py"]
     done = subprocess.run(linked, cwd=tmp_path / "elsewhere", capture_output=True, text=True, check=True)
     assert done.stdout == "['mine.py']\n"
-
-
-@pytest.mark.parametrize("status", [1, 4])
-def test_exit_status_is_passed_on_silently(script, status):
-    done = script("case.toml", STATUS=str(status), **AT_ONCE)
-    assert done.returncode == status
-    assert done.stderr == ""
 
 
 WAITING = """\
@@ -181,13 +176,10 @@ def test_user_without_root_gets_the_install_command(machine, system):
     assert typed == []
 
 
-def test_install_brings_what_pictures_and_reports_import():
+def test_install_brings_what_pictures_and_reports_import(machine):
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     lists = re.findall(r'^(?:run_modules|drawing)="(.*?)"', (ROOT / "run_mpi.sh").read_text(), re.MULTILINE)
     assert {re.match(r"\w+", name)[0] for name in extras["post"]} <= set(" ".join(lists).split())
-
-
-def test_root_installs_and_waits_for_the_apt_lock(machine):
     done, (update, install) = machine(0, DEBIAN)
     assert "installing python3-nonesuch" in done.stderr
     assert update == "-o DPkg::Lock::Timeout=600 update"
@@ -210,25 +202,16 @@ def test_complete_python_on_the_path_is_used(script, tmp_path):
     assert "VENV own" in done.stdout
 
 
-def test_command_link_works_in_any_folder(script, tmp_path):
+def test_command_link_starts_ranks_in_any_folder(script, tmp_path):
     folder = tmp_path / "some where" / "bin"
     for _ in range(2):  # the second time it is there
         done = script("--commands", str(folder))
         assert done.returncode == 0 and f'export PATH="{folder}:$PATH"' in done.stderr
-    (tmp_path / "ehlpetsc" / "__main__.py").write_text("import os, sys; print(sys.argv[1:], os.getcwd())")
-    path = {"PATH": f"{folder}:/usr/bin:/bin"}
-    called = subprocess.run(
-        ["ehlpetsc", "-x", "a b"], cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60
+    path, words = {"PATH": f"{folder}:/usr/bin:/bin"}, ["-n", "2", "case.toml", "a b"]
+    done = subprocess.run(
+        ["ehlpetsc", *words], cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60
     )
-    assert called.stdout == f"{['-x', 'a b']} {tmp_path}\n", called.stderr
-
-
-def test_command_link_starts_ranks_as_the_script_does(script, tmp_path):
-    script("--commands", str(tmp_path / "bin"))
-    path = {"PATH": f"{tmp_path / 'bin'}:/usr/bin:/bin"}
-    words = ["ehlpetsc", "-n", "2", "case.toml"]
-    done = subprocess.run(words, cwd=tmp_path, env=path, capture_output=True, text=True, timeout=60)
-    assert "ARGS ['case.toml'] SIZE 2" in done.stdout, done.stderr
+    assert f"ARGS ['case.toml', 'a b'] SIZE 2 CWD {tmp_path} " in done.stdout, done.stderr
 
 
 def is_open_mpi_4():

@@ -28,11 +28,15 @@ def made(case, tmp_path):
     ]
 
 
-def test_files_are_named_after_output_and_value(tmp_path):
+def test_files_are_named_after_output_and_value_and_longest_members_run_first(tmp_path):
     first, *_, last = series(tmp_path)
     assert first.name == "viscosity=0.01"
     assert first.output == tmp_path / "out_viscosity_0.01.h5"
     assert last.output == tmp_path / "out_viscosity_0.001.h5"
+    thin, thick = (next(m for m in series(tmp_path) if m.value == value) for value in (0.001, 0.01))
+    assert thin.weight() > thick.weight()
+    fine = series(tmp_path, "series.key='mesh.points_per_half_width'", "series.values=[100,200]")
+    assert fine[1].weight()[0] == pytest.approx(4 * fine[0].weight()[0], rel=0.01)
 
 
 STEP = {"series.combine": "step"}
@@ -45,7 +49,7 @@ def several(tmp_path, values, combine=None):
     )
 
 
-def test_several_keys_make_a_grid(tmp_path):
+def test_several_keys_make_a_grid_or_vary_together(tmp_path):
     found = several(tmp_path, [[0.01, 0.002], [5.0, 1.0, 0.2]])
     assert [m.value for m in found] == [(e, u) for e in (0.01, 0.002) for u in (5.0, 1.0, 0.2)]
     for member in found:
@@ -54,9 +58,6 @@ def test_several_keys_make_a_grid(tmp_path):
     assert found[1].name == "viscosity=0.01,entrainment_speed=1.0"
     assert found[1].output.name == "out_viscosity_0.01_entrainment_speed_1.0.h5"
     assert len({m.output for m in found}) == 6
-
-
-def test_several_keys_vary_together(tmp_path):
     found = several(tmp_path, [[0.01, 0.002, 0.002], [5.0, 5.0, 5.0]], "step")
     assert [m.value for m in found] == [(0.01, 5.0), (0.002, 5.0), (0.002, 5.0)]
     # only viscosity differs, and that makes one name twice
@@ -84,13 +85,6 @@ def test_faulty_series_of_several_keys_are_refused(changed, words):
         load("cases/fig4.toml", good | changed)
 
 
-def test_longest_members_run_first(tmp_path):
-    thin, thick = (next(m for m in series(tmp_path) if m.value == value) for value in (0.001, 0.01))
-    assert thin.weight() > thick.weight()
-    fine = series(tmp_path, "series.key='mesh.points_per_half_width'", "series.values=[100,200]")
-    assert fine[1].weight()[0] == pytest.approx(4 * fine[0].weight()[0], rel=0.01)
-
-
 def test_complete_result_of_the_same_case_is_done(tmp_path):
     path, member = tmp_path / "r.h5", series(tmp_path)[0]
     assert not is_done(path, "") and member.totals().values == {}
@@ -102,13 +96,20 @@ def test_complete_result_of_the_same_case_is_done(tmp_path):
     assert not is_done(path, text)
 
 
-def test_series_sums_and_extremes():
+def test_series_sums_and_extremes(tmp_path):
     one = dict(step=3, newton=10, h_min=1e-7, p_max=1e9, contacts=2, load_error=1e-9, mass_error=0.1)
     two = dict(step=4, newton=20, h_min=0.0, p_max=2e9, contacts=5, load_error=1e-8, mass_error=0.0)
     whole = Totals.of_series([Totals(one), Totals(), Totals(two)])
     summed = dict(step=7, newton=30, contacts=7)
     assert whole.values == summed | dict(h_min=0.0, p_max=2e9, load_error=1e-8, mass_error=0.1)
     assert str(Totals.of_series([Totals()])).startswith("steps=0 newton=0 ")
+    totals = Totals()
+    with read_result(make_result(tmp_path / "r.h5")) as result:
+        for row in range(len(result.steps("step"))):
+            totals.add({name: result.steps(name)[row].item() for name in result.scalars})
+        stored = Totals.of_result(result)
+    assert str(Totals(totals.values, stored.means)) == str(stored)
+    assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
 
 
 def test_means_are_over_the_time_in_which_both_surfaces_fill_the_contact(tmp_path):
@@ -126,16 +127,6 @@ def test_means_are_over_the_time_in_which_both_surfaces_fill_the_contact(tmp_pat
     with read_result(with_solids(make_result(tmp_path / "t.h5", steps=1))) as result:
         steady = Totals.of_result(result).means
         assert steady["contact_share"] == result.steps("contact_share")[0]
-
-
-def test_step_totals_equal_those_of_the_file(tmp_path):
-    totals = Totals()
-    with read_result(make_result(tmp_path / "r.h5")) as result:
-        for row in range(len(result.steps("step"))):
-            totals.add({name: result.steps(name)[row].item() for name in result.scalars})
-        stored = Totals.of_result(result)
-    assert str(Totals(totals.values, stored.means)) == str(stored)
-    assert stored.values["step"] == 40 and stored.values["newton"] == 41 * 5
 
 
 @pytest.mark.parametrize("halvings", [1, 2, 5, 9])

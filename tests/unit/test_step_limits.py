@@ -34,6 +34,9 @@ def test_pressure_change_is_limited_in_oil():
     # a cavity counts from zero on; contact that stays does not count, contact that opens does
     assert pressure_change(now, step, 0.0, 0.0) == pytest.approx(0.4)
     assert pressure_change(now, step, 0.0, -np.inf) == pytest.approx(0.6)
+    now, step = pairs((0.0, 1.0), (0.0, 1.0)), pairs((0.0, 0.5), (0.0, 1.5))
+    close_overlaps(now, step, 0.0)
+    assert (now - step)[:, 0] == pytest.approx([0.0, PRESSURE_AFTER_REFILL])
 
 
 @pytest.mark.parametrize(
@@ -66,12 +69,6 @@ def test_solids_that_touch_are_not_pulled(film):
     assert (now - step)[0, 1] == pytest.approx(1e-3, rel=1e-4)
 
 
-def test_overlaps_are_clipped_to_contact():
-    now, step = pairs((0.0, 1.0), (0.0, 1.0)), pairs((0.0, 0.5), (0.0, 1.5))
-    close_overlaps(now, step, 0.0)
-    assert (now - step)[:, 0] == pytest.approx([0.0, PRESSURE_AFTER_REFILL])
-
-
 def test_rounding_at_the_yield_pressure_decides_nothing():
     """A node that has yielded begins the next step at the yield pressure, give or take the last digit."""
     model, found = YieldingContact(0.01, 10.0, 1.5), []
@@ -81,10 +78,6 @@ def test_rounding_at_the_yield_pressure_decides_nothing():
         model.clip_step(now, step, 1e-3)
         found.append((now - step).ravel())
     np.testing.assert_allclose(found, [[1.7, 0.09]] * 3, rtol=1e-12)
-
-
-def test_contact_precedes_yielding_in_a_step():
-    """A step to both at once stops where solids begin to carry, at the yield pressure."""
     stiffness, limit = 10.0, 1.0
     now = np.array([[0.2, 0.1], [0.2, -0.02], [0.2, 0.1]])
     step = np.array([[-0.3, 0.2], [-0.3, 0.06], [-0.3, 0.12]])
@@ -114,7 +107,6 @@ PLASTIC, SMALLEST = partial(CompliantYieldingContact, LAYER, 0.6, 0.1), 1e-3 * n
     ],
 )
 def test_unknowns_of_the_band_change_all_properties_alike(model, q, w):
-    """Changes of pressure, separation and Reynolds rows, by the pairs of the band and by q and w."""
     model, rng, owned = model(), np.random.default_rng(5), slice(0, len(q))
     state = model.linearised(model.state(np.array(q), np.array(w)), owned, lambda sums: sums)
     rows, stencil = rng.standard_normal((len(q), 8)), np.arange(len(q))[:, None] - np.arange(4)

@@ -1,14 +1,16 @@
-"""One program: its commands start, help and version are everywhere, a bad command line is one sentence."""
+"""One program: its commands, help, version, bad command lines, processes of another launcher."""
 
+import os
 import subprocess
 import sys
 
 import pytest
-from support import ROOT, is_line_with
+from support import CASES, ROOT, is_line_with
 
 from ehlpetsc import __version__
 from ehlpetsc.__main__ import COMMANDS, main
 from ehlpetsc.base import environment
+from ehlpetsc.base.environment import SIZE_VARIABLES, other_mpi
 from ehlpetsc.base.errors import ExitStatus
 
 
@@ -22,11 +24,13 @@ def test_every_command_has_help_and_version(capsys, name):
         assert "``" not in printed
 
 
-def test_help_lists_all_commands(capsys):
+def test_help_lists_all_commands_and_words_with_line_breaks_are_refused(capsys):
     assert main(["-help"]) == 0
     printed = capsys.readouterr().out
     assert all(f"\n  {name} " in printed for name in COMMANDS)
     assert main(["--version"]) == 0 and capsys.readouterr().out == f"ehlpetsc {__version__}\n"
+    assert main(["plot", "a\nb.h5"]) == main(["case.toml", "-o", "a\nb.h5"]) == 2
+    assert capsys.readouterr().err.count("\n") == 2
 
 
 @pytest.mark.parametrize(
@@ -57,14 +61,6 @@ def test_text_goes_to_a_file_that_is_not_replaced(tmp_path, monkeypatch, capsys)
     assert "[contact]" in (tmp_path / "my.toml").read_text()
 
 
-@pytest.mark.parametrize("words", [["explain", "cases/dry_hertz.toml"], ["keys"], ["template"]])
-def test_texts_of_cases_need_neither_petsc_nor_mpi(words):
-    code = "import sys; sys.modules.update(dict.fromkeys(['petsc4py', 'mpi4py']))\n"
-    code += "from ehlpetsc.__main__ import main; sys.exit(main(sys.argv[1:]))"
-    done = subprocess.run([sys.executable, "-c", code, *words], cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0 and done.stdout, done.stderr
-
-
 @pytest.mark.parametrize("name", ["post", "plot", "summary", "compare", "gears", "explain"])
 def test_mistyped_option_is_refused_in_one_line(name, capsys):
     with pytest.raises(SystemExit) as end:
@@ -72,6 +68,18 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
     printed = capsys.readouterr()
     assert end.value.code == ExitStatus.BAD_INPUT and not printed.out
     assert is_line_with(printed.err, f"ehlpetsc {name}: ", " --deph;", f"; ehlpetsc {name} -h")
+
+
+def test_texts_of_cases_need_neither_petsc_nor_mpi():
+    code = "import sys; sys.modules.update(dict.fromkeys(['petsc4py', 'mpi4py']))\n"
+    code += "from ehlpetsc.__main__ import main\n"
+    code += (
+        "print([int(main(line.split())) for line in ('explain cases/dry_hertz.toml', 'keys', 'template')])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0 and "[contact]" in done.stdout and done.stdout.endswith("[0, 0, 0]\n"), (
+        done.stderr
+    )
 
 
 def test_ranks_are_started_by_the_script_of_a_clone(monkeypatch, capsys):
@@ -100,6 +108,38 @@ def test_advice_of_an_installed_package_names_the_page(monkeypatch):
     assert "-m pip install matplotlib; " in environment.advice(["matplotlib"], ["plot", "result.h5"])
 
 
-def test_words_with_line_breaks_are_refused(capsys):
-    assert main(["plot", "a\nb.h5"]) == main(["case.toml", "-o", "a\nb.h5"]) == 2
-    assert capsys.readouterr().err.count("\n") == 2
+@pytest.mark.parametrize(
+    ("variables", "ranks", "is_fault"),
+    [
+        ({}, 1, False),
+        ({"PMI_SIZE": "1", "PMI_RANK": "0"}, 1, False),
+        ({"PMI_SIZE": "4", "PMI_RANK": "0"}, 1, True),
+        ({"PMI_SIZE": "4", "PMI_RANK": "0"}, 4, False),
+        ({"OMPI_COMM_WORLD_SIZE": "2"}, 1, True),
+        ({"SLURM_STEP_NUM_TASKS": "8", "SLURM_PROCID": "0"}, 1, True),
+        ({"SLURM_NTASKS": "8", "SLURM_PROCID": "0"}, 1, False),  # a batch script without srun
+        ({"SLURM_STEP_NUM_TASKS": "2", "PMI_SIZE": "1"}, 1, False),  # mpirun -n 1 of a job on two nodes
+        ({"PMI_SIZE": "many"}, 1, False),
+    ],
+)
+def test_processes_alone_are_noticed(monkeypatch, variables, ranks, is_fault):
+    for name in SIZE_VARIABLES:
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    assert bool(other_mpi(ranks)) == is_fault
+
+
+@pytest.mark.parametrize("case", [["mixed.toml"], ["life", "life.toml"]], ids=["run", "life"])
+def test_a_run_of_another_launcher_ends_before_the_case_in_one_sentence(case, tmp_path):
+    environment = {name: value for name, value in os.environ.items() if name not in SIZE_VARIABLES}
+    words = [sys.executable, "-m", "ehlpetsc", *case[:-1], CASES / case[-1]]
+    environment |= {"PYTHONPATH": os.pathsep.join([str(ROOT), environment.get("PYTHONPATH", "")])}
+    for rank in ("0", "1"):
+        alone = environment | {"PMI_SIZE": "2", "PMI_RANK": rank}
+        done = subprocess.run(words, cwd=tmp_path, env=alone, capture_output=True, text=True)
+        assert done.returncode == 2 and done.stdout == "" and not list(tmp_path.iterdir())
+        if rank == "0":
+            assert is_line_with(done.stderr, "2 processes were started together (PMI_SIZE)", "mpirun")
+        else:
+            assert done.stderr == ""

@@ -100,9 +100,6 @@ def test_positions_are_noted(tmp_path):
     notes = read_map(tmp_path / "map.txt", Layout(**BOTH)).notes
     lines, rows = "first line: numbers of the columns", "first column: numbers of the rows"
     assert notes == (f"{lines}, left out", f"{rows}, left out")
-
-
-def test_a_point_that_is_not_in_a_list_is_missing(tmp_path):
     lines = points().splitlines(keepends=True)
     (tmp_path / "map.xyz").write_text("".join(lines[:50] + lines[51:]))
     with pytest.raises(ProfileError, match="^1 heights missing, the widest gap "):
@@ -130,9 +127,6 @@ def test_heights_of_few_random_columns_are_no_positions(tmp_path):
         for _ in range(100):
             np.save(path, random.standard_normal(shape) * 1e-7)
             assert read_map(path, Layout(spacing=DX)).z.shape == shape
-
-
-def test_positions_in_a_binary_matrix_are_read(tmp_path):
     np.save(tmp_path / "map.npy", np.vstack([MM * X, UM * Z]))
     found = read_map(tmp_path / "map.npy", Layout(**BOTH))
     np.testing.assert_allclose(found.z, Z, atol=1e-15)
@@ -201,18 +195,15 @@ def test_a_map_is_no_profile(tmp_path, text, layout):
         read_profile(tmp_path / "map.xyz", layout)
 
 
-def test_heights_alone_of_two_blocks_are_refused(tmp_path):
-    (tmp_path / "p.txt").write_text("1\n2\n3\n4\n\n1\n2\n3\n")
-    with pytest.raises(ProfileError, match="^line 6: a second block behind an empty line; "):
-        text_columns(tmp_path / "p.txt")
-
-
 def test_profiles_beside_each_other_are_no_map(tmp_path):
     path = tmp_path / "p.txt"
     np.savetxt(path, np.column_stack([UM * X, UM * Z[:4].T]), header="x [um] 1 2 3 4")
     assert not is_map(path, Layout(unit="um"))
     x, z, _ = read_profile(path, Layout(unit="um", columns=(1, 3)))
     np.testing.assert_allclose(z, Z[1], rtol=1e-12)
+    (tmp_path / "p.txt").write_text("1\n2\n3\n4\n\n1\n2\n3\n")
+    with pytest.raises(ProfileError, match="^line 6: a second block behind an empty line; "):
+        text_columns(tmp_path / "p.txt")
 
 
 def test_the_command_reads_a_map_with_its_positions(tmp_path, capsys):

@@ -55,7 +55,6 @@ def shear(case, scales, p, h, void=0.0, touching=()):
 @pytest.mark.parametrize("ratio", [0.5, -0.5])
 @pytest.mark.parametrize("eyring", [EYRING, NEWTONIAN])
 def test_shear_opposes_the_faster_and_drives_the_slower_surface(ratio, eyring):
-    """Also where the surface called fast is the slower one: slide/roll ratio below zero."""
     case, scales, p, h = scene(ratio, eyring)
     fast, slow = shear(case, scales, np.full_like(p, 0.3e9), h)
     assert (np.sign(ratio) * fast < 0.0).all() and (np.sign(ratio) * slow > 0.0).all()
@@ -91,15 +90,12 @@ def test_pressure_flow_drags_both_walls_in_pure_rolling():
         assert (side[before] < 0.0).all() and (side[behind] > 0.0).all()
 
 
-def test_newtonian_shear_stress():
+def test_shear_stress_of_a_newtonian_film_and_of_a_void():
     """Couette flow: eta (u1 - u2) / h, at the ambient pressure of 0.005 Pa s."""
     case, scales, p, h = scene(0.5, NEWTONIAN)
     _, slow = shear(case, scales, np.zeros_like(p), h)
     np.testing.assert_allclose(slow, 0.005 * (scales.u1 - scales.u2) / h, rtol=1e-6)
     assert scales.u1 - scales.u2 == pytest.approx(2.5)
-
-
-def test_void_has_no_shear_stress():
     case, scales, p, h = scene(0.5)
     full, empty, half = (shear(case, scales, p, h, void=void) for void in (0.0, 1.0, 0.5))
     for side in (0, 1):
@@ -172,31 +168,17 @@ def test_mean_film_is_over_the_central_half():
 LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA = 637.6e3, 6.583, 8.382e-3, 0.0112, 0.25e-6
 
 
-def test_hoehn_michaelis_of_fzg_at_302_n_m():
-    """And that of loads below 150 N/mm is that of 150."""
+def test_published_correlations_by_hand():
     for factor in (1.0, 0.8):
         found = hoehn_michaelis(LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA, factor)
         assert found == pytest.approx(factor * 0.0491, rel=1e-3)
     light, least = (hoehn_michaelis(load, SUM_SPEED, RADIUS, VISCOSITY, RA) for load in (10e3, 150e3))
     assert light == least
-
-
-@pytest.mark.parametrize("rms, friction", [(0.0, 0.018), (0.4e-6, 0.025)])
-def test_xu_kahraman_of_fzg_at_302_n_m(rms, friction):
-    pressure = 1.65e9  # Hertz, 637.6 N/mm on 8.38 mm
-    found = xu_kahraman(pressure, np.array([0.2, 0.3]), 0.5 * SUM_SPEED, VISCOSITY, RADIUS, rms)
-    assert found.mean() == pytest.approx(friction, rel=0.06)
-
-
-def test_xu_kahraman_by_hand():
     # f = -8.916465 - 0.354068 * 0.24 + 2.812084 exp(-0.24) + 0.620305 exp(0.2) = -6.03187
     found = xu_kahraman(1.2e9, -0.2, 10.0, 0.01, 0.01, 0.2e-6)
     assert found == pytest.approx(
         np.exp(-6.03187) * 1.207257 * 0.188717 * 0.793235 * 5.659198 * 6.053413, rel=1e-4
     )
-
-
-def test_benedict_kelley_in_its_imperial_units():
     # 0.0127 lg(3.17e8 w'/(nu v_s v_r^2)): lbf/in, mPa s, in/s
     imperial = 3.17e8 * LOAD / 175.1268 / (11.2 * (1.0 / 0.0254) * (SUM_SPEED / 0.0254) ** 2)
     expected = 0.0127 * np.log10(imperial)
