@@ -23,7 +23,7 @@ class Kind(NamedTuple):
 
     Parts, ``module:name``, each loaded where it is used, so that a kind loads no module of another one:
     `geometry`: a :class:`ehlpetsc.physics.contact.geometry.Geometry`.
-    `system`: system of equations, see :func:`ehlpetsc.nonlinear.scheme.solver_of`.
+    `system`: system of equations, see :func:`ehlpetsc.nonlinear.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
     `sweeps`: solver by the paper's sweeps; "": none.
     """

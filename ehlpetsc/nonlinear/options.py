@@ -1,4 +1,4 @@
-"""Options of a run in PETSc's global table: defaults, precedence, restoring."""
+"""Options of a run in PETSc's global table: defaults, precedence, restoring; events of ``-log_view``."""
 
 from __future__ import annotations
 
@@ -64,6 +64,16 @@ READ_BY_FINALIZE = ("citations", "get_total_flops", "options_left", "options_vie
 VIEWS = ("snes_view", "ksp_view")
 TABLE_LOCK = threading.RLock()  # the table is global: threads would get each other's options
 ENTERED: list[RunOptions] = []  # whose options the table has is the last one
+
+RESIDUAL = PETSc.Log.Event("EHL residual")
+ASSEMBLY = PETSc.Log.Event("EHL assembly")
+PRODUCT = PETSc.Log.Event("EHL product")
+FACTOR = PETSc.Log.Event("EHL factor")
+BACK_SOLVE = PETSc.Log.Event("EHL back solve")
+ROUGHNESS = PETSc.Log.Event("EHL roughness")
+WRITING = PETSc.Log.Event("EHL output")
+START = PETSc.Log.Stage("Steady start")
+TIME_STEPS = PETSc.Log.Stage("Time steps")
 
 
 class RunOptions:

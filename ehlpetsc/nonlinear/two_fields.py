@@ -32,7 +32,7 @@ from ehlpetsc.discretisation.unknowns import (
     q_of,
     w_of,
 )
-from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.options import ASSEMBLY, PRODUCT, RESIDUAL
 from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_max, global_sum
 
 
@@ -72,7 +72,7 @@ class Jacobian:
 
     def mult(self, mat: PETSc.Mat, v: PETSc.Vec, out: PETSc.Vec) -> None:
         """PETSc's product."""
-        with events.PRODUCT:
+        with PRODUCT:
             if isinstance(self.active, slice):
                 self.product(v.array_r.copy(), out.array)  # loops of read-only arrays would be compiled anew
                 return
@@ -238,7 +238,7 @@ class TwoFields:
         :attr:`bound_reached` then holds whether `reaches_bound` is true on any rank.
         """
         self.x_evaluated = x.array_r.copy()
-        with events.RESIDUAL:
+        with RESIDUAL:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
             unknowns, sums, self.bound_reached = self.exchange.unknowns(*local_data)
@@ -249,7 +249,7 @@ class TwoFields:
         """Set the matrices for x; `is_evaluated` states that x is the point evaluated last, on every rank."""
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
         if self.assembled:
-            with events.ASSEMBLY:
+            with ASSEMBLY:
                 state = gathered(self.ranks, self.jacobian.state, self.problem.owned)
                 self.assembled.fill(state, self.jacobian.reynolds_derivatives)
 

@@ -20,7 +20,7 @@ from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
 from ehlpetsc.base.errors import ExitStatus, OutputError, OutputLost
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.options import WRITING
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
@@ -180,7 +180,7 @@ class Recorder(Output):
         if solved:
             friction = float(np.max(solved.inputs.boundary_friction))
             self._boundary_friction = max(self._boundary_friction, friction)
-        with events.WRITING:
+        with WRITING:
             on_root(self.comm, self._append, state)
         if state.step and self._next_save(self.comm):
             self.checkpoint()

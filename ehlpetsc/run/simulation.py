@@ -20,10 +20,9 @@ from ehlpetsc.case.tables.surface import check_unchanged
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
 from ehlpetsc.effects.effect import Scene
-from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear import solver_of
 from ehlpetsc.nonlinear.newton import NewtonSolver
-from ehlpetsc.nonlinear.options import RunOptions
-from ehlpetsc.nonlinear.scheme import solver_of
+from ehlpetsc.nonlinear.options import START, TIME_STEPS, RunOptions
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
@@ -32,6 +31,7 @@ from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
+from ehlpetsc.stepping.steady_start import coarser, cures, guess_of
 from ehlpetsc.stepping.time_stepping import LAST_OF_RAMP, TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")
@@ -256,13 +256,11 @@ class Simulation:
             raise UsageError(f"dt = {dt!r}: allowed: a number from {shortest:.3g} to the {left:.6g} s left")
 
     def _start(self, watch: Watch) -> State:
-        with events.START:
+        with START:
             try:
                 state = self._started(watch)
             except NotConverged as error:
                 if isinstance(error.__cause__, NoSteadyStart):
-                    from ehlpetsc.run.coarse_start import cures
-
                     advice = cures(self.case, self.scales, self.operation.at(0.0), self._film)
                     raise NotConverged(f"{error}{advice}") from error.__cause__
                 raise
@@ -305,8 +303,6 @@ class Simulation:
 
     def _coarse_guess(self, watch: Watch) -> tuple[Unknowns, dict] | None:
         """Steady solution on a mesh with half as many nodes per half-width; None: there is none."""
-        from ehlpetsc.run.coarse_start import coarser, guess_of
-
         try:
             coarse = Simulation(coarser(self.case), self.comm, self._options)
             coarse.advance(watch=watch)
@@ -322,8 +318,6 @@ class Simulation:
         """State during a rough start on a coarser mesh, interpolated; None: no such ramp, or no solution."""
         if self.case.time is None or self.case.time.ramp == "fine":
             return None
-        from ehlpetsc.run.coarse_start import coarser, guess_of
-
         nested = "coarse" if self.scales.grid.n > FINEST_NODES else "fine"
         coarse = Simulation(coarser(self.case, nested), self.comm, self._options)
         with coarse.options:
@@ -339,7 +333,7 @@ class Simulation:
 
     def _step(self, dt: float | None, watch: Watch) -> State:
         self._print_heading(f"step {self.dimensionless.step + 1} from {1e6 * self.dimensionless.time:.4f} us")
-        with events.TIME_STEPS:
+        with TIME_STEPS:
             return self.stepper.advance(self.dimensionless, dt, watch)
 
     def _print_heading(self, text: str) -> None:

@@ -16,7 +16,7 @@ from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrore
 from ehlpetsc.discretisation.transport import carried
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Effect, Scene, Step
-from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.options import ROUGHNESS
 from ehlpetsc.physics.operation import LEVEL_TOLERANCE
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
 from ehlpetsc.stepping.state import State, TimeLevel, predict
@@ -215,7 +215,7 @@ class TimeStepping:
         return self.problem.inputs(history=history, conditions=step.conditions, dt=step.dt)
 
     def _with_effects(self, inputs: StepInputs, records: dict, step: Step) -> StepInputs:
-        with events.ROUGHNESS:
+        with ROUGHNESS:
             for effect in self.effects:
                 inputs = effect.inputs(records[effect.name], inputs, step)
         return inputs

@@ -14,8 +14,9 @@ from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import flat
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run import checkpoint, coarse_start
+from ehlpetsc.run import checkpoint
 from ehlpetsc.stepping.state import State, TimeLevel
+from ehlpetsc.stepping.steady_start import cures
 from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
@@ -119,5 +120,5 @@ def test_cure_of_a_layer_far_softer_than_the_hertz_pressure():
     for stiffness, is_soft in (("5e-4", True), ("0.03", False)):
         scene = Scene(*layer[:2], layer[2] + stiffness)
         conditions = operation_of(scene.case, scene.scales).at(0.0)
-        advice = coarse_start.cures(scene.case, scene.scales, conditions, 0.1)
+        advice = cures(scene.case, scene.scales, conditions, 0.1)
         assert ("contact.asperity_stiffness above 0.0005" in advice) == is_soft

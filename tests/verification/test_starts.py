@@ -17,7 +17,7 @@ from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.nonlinear.two_fields import TwoFields
-from ehlpetsc.run import coarse_start, simulation
+from ehlpetsc.run import simulation
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping import steady_start, time_stepping
 from ehlpetsc.stepping.first_guess import MAX_DIRECT_REACH, smoothed
@@ -255,14 +255,14 @@ def test_many_nodes_start_from_a_coarser_mesh_and_end_in_the_same_state(monkeypa
     waves = {"kind": "sine", "amplitude": 20e-9, "wavelength": 1e-4, "wavelength_across": 1e-4}
     rough = {"surface": {"1": {"synthetic": waves}}, "time": {"travel": 0.1, "start": "rough"}}
     case = load(point(200.0, 10.0, 16) | (rough if start == "rough" else {}))
-    direct, nodes, interpolated = Simulation(case).advance(), [], coarse_start.guess_of
+    direct, nodes, interpolated = Simulation(case).advance(), [], simulation.guess_of
     monkeypatch.setattr(simulation, "MANY_NODES", 1000)
 
     def guess_of(state, by, problem):
         nodes.append((by.n, problem.n))
         return interpolated(state, by, problem)
 
-    monkeypatch.setattr(coarse_start, "guess_of", guess_of)
+    monkeypatch.setattr(simulation, "guess_of", guess_of)
     nested = Simulation(case).advance()
     assert np.abs(nested.pressure - direct.pressure).max() < 1e-6 * direct.p_max
     assert nodes == [(17**2, 33**2), (33**2, 65**2)]

@@ -18,12 +18,12 @@ from petsc4py import PETSc
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
 from ehlpetsc.discretisation.line.deflection import Deflection
 from ehlpetsc.discretisation.unknowns import Share
-from ehlpetsc.nonlinear import events
 from ehlpetsc.nonlinear.line.banded_jacobian import BandedJacobian
 from ehlpetsc.nonlinear.line.distributed_lu import DistributedLU, solve
 from ehlpetsc.nonlinear.line.exchange import LineExchange, first_nodes
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.node_pairs import node_pairs
+from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
 
@@ -59,7 +59,7 @@ class FarFieldBand:
 
     def setUp(self, pc: PETSc.PC) -> None:
         """Factor for the state of the operator."""
-        with events.FACTOR:
+        with FACTOR:
             self.operator = pc.getOperators()[0].getPythonContext()
             self.operator.factors.factor(self.operator)
 
@@ -68,7 +68,7 @@ class FarFieldBand:
         operator = self.operator
         b, solution = np.zeros(operator.size), np.empty(operator.size)
         b[operator.active] = x.array_r
-        with events.BACK_SOLVE:
+        with BACK_SOLVE:
             solve(operator.factors.lu.factors, b, solution)
         y.array[:] = solution[operator.active]
 

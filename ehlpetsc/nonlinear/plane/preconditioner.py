@@ -27,7 +27,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
-from ehlpetsc.nonlinear import events
+from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import (
@@ -215,7 +215,7 @@ class Elimination:
         self.reduction = reduction_of(operator.derivatives, inactive)
         slow = self._any(self.applications > MAX_KEPT)
         if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
-            with events.FACTOR:
+            with FACTOR:
                 self._build(operator, slow or self.factors is self.kept)
         self.applications = 0
 
@@ -261,7 +261,7 @@ class Elimination:
         changes[:, 1] = separation
         given = operator.exchange.window(changes)
         reynolds = reynolds - p.reynolds.product(sparse.by, given, p.owned.start)
-        with events.BACK_SOLVE:
+        with BACK_SOLVE:
             coarsely = 0.0
             if coarse:
                 coarsely, change, reynolds = self._coarsely(reynolds)
