@@ -26,12 +26,12 @@ from ehlpetsc.nonlinear.options import START, TIME_STEPS, RunOptions
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
-from ehlpetsc.run.forecast.domain import domain_faults
+from ehlpetsc.run.forecast.domain import cures, domain_faults
 from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.stepping.convergence_check import Watch, check_ends
 from ehlpetsc.stepping.observables import diagnostics
 from ehlpetsc.stepping.state import State
-from ehlpetsc.stepping.steady_start import coarser, cures, guess_of
+from ehlpetsc.stepping.steady_start import coarser, guess_of
 from ehlpetsc.stepping.time_stepping import LAST_OF_RAMP, TimeStepping
 
 MONITORS = ("snes_monitor", "snes_vi_monitor", "snes_converged_reason", "ksp_monitor", "ksp_converged_reason")

@@ -39,8 +39,6 @@ from ehlpetsc.stepping.state import State
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.discretisation.ehl_problem import EHLProblem
-    from ehlpetsc.physics.operation import Conditions
-    from ehlpetsc.physics.scales import Scales
 
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
@@ -49,8 +47,6 @@ QUICK_ITERATIONS = 15  # after which a start that yields is tried otherwise
 MIN_RAMP_INCREMENT = 1e-3  # of the fraction, from one solution to the next
 NEAR_ITERATIONS = 30  # iterations from the solution on a coarser mesh, which is near or of no use
 MAX_ATTEMPTS = 100  # solves of one start, including failed ones
-RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
-SOFT_LAYER = 0.1  # beta E* over p0: a node of a softer layer has no asperity pressure or all of it
 
 
 def steady(
@@ -220,25 +216,3 @@ def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:
     h, solids = by.model.state(coarse.q, coarse.w).film, by.model.contact_pressure(coarse.w)
     q, h, solids = (by.grid.interpolated(values, problem.grid) for values in (coarse.q, h, solids))
     return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.border)
-
-
-def cures(case: Case, scales: Scales, conditions: Conditions, film: float) -> str:
-    """Advice for a case without a steady start under its first conditions; expected film in a^2/R."""
-    if film > RIGID_FILM:
-        return (
-            f". The film, {film:.0f} a^2/R, is far thicker than solids deform, and the pressure wider than "
-            "the domain. Try a higher load or a lower speed"
-        )
-    found = ["a finer mesh"]
-    if case.fluid and case.heat and case.fluid.limiting_shear is None and conditions.sliding:
-        found.append("fluid.limiting_shear, as sliding heats an oil without one beyond measure")
-    if case.fluid and conditions.entrainment == 0.0:
-        found.append("a slow entrainment instead of rest at the begin")
-    if case.fluid and not case.contact.has_contact_pressure:
-        found.append('contact.model = "mixed"')
-    if case.contact.asperity_height and not case.contact.adsorbed_film:
-        found.append("contact.adsorbed_film = 1e-9, without which the film in the layer may vanish")
-    beta = case.contact.asperity_stiffness
-    if beta and 0.5 * scales.E * beta < SOFT_LAYER * scales.p0:
-        found.append(f"contact.asperity_stiffness above {beta:.2g}, as the Hertz pressure flattens the layer")
-    return f". Try {' or '.join(found)}"

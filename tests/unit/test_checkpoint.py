@@ -15,8 +15,8 @@ from ehlpetsc.effects.effect import flat
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run import checkpoint
+from ehlpetsc.run.forecast.domain import cures
 from ehlpetsc.stepping.state import State, TimeLevel
-from ehlpetsc.stepping.steady_start import cures
 from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"

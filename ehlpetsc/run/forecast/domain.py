@@ -1,4 +1,4 @@
-"""Domain of a contact: a near inlet, a mesh too coarse for it, a strip too narrow for its roughness."""
+"""Domain of a contact: a near inlet, a mesh too coarse for it, a strip too narrow; a case without a start."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from ehlpetsc.physics.film_formulas import (
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
     from ehlpetsc.case.tables import Case
+    from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
@@ -34,6 +35,8 @@ MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no
 MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
 MAX_OUTSIDE, PROPOSED_OUTSIDE = 0.05, 0.02  # of the load of a point contact, outside the mesh
 CORRELATION_LENGTHS = 4.0  # across a strip of random roughness; of its variance .45 is then uniform across
+RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
+SOFT_LAYER = 0.1  # beta E* over p0: a node of a softer layer has no asperity pressure or all of it
 
 
 def domain_warnings(case: Case, scales: Scales) -> list[str]:
@@ -196,3 +199,25 @@ def _lengths(made: Values) -> tuple[float, float, str] | None:
         return None
     of_both = (CORRELATION_LENGTHS * length for length in (made.correlation, made.correlation_across))
     return *of_both, f"{CORRELATION_LENGTHS:g} correlation lengths"
+
+
+def cures(case: Case, scales: Scales, conditions: Conditions, film: float) -> str:
+    """Advice for a case without a steady start under its first conditions; expected film in a^2/R."""
+    if film > RIGID_FILM:
+        return (
+            f". The film, {film:.0f} a^2/R, is far thicker than solids deform, and the pressure wider than "
+            "the domain. Try a higher load or a lower speed"
+        )
+    found = ["a finer mesh"]
+    if case.fluid and case.heat and case.fluid.limiting_shear is None and conditions.sliding:
+        found.append("fluid.limiting_shear, as sliding heats an oil without one beyond measure")
+    if case.fluid and conditions.entrainment == 0.0:
+        found.append("a slow entrainment instead of rest at the begin")
+    if case.fluid and not case.contact.has_contact_pressure:
+        found.append('contact.model = "mixed"')
+    if case.contact.asperity_height and not case.contact.adsorbed_film:
+        found.append("contact.adsorbed_film = 1e-9, without which the film in the layer may vanish")
+    beta = case.contact.asperity_stiffness
+    if beta and 0.5 * scales.E * beta < SOFT_LAYER * scales.p0:
+        found.append(f"contact.asperity_stiffness above {beta:.2g}, as the Hertz pressure flattens the layer")
+    return f". Try {' or '.join(found)}"
