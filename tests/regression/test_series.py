@@ -14,7 +14,7 @@ from ehlpetsc.results.reader import read_result
 
 CASE = ROOT / "cases" / "fig4.toml"
 VALUES = (0.01, 0.006, 0.003)
-QUICK = [*SHORT[:-1], "time.travel=0.5"]
+QUICK = [*SHORT[:-1], "time.travel=0.3"]
 
 
 def series(folder, *words, ranks=2, values=VALUES, key="fluid.viscosity", tampered=()):

@@ -37,21 +37,6 @@ class FilmStress(NamedTuple):
     y: np.ndarray
 
 
-def other_heat(y: float) -> float:
-    r"""Weight c of heat uniform across the film: :math:`c\,Hh/k_f` acts like a rise of :math:`T_0`.
-
-    First order in H, for every flow law: from 1/12, the mean of the parabola, without heating to 1/8, its
-    maximum, as the shear concentrates in the middle; :math:`(2s\tanh s-m)/[8s(\tanh s+s/\cosh^2s)]`, s = y/2,
-    m the mean rise. Between equal walls.
-    """
-    s = 0.5 * y
-    if s.real < 1e-3:
-        return 1.0 / 12.0 + s * s / 45.0
-    tanh = np.tanh(s)
-    mean, _ = film_shear.mean_rise(y, 0.0)
-    return (2.0 * s * tanh - mean) / (8.0 * s * (tanh + s * (1.0 - tanh * tanh)))
-
-
 def _resolve(
     x: np.ndarray, heating: np.ndarray, d: np.ndarray, flow: FlowLaw, limit: np.ndarray
 ) -> np.ndarray:

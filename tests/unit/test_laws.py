@@ -175,13 +175,9 @@ def test_another_shear_law_of_a_measured_oil_is_warned_of():
 
 def test_constants_of_shc_320_are_fitted_to_its_measured_viscosities():
     """Viscosity to 2.0 % rms and 5.9 % at most, density by one law for all temperatures to 2.1 %."""
-    T, p, eta, rho = np.concatenate(
-        [
-            [np.full(len(eta), 273.15 + celsius), 25e6 * np.arange(len(eta)), eta, np.array(rho) / rho[0]]
-            for celsius, (eta, rho) in SHC_320.items()
-        ],
-        axis=1,
-    )
+    T, p, eta = 273.15 + SHC_320["celsius"], 1e5 * SHC_320["bar"], SHC_320["viscosity"]
+    ambient = SHC_320[SHC_320["bar"] == 0]
+    rho = SHC_320["density"] / np.interp(SHC_320["celsius"], ambient["celsius"], ambient["density"])
     assert len(T) == 67
     scales = np.array([1.0, 1e3, 1e2, 1e7, 1e5, 1.0, 1e-4])
 

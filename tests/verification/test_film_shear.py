@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from support.film_stress import FilmStress, film_stress, other_heat
+from support.film_stress import FilmStress, film_stress
 
 from ehlpetsc.effects.heat import film_shear
 from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, NEWTON, FlowLaw
@@ -192,26 +192,6 @@ def test_solution_over_24_orders_of_magnitude(name):
                 assert abs(value - heating * tau) <= 1e-10 * (value + y * by_y)
                 stresses.append(tau)
             assert np.all(np.diff(stresses) > 0.0)
-
-
-@pytest.mark.parametrize("share, error", [(0.1, 5e-4), (-0.1, 5e-4), (-0.3, 5e-3)])
-def test_other_heat_acts_like_a_rise_of_the_reference_temperature(share, error):
-    flow = LAWS["eyring"]
-    for eta, sliding in ((1.0, 20.0), (100.0, 5.0), (1e4, 20.0)):
-        unheated = film_stress(FILM, eta, BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
-        heat = share * float(unheated.stress) * sliding
-        rise = other_heat(float(unheated.y)) * heat * FILM / CONDUCTIVITY
-        closed = film_stress(FILM, eta * np.exp(-BETA * rise), BETA, 0.0, 0.0, CONDUCTIVITY, sliding, flow)
-
-        def ln_eta(T, eta=eta):
-            value, slope = exponential(T)
-            return value + np.log(eta), slope
-
-        stress, profile = start_of(closed)
-        start = stress, profile + heat * FILM / (8.0 * CONDUCTIVITY) * (1.0 - X**2)
-        exact = solved_across(viscous_stress(flow), ln_eta, sliding, (0.0, 0.0), start, heat=heat / FILM)
-        assert float(closed.stress) == pytest.approx(exact.stress, rel=error)
-        assert abs(float(unheated.stress) / exact.stress - 1.0) > 0.015
 
 
 def test_pressure_flow_by_its_factor_and_its_heat():

@@ -46,7 +46,7 @@ GEARS = {
 }
 
 
-@pytest.mark.parametrize("keys", [{}, HEAT, LAYER, YIELDING, HEAT | LAYER | YIELDING])
+@pytest.mark.parametrize("keys", [{}, YIELDING, HEAT | LAYER | YIELDING])
 def test_a_life_runs_with_oil_and_every_effect(keys, tmp_path):
     case = load(COARSE_LIFE, SHORT | {"life.passes": 1e9} | keys)
     life = run_life(case, tmp_path / "a.life.h5", most=3, unresolved=True)
