@@ -21,7 +21,7 @@ import numpy as np
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Error
 from ehlpetsc.effects.effect import Effect
-from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, interpolated
+from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, interpolated, mixed_record
 
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
@@ -181,8 +181,6 @@ class Heat(Effect[HeatRecord]):
 
     def mixed(self, pairs: Sequence[tuple[HeatRecord, HeatRecord]]) -> HeatRecord:
         """Record for the next steady solve, by Anderson's acceleration."""
-        from ehlpetsc.effects.heat.mixing import mixed_record
-
         return mixed_record(pairs, self._steps.inlet)
 
     def is_settled(self, before: HeatRecord | None, after: HeatRecord) -> bool:

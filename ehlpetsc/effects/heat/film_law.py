@@ -18,7 +18,7 @@ are two equations, for :math:`T_s` and y, with one solution. (Heat in the middle
 the weight c of :mod:`.film_shear`, up to 1/8, in place of 1/12: 1 % of the stress where H is
 10 % of :math:`\Phi`, 4 % where it is 30 %; but with it there need not be a solution.)
 
-The walls may get heat otherwise where oil enters cold: :mod:`.exchange`.
+The walls may get heat otherwise where oil enters cold: :mod:`.film_shear`.
 """
 
 from __future__ import annotations
@@ -28,9 +28,18 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.effects.heat.exchange import EXCHANGE_KINDS, Exchange, exchange_of, fluxes, holds, split
 from ehlpetsc.effects.heat.film_oil import FilmLaw, NodeOil, oil_at
-from ehlpetsc.effects.heat.film_shear import across, mean_rise, resolved_stress
+from ehlpetsc.effects.heat.film_shear import (
+    EXCHANGE_KINDS,
+    Exchange,
+    across,
+    exchange_of,
+    fluxes,
+    holds,
+    mean_rise,
+    resolved_stress,
+    split,
+)
 from ehlpetsc.physics.oil.rheology import flow_stress
 from ehlpetsc.physics.oil.viscosity_laws import ROELANDS_ZERO
 

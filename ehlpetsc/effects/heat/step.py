@@ -22,8 +22,7 @@ from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows,
 from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, T_MEAN, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
-from ehlpetsc.effects.heat.mixing import mixing
-from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord
+from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, mixing
 from ehlpetsc.effects.heat.transport import (
     Film,
     explicit_transport,
