@@ -70,25 +70,32 @@ def stored() -> dict[str, dict[int, float]]:
     return errors
 
 
+PANELS = {"Waves of the film": "film", "Ripples of the pressure": "ripple", "Mixed contact with a layer": ""}
+
+
 def draw(picture: str) -> None:
-    """Draw the magnitude of all errors over the nodes, on logarithmic axes."""
-    figure, panel = style.new_figure(1, 1, (8.0, 4.2))
-    waves, mixed = ([name for name in stored() if name.startswith("mixed") == kind] for kind in (False, True))
-    for names, line in ((waves, "o-"), (mixed, "s--")):
-        for name, colour in zip(names, style.shades(len(names)), strict=True):
-            nodes, errors = zip(*stored()[name].items(), strict=True)
+    """Draw the magnitude of all errors over the nodes, on logarithmic axes: a panel for each of `PANELS`."""
+    figure, panels = style.new_figure(1, len(PANELS), (11.0, 4.6), sharey=True)
+    for panel, (title, quantity) in zip(panels, PANELS.items(), strict=True):
+        rows = {name: row for name, row in stored().items() if name.startswith("mixed") != bool(quantity)}
+        shown = [name for name in rows if name.endswith(quantity)]
+        for name, colour in zip(shown, style.shades(len(shown)), strict=True):
+            nodes, errors = zip(*rows[name].items(), strict=True)
+            label = (
+                name.removesuffix(f": {quantity}")
+                .removeprefix("mixed, layer: ")
+                .replace("share", "load on the solids")
+            )
             sizes = [100.0 * abs(error) for error in errors]
-            label = name.replace("share", "load on the solids")
-            panel.plot(nodes, sizes, line, color=colour, lw=1.2, ms=4, label=label)
-    panel.set(xscale="log", yscale="log", xlabel="nodes to the shortest wave", ylabel="error [%]")
-    panel.set_xticks(NODES, [str(n) for n in NODES])
-    panel.minorticks_off()
-    panel.yaxis.set_major_formatter("{x:g}")
-    panel.grid(lw=0.3)
-    style.legend_beside(panel, title="wavelength, slide/roll ratio: quantity")
-    style.set_title(
-        figure, "Waves of film and pressure in full films (circles), mixed contact with a layer (squares)"
-    )
+            panel.plot(nodes, sizes, "o-", color=colour, lw=1.2, ms=4, label=label)
+        panel.set(xscale="log", yscale="log", xlabel="nodes to the shortest wave")
+        panel.set_xticks(NODES, [str(n) for n in NODES])
+        panel.minorticks_off()
+        panel.grid(lw=0.3)
+        panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), title=title, **style.SMALL)
+    panels[0].set_ylabel("error [%]")
+    panels[0].yaxis.set_major_formatter("{x:g}")
+    style.set_title(figure, "Errors by wavelength, slide/roll ratio, surface; magnitudes")
     style.save(figure, picture)
 
 
