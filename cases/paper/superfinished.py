@@ -40,6 +40,12 @@ def pairs() -> list[Pair]:
     return list(dict.fromkeys(zip(data["seed_1"].astype(int), data["seed_2"].astype(int), strict=True)))
 
 
+def pair(word: str) -> Pair:
+    """Seeds of both flanks from "1,2"; ValueError of other words."""
+    first, second = map(int, word.split(","))
+    return first, second
+
+
 def damaged(
     seeds: Pair, folder: Path = Path(), changes: dict[str, Any] | None = None, criteria: tuple[str, ...] = ()
 ) -> list[PostResult]:
@@ -85,25 +91,29 @@ def draw(found: dict[Pair, np.ndarray]) -> Figure:
 def main(words: list[str] | None = None) -> None:
     """Print the table and write the picture."""
     parser = measured_data.parser(__doc__, "superfinished_lives.png")
-    parser.add_argument("--seeds", nargs="+", metavar="S1,S2", help="pairs of seeds [those published]")
+    parser.add_argument(
+        "--seeds",
+        nargs="+",
+        type=pair,
+        default=pairs(),
+        metavar="S1,S2",
+        help="of both flanks [as published]",
+    )
     parser.add_argument("--store", action="store_true", help="write the file anew")
     chosen = parser.parse_args(words)
-    of_words = [tuple(map(int, word.split(","))) for word in chosen.seeds or ()]
-    if any(len(pair) != 2 for pair in of_words):
-        parser.error("--seeds: pairs of two numbers, as 1,2 3,4")
     print(
         "seeds: damage of ground over superfinished flanks, from z/a = "
         + ", ".join(map(str, DEPTHS))
         + " down"
     )
     found = {}
-    for pair in of_words or pairs():
-        results = damaged(pair, criteria=("fatemi-socie",))
-        found[pair] = np.array([ratios(results, criterion) for criterion in CRITERIA.values()])
-        text = "; ".join(", ".join(f"{ratio:.3g}" for ratio in row) for row in found[pair])
-        print(f"{pair[0]}, {pair[1]}: {text} by Fatemi and Socie", flush=True)
+    for seeds in chosen.seeds:
+        results = damaged(seeds, criteria=("fatemi-socie",))
+        found[seeds] = np.array([ratios(results, criterion) for criterion in CRITERIA.values()])
+        text = "; ".join(", ".join(f"{ratio:.3g}" for ratio in row) for row in found[seeds])
+        print(f"{seeds[0]}, {seeds[1]}: {text} by Fatemi and Socie", flush=True)
     if chosen.store:
-        rows = [(*pair, depth, *of[:, k]) for pair, of in found.items() for k, depth in enumerate(DEPTHS)]
+        rows = [(*seeds, depth, *of[:, k]) for seeds, of in found.items() for k, depth in enumerate(DEPTHS)]
         columns = ([f"{value:.4g}" for value in column] for column in zip(*rows, strict=True))
         measured_data.store(FILE, **dict(zip(COLUMNS, columns, strict=True)))
     style.save(draw(found), chosen.output)
