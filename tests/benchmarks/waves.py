@@ -75,7 +75,7 @@ PANELS = {"Waves of the film": "film", "Ripples of the pressure": "ripple", "Mix
 
 def draw(picture: str) -> None:
     """Draw the magnitude of all errors over the nodes, on logarithmic axes: a panel for each of `PANELS`."""
-    figure, panels = style.new_figure(1, len(PANELS), (11.0, 4.6), sharey=True)
+    figure, panels = style.new_figure(1, len(PANELS), (11.0, 5.0), sharey=True)
     for panel, (title, quantity) in zip(panels, PANELS.items(), strict=True):
         rows = {name: row for name, row in stored().items() if name.startswith("mixed") != bool(quantity)}
         shown = [name for name in rows if name.endswith(quantity)]
@@ -92,7 +92,14 @@ def draw(picture: str) -> None:
         panel.set_xticks(NODES, [str(n) for n in NODES])
         panel.minorticks_off()
         panel.grid(lw=0.3)
-        panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), title=title, **style.SMALL)
+        panel.legend(
+            loc="upper center",
+            bbox_to_anchor=(0.5, -0.2),
+            title=title,
+            labelspacing=0.2,
+            frameon=False,
+            **style.SMALL,
+        )
     panels[0].set_ylabel("error [%]")
     panels[0].yaxis.set_major_formatter("{x:g}")
     style.set_title(figure, "Errors by wavelength, slide/roll ratio, surface; magnitudes")
