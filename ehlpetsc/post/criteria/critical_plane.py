@@ -257,16 +257,14 @@ def _sought(stress: np.ndarray, lengths: np.ndarray, law: tuple, share: float) -
     damage exceeds its estimate by no more than that of any point so far; of `MAX_SOUGHT` shares at most.
     """
     grid, work = planes_and_directions(components=stress.shape[1]), plane_workspace(stress.shape[-1])
-    seek, out = partial(_worst_planes, grid, law, work), np.empty((len(stress), 3))
+    seek = partial(_worst_planes, grid, law, work)
     wanted = max(int(np.ceil(share * len(stress))), MIN_SOUGHT)
     if wanted >= len(stress) or stress.shape[1] == 3:
-        in_double_precision(seek, stress, lengths, out)
-        return out
-    in_double_precision(partial(_estimates, FIRST_PAIRS, law, work), stress, lengths, out)
+        return in_double_precision(seek, stress, lengths, 3)
+    out = in_double_precision(partial(_estimates, FIRST_PAIRS, law, work), stress, lengths, 3)
     worst = np.argsort(-out[:, 0])[: max(int(FIRST_SHARE * len(out)), MAX_SOUGHT * wanted)]
-    better = np.empty((worst.size, 3))
-    in_double_precision(partial(_estimates, PAIRS, law, work), stress[worst], lengths[worst], better)
-    out[worst] = better
+    second = partial(_estimates, PAIRS, law, work)
+    out[worst] = in_double_precision(second, stress[worst], lengths[worst], 3)
     estimates = out[:, 0].copy()
     order, done, excess = np.argsort(-estimates), 0, 1.0
     while done < min(len(order), MAX_SOUGHT * wanted):
@@ -275,8 +273,7 @@ def _sought(stress: np.ndarray, lengths: np.ndarray, law: tuple, share: float) -
             if excess * estimates[order[done]] <= limit:
                 break
         chosen = order[done : done + wanted]
-        found = np.empty((chosen.size, 3))
-        in_double_precision(seek, stress[chosen], lengths[chosen], found)
+        found = in_double_precision(seek, stress[chosen], lengths[chosen], 3)
         better = found[:, 0] > estimates[chosen]
         out[chosen[better]] = found[better]
         known = estimates[chosen] > 0

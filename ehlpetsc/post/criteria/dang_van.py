@@ -282,10 +282,8 @@ def count_utilisation(
     stress: np.ndarray, lengths: np.ndarray, residual: float, poisson_ratio: float, constants: Criteria
 ) -> np.ndarray:
     """Dang Van's utilisation (points, 1) of histories (points, 3 or 6, samples) of these lengths."""
-    out = np.empty((len(stress), 1))
     limits = constants.hydrostatic_slope, constants.torsion_limit
-    in_double_precision(partial(_utilisations, poisson_ratio, residual, limits), stress, lengths, out)
-    return out
+    return in_double_precision(partial(_utilisations, poisson_ratio, residual, limits), stress, lengths, 1)
 
 
 def dang_van(

@@ -43,45 +43,21 @@ from ehlpetsc.post.fatigue.strain_life import (
 )
 from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
-
-@compiled(error_model="python", nogil=True)
-def goodman(width: float, mean: float, tensile_strength: float, exponent: float) -> float:
-    """Fully reversed range of a range and a mean stress [Pa]; infinite from the tensile strength on."""
-    return width / (1.0 - mean / tensile_strength) if mean < tensile_strength else inf
-
-
-@compiled(error_model="python", nogil=True)
-def gerber(width: float, mean: float, tensile_strength: float, exponent: float) -> float:
-    """Fully reversed range of a range and a mean stress [Pa]; infinite from the tensile strength on."""
-    share = max(mean, 0.0) / tensile_strength
-    return width / (1.0 - share * share) if share < 1.0 else inf
-
-
-@compiled(error_model="python", nogil=True)
-def swt(width: float, mean: float, tensile_strength: float, exponent: float) -> float:
-    """Fully reversed range of a range and a mean stress [Pa], by Smith, Watson and Topper."""
-    return sqrt(width * max(width + 2.0 * mean, 0.0))
-
-
-@compiled(error_model="python", nogil=True)
-def walker(width: float, mean: float, tensile_strength: float, exponent: float) -> float:
-    """Fully reversed range of a range and a mean stress [Pa], with Walker's exponent gamma."""
-    return width**exponent * max(width + 2.0 * mean, 0.0) ** (1.0 - exponent)
-
-
-CORRECTIONS = {"goodman": goodman, "gerber": gerber, "swt": swt, "walker": walker}
+CORRECTIONS = MEAN_STRESSES[2:]  # by a fully reversed range
 
 
 @compiled(error_model="python", nogil=True)
 def reversed_range(number: int, width: float, mean: float, tensile_strength: float, exponent: float) -> float:
-    """Fully reversed range [Pa] by the correction with this number in `MEAN_STRESSES`."""
+    """Fully reversed range of a range and a mean stress [Pa], by the correction with this number in
+    `MEAN_STRESSES`; by Goodman and Gerber infinite from the tensile strength on. `exponent`: Walker's gamma.
+    """
     if number == 2:
-        return goodman(width, mean, tensile_strength, exponent)
+        return width / (1.0 - mean / tensile_strength) if mean < tensile_strength else inf
     if number == 3:
-        return gerber(width, mean, tensile_strength, exponent)
-    if number == 4:
-        return swt(width, mean, tensile_strength, exponent)
-    return walker(width, mean, tensile_strength, exponent)
+        share = max(mean, 0.0) / tensile_strength
+        return width / (1.0 - share * share) if share < 1.0 else inf
+    highest = max(width + 2.0 * mean, 0.0)  # twice the maximum stress
+    return sqrt(width * highest) if number == 4 else width**exponent * highest ** (1.0 - exponent)
 
 
 def evaluate(

@@ -134,11 +134,17 @@ def loop_of(series: np.ndarray, size: int, i: int, j: int) -> tuple[int, int]:
     return first, count
 
 
-def in_double_precision(kernel: Callable, stress: np.ndarray, lengths: np.ndarray, out: np.ndarray) -> None:
-    """Call kernel(stress, lengths, out), compiled for double precision alone, on a few points at a time."""
+def in_double_precision(
+    kernel: Callable, stress: np.ndarray, lengths: np.ndarray, columns: int
+) -> np.ndarray:
+    """Results (points, columns) of kernel(stress, lengths, out), compiled for double precision alone, called
+    on a few points at a time.
+    """
+    out = np.empty((len(stress), columns))
     for begin in range(0, len(stress), POINTS_AT_ONCE):
         part = slice(begin, begin + POINTS_AT_ONCE)
         kernel(stress[part].astype(float), lengths[part], out[part])
+    return out
 
 
 @compiled(error_model="python", nogil=True)

@@ -99,6 +99,28 @@ def padded_length(nx: int) -> int:
     return fft.next_fast_len(2 * nx, real=True)
 
 
+def checked_load(
+    nodes: tuple[int, ...],
+    z: float | np.ndarray,
+    pressure: np.ndarray,
+    shear: np.ndarray | None,
+    poisson_ratio: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Depths, pressure and traction as arrays of floats, without traction zero; ValueError for bad ones.
+
+    `nodes`: shape of the nodes, the last axes of the loads.
+    """
+    z, pressure = np.asarray(z, float), np.asarray(pressure, float)
+    shear = np.zeros_like(pressure) if shear is None else np.asarray(shear, float)
+    if pressure.shape[-len(nodes) :] != nodes or shear.shape != pressure.shape:
+        raise ValueError(f"pressure and traction must have one value a node, (..., {nodes}), and one shape")
+    if not -1 < poisson_ratio <= 0.5:
+        raise ValueError("Poisson's ratio must lie between -1 and 0.5")
+    if not (np.isfinite(z).all() and (z >= 0).all()):
+        raise ValueError("depths must be finite and not negative")
+    return z, pressure, shear
+
+
 def _combined(kernels: np.ndarray, p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Stresses sx, sz, txz from kernels A, B, C, E times pressure and traction."""
     a, b, c, e = kernels
@@ -129,14 +151,8 @@ def stress(
 
     Returns sx, sz, txz [Pa], shape (..., nz, nx), without the axis nz if z is a number.
     """
-    x, z, pressure = (np.asarray(values, float) for values in (x, z, pressure))
-    shear = np.zeros_like(pressure) if shear is None else np.asarray(shear, float)
-    if pressure.shape[-1:] != x.shape or shear.shape != pressure.shape:
-        raise ValueError("pressure and shear must have one value a node, and the same shape")
-    if not -1 < poisson_ratio <= 0.5:
-        raise ValueError("Poisson's ratio must lie between -1 and 0.5")
-    if not (np.isfinite(z).all() and (z >= 0).all()):
-        raise ValueError("depths must be finite and not negative")
+    x = np.asarray(x, float)
+    z, pressure, shear = checked_load(x.shape, z, pressure, shear, poisson_ratio)
     nx, n, depths = x.size, padded_length(x.size), np.atleast_1d(z) / spacing(x)
     distance = np.arange(1 - nx, nx)
     kernels = np.zeros((4, depths.size, n))

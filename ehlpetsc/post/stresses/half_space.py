@@ -29,7 +29,7 @@ from scipy import fft
 from scipy.special import erfc
 
 from ehlpetsc.base.compiled import compiled
-from ehlpetsc.post.stresses.half_plane import hat, spacing
+from ehlpetsc.post.stresses.half_plane import checked_load, hat, spacing
 
 COMPONENTS = 6
 N_LOADS = 2
@@ -205,15 +205,9 @@ def stress_plane(
 
     Returns sx, sy, sz, txy, tyz, txz [Pa], shape (..., nz, ny, nx), without the axis nz if z is a number.
     """
-    x, y, z, pressure = (np.asarray(values, float) for values in (x, y, z, pressure))
-    shear = np.zeros_like(pressure) if shear_x is None else np.asarray(shear_x, float)
+    x, y = np.asarray(x, float), np.asarray(y, float)
     ny, nx = y.size, x.size
-    if pressure.shape[-2:] != (ny, nx) or shear.shape != pressure.shape:
-        raise ValueError("pressure and shear_x must have one value a node, (..., ny, nx), and the same shape")
-    if not -1 < poisson_ratio <= 0.5:
-        raise ValueError("Poisson's ratio must lie between -1 and 0.5")
-    if not (np.isfinite(z).all() and (z >= 0).all()):
-        raise ValueError("depths must be finite and not negative")
+    z, pressure, shear = checked_load((ny, nx), z, pressure, shear_x, poisson_ratio)
     dx, shape = spacing(x), padded_shape(ny, nx, periodic)
     loads = fft.rfft2(np.stack([pressure, shear]), shape)[:, None]
     layers = []
