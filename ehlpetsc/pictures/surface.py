@@ -58,8 +58,8 @@ SHOWN_DECAYS = 5  # of the slowest decay that the picture shows
 Spectra = dict[str, tuple[np.ndarray, np.ndarray]]
 
 
-def arguments() -> CommandParser:
-    """Parse the command line."""
+def main(words: list[str]) -> int:
+    """Run the command; returns its exit status."""
     parser = CommandParser("surface", __doc__)
     parser.add_argument("file", help="profile or map")
     parser.add_argument(
@@ -73,12 +73,7 @@ def arguments() -> CommandParser:
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="key of [surface.1]; may be repeated"
     )
-    return parser
-
-
-def main(words: list[str]) -> int:
-    """Run the command; returns its exit status."""
-    chosen = arguments().parse_args(words)
+    chosen = parser.parse_args(words)
     return exit_status("surface", lambda: run(chosen))
 
 
@@ -107,7 +102,7 @@ def run(chosen: argparse.Namespace) -> None:
     else:
         parameters = surface.parameters
     notes = [*surface.notes, *doubts(surface)]
-    print("\n".join([f"{chosen.file}: {_size(surface)}", *notes, *rows(parameters)]))
+    print("\n".join([f"{chosen.file}: {surface.extent_text}", *notes, *rows(parameters)]))
     densities = spectra(surface)
     if chosen.csv is not None:
         atomic_write(chosen.csv, csv(densities).encode())
@@ -156,14 +151,6 @@ def _spec(file: str, overrides: list[str]) -> Values:
     if faults or found:
         raise CaseError([f"{file}: {fault.text.removeprefix(TABLE)}" for fault in [*faults, *found]])
     return spec
-
-
-def _size(surface: Topography) -> str:
-    if surface.is_ridge:
-        return surface.extent_text
-    ny, nx = surface.z.shape
-    size = f"{1e3 * surface.length:.4g} x {1e3 * surface.dy * (ny - 1):.4g} mm"
-    return f"{size}, {nx} x {ny} points {1e6 * surface.dx:.4g} um and {1e6 * surface.dy:.4g} um apart"
 
 
 def rows(found: dict[str, float]) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
@@ -14,6 +16,7 @@ MIN_PARAMETER_POINTS = 50
 BINS_PER_DECADE = 12  # of the averaged spectrum
 CORRELATION_THRESHOLD = 0.2  # of the autocorrelation, for Sal and Str
 LAY_DIRECTIONS = 360  # of half a turn, in which the autocorrelation is followed
+LAY_ANGLES = np.pi * np.arange(LAY_DIRECTIONS) / LAY_DIRECTIONS
 PRUNED = 0.05  # of Sz: lower hills and dales belong to their neighbours (Wolf pruning)
 PEAK_RATIO, VALLEY_RATIO = 0.1, 0.8  # material ratios of Vmp and Vvv
 S10Z_PEAKS = 5  # peaks, and pits, of S10z
@@ -216,18 +219,10 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
 
     Followed from lag 0 in all directions; nan where it has not fallen at half the size of the map.
     """
-    from scipy.ndimage import map_coordinates
-
-    correlation = autocorrelation(z)
-    middle = [n // 2 for n in correlation.shape]
-    angle = np.pi * np.arange(LAY_DIRECTIONS) / LAY_DIRECTIONS
-    step = 0.5 * min(dx, dy)
-    lag = step * np.arange(int(np.hypot(middle[0] * dy, middle[1] * dx) / step) + 1)
-    places = [
-        middle[0] + np.outer(lag, np.sin(angle)) / dy,
-        middle[1] + np.outer(lag, np.cos(angle)) / dx,
-    ]
-    followed = map_coordinates(correlation, places, order=1, cval=np.nan)
+    correlation, step = autocorrelation(z), 0.5 * min(dx, dy)
+    half = [n // 2 * spacing for n, spacing in zip(correlation.shape, (dy, dx), strict=True)]
+    lag = step * np.arange(int(np.hypot(*half) / step) + 1)
+    followed = _in_all_directions(correlation, lag, (dy, dx), np.nan)
     below = followed < CORRELATION_THRESHOLD
     fallen, falls = np.full(LAY_DIRECTIONS, np.nan), np.flatnonzero(below.any(axis=0))
     first = below.argmax(axis=0)[falls]
@@ -238,20 +233,31 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
     return float(np.nanmin(fallen)), float(fallen.max())
 
 
+def _in_all_directions(
+    values: np.ndarray, distance: np.ndarray, steps: Sequence[float], beyond: float
+) -> np.ndarray:
+    """Values (ny, nx) at distances (n,) from their middle in `LAY_DIRECTIONS` directions of half a turn.
+
+    `steps`: spacings of the rows and columns. `beyond`: value outside. Returns shape (n, LAY_DIRECTIONS).
+    """
+    from scipy.ndimage import map_coordinates
+
+    places = [
+        n // 2 + np.outer(distance, along) / step
+        for n, along, step in zip(values.shape, (np.sin(LAY_ANGLES), np.cos(LAY_ANGLES)), steps, strict=True)
+    ]
+    return map_coordinates(values, places, order=1, cval=beyond)
+
+
 def developed_ratio(z: np.ndarray, dx: float, dy: float) -> float:
     r"""Sdr: mean of :math:`\sqrt{1+z_x^2+z_y^2}-1` where both slopes exist.
 
     Slopes by :func:`slopes`.
     """
     along, across = slopes(z, dx), slopes(z.T, dy).T
-    rows, columns = (
-        slice(lost // 2, lost // 2 + count)
-        for lost, count in (
-            (len(along) - len(across), len(across)),
-            (across.shape[1] - along.shape[1], along.shape[1]),
-        )
-    )
-    squared = along[rows] ** 2 + across[:, columns] ** 2
+    above, before = (len(along) - len(across)) // 2, (across.shape[1] - along.shape[1]) // 2
+    both = along[above : above + len(across)], across[:, before : before + along.shape[1]]
+    squared = both[0] ** 2 + both[1] ** 2
     return float(np.mean(squared / (np.sqrt(1.0 + squared) + 1.0)))  # without cancellation
 
 
@@ -260,20 +266,12 @@ def texture_direction(z: np.ndarray, dx: float, dy: float) -> float:
 
     F is the Fourier transform of the heights in polar coordinates, with a Hann window along x and y.
     """
-    from scipy.ndimage import map_coordinates
-
     window = np.multiply.outer(*(np.hanning(n + 2)[1:-1] for n in z.shape))
     power = np.fft.fftshift(np.abs(np.fft.fft2(z * window)) ** 2)
     steps = [1.0 / (n * step) for n, step in zip(z.shape, (dy, dx), strict=True)]  # of frequencies
-    middle = [n // 2 for n in z.shape]
     radius = min(steps) * np.arange(1, int(0.5 / max(dx, dy) / min(steps)) + 1)
-    angle = np.pi * np.arange(LAY_DIRECTIONS) / LAY_DIRECTIONS
-    places = [
-        middle[0] + np.outer(radius, np.sin(angle)) / steps[0],
-        middle[1] + np.outer(radius, np.cos(angle)) / steps[1],
-    ]
-    along = radius @ map_coordinates(power, places, order=1)
-    return float(np.degrees(angle[along.argmax()]) + 90.0) % 180.0
+    along = radius @ _in_all_directions(power, radius, steps, 0.0)
+    return float(np.degrees(LAY_ANGLES[along.argmax()]) + 90.0) % 180.0
 
 
 def ten_point_height(z: np.ndarray) -> float:

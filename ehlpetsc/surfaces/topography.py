@@ -105,10 +105,9 @@ class Topography:
         """Size and points for messages."""
         if self.is_ridge:
             return f"{1e3 * self.length:.4g} mm long, {len(self.X)} points {1e6 * self.dx:.4g} um apart"
-        width, steps = 1e3 * float(self.Y[-1] - self.Y[0]), f"{1e6 * self.dx:.4g} x {1e6 * self.dy:.4g}"
-        return (
-            f"{1e3 * self.length:.4g} x {width:.4g} mm, {len(self.X)} x {len(self.Y)} points {steps} um apart"
-        )
+        size = f"{1e3 * self.length:.4g} x {1e3 * float(self.Y[-1] - self.Y[0]):.4g} mm"
+        steps = f"{1e6 * self.dx:.4g} um and {1e6 * self.dy:.4g} um apart"
+        return f"{size}, {len(self.X)} x {len(self.Y)} points {steps}"
 
     @property
     def statistics(self) -> dict[str, float]:

@@ -43,18 +43,10 @@ ENTRY = re.compile(
     rf"(\d+(?:[.,]\d*)?(?:e[+-]?\d+)?)\s*\"?\s*(?:[\[(]?({NAME})\b)?",
     re.IGNORECASE | re.MULTILINE,
 )  # name [unit] = number unit
-STEP_NAMES = {
-    "step",
-    "stepsize",
-    "stepwidth",
-    "spacing",
-    "pointspacing",
-    "pixelsize",
-    "pixelwidth",
-    "pixelspacing",
-}
-STEP_NAMES |= {"cellsize", "increment", "pitch", "d", "delta", "lateralresolution", "resolution", "sampling"}
-STEP_NAMES |= {"samplinginterval", "interval"}
+STEP_NAMES = set(
+    """step stepsize stepwidth spacing pointspacing pixelsize pixelwidth pixelspacing cellsize
+increment pitch d delta lateralresolution resolution sampling samplinginterval interval""".split()
+)
 EXTENTS = {"": {"width": "x", "scanwidth": "x", "scansize": "x", "height": "y", "scanheight": "y"}}
 EXTENTS |= {axis: dict.fromkeys(("length", "range", "extent", "size", "width"), axis) for axis in "xy"}
 
