@@ -145,8 +145,7 @@ def statistics(result: Result) -> list[tuple]:
         values = result.steps(name).astype(float)
         usable = np.isfinite(values) & (weights > 0.0)
         if usable.any():
-            v, w = values[usable], weights[usable]
-            percentiles = weighted_percentiles(v, w, PERCENTILES)
+            v, percentiles = values[usable], weighted_percentiles(values, weights, PERCENTILES)
             reduced = (mean(result, name, weights), *percentiles, v.min(), v.max(), v[-1])
             unit = result.unit(f"steps/{name}")
             begin = (time - dt)[usable][0]

@@ -31,8 +31,8 @@ MAX_RUNS = 6
 MAX_BULK_CHANGE = 1.0  # K, of the bulk temperatures by the last run
 
 
-def arguments() -> CommandParser:
-    """Parse the command line."""
+def main(words: list[str]) -> int:
+    """Run the command; returns its exit status."""
     parser = CommandParser("gears", __doc__)
     parser.add_argument("files", nargs="+", help="case file with a [gears] table; its results; their index")
     parser.add_argument("-o", "--output", help="picture [CASE.path.png, RESULT.gears.png]")
@@ -44,12 +44,7 @@ def arguments() -> CommandParser:
     parser.add_argument(
         "--run", metavar="RESULT.h5", help="repeat the run until bulk temperatures are those of its losses"
     )
-    return parser
-
-
-def main(words: list[str]) -> int:
-    """Run the command; returns its exit status."""
-    chosen = arguments().parse_args(words)
+    chosen = parser.parse_args(words)
     return exit_status("gears", lambda: run(chosen), (ValueError,))
 
 

@@ -22,20 +22,15 @@ from ehlpetsc.life.history import read_life
 from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path, inputs_of
 
 
-def arguments() -> CommandParser:
-    """The command line."""
+def main(words: list[str]) -> int:
+    """Run the command; returns its exit status."""
     parser = CommandParser("life", __doc__)
     parser.add_argument("case", help="case file with a [life] table; OUT.life.h5 to draw")
     parser.add_argument("-o", "--output", metavar="FILE.h5", help="default: CASE.life.h5")
     parser.add_argument("--overwrite", action="store_true", help="start again")
     parser.add_argument("--unresolved", action="store_true", help="also on a mesh too coarse for profiles")
     parser.add_argument("--no-picture", action="store_true", help="do not draw")
-    return parser
-
-
-def main(words: list[str]) -> int:
-    """Run the command; returns its exit status."""
-    chosen = arguments().parse_args(words)
+    chosen = parser.parse_args(words)
     return exit_status("life", lambda: _run(chosen), (ImportError,))
 
 

@@ -26,7 +26,7 @@ PANELS = (  # over the passes: figure, label, factor
     ("wear_volume", "worn [µm²]", 1e12),
     ("friction", "friction", 1.0),
 )
-MIN_LOG_DAMAGE = -3.0  # log10 of the damage at the lower end of the colours
+DAMAGE_COLOURS = dict(vmin=-3.0, vmax=0.0, cmap="magma_r")  # of log10 of the damage
 
 
 def draw(life: LifeHistory, path: Path) -> None:
@@ -102,11 +102,7 @@ def _maps(figure: FigureBase, life: LifeHistory, chosen: np.ndarray) -> None:
         for k, (body, layer) in enumerate(zip(life.bodies[row], layers, strict=True)):
             of_damage, of_pits = column[2 * k : 2 * k + 2]
             depth = 0.5e6 * body.edges[layer : layer + 2].sum()
-            damage = np.where(body.is_there, body.damage, np.nan)[layer]
-            with np.errstate(divide="ignore"):
-                values = np.clip(np.log10(damage), MIN_LOG_DAMAGE, 0.0)
-            limits = dict(vmin=MIN_LOG_DAMAGE, vmax=0.0, cmap="magma_r")
-            damages = _map(of_damage, body, values, **limits)
+            damages = _map(of_damage, body, log_damage(body)[layer], **DAMAGE_COLOURS)
             of_damage.set_title(f"{_heading(life, row, k)}, D {depth:.2g} µm deep", fontsize="small")
             pits = _map(of_pits, body, 1e6 * body.pit, vmin=0.0, vmax=deepest or 1.0, cmap="cividis")
             share = 100.0 * body.pitted_share
@@ -117,6 +113,13 @@ def _maps(figure: FigureBase, life: LifeHistory, chosen: np.ndarray) -> None:
         one.set_ylabel("y [µm]")
     for one in axes[-1]:
         one.set_xlabel("s [µm]")
+
+
+def log_damage(body: LifeBody) -> np.ndarray:
+    """log10 of the damage of the cells within the ends of the colours; nan of cells that are gone."""
+    with np.errstate(divide="ignore"):
+        powers = np.log10(np.where(body.is_there, body.damage, np.nan))
+    return np.clip(powers, DAMAGE_COLOURS["vmin"], DAMAGE_COLOURS["vmax"])
 
 
 def worst_layer(body: LifeBody) -> int:
@@ -136,19 +139,14 @@ def _map(axes: Axes, body: LifeBody, values: np.ndarray, **limits: Any) -> Scala
 def under_profile(axes: Axes, body: LifeBody) -> ScalarMappable:
     """Damage of the cells that are left below the present profile; returns the image."""
     micro = 1e6
-    damage = np.where(body.is_there, body.damage, np.nan)
-    with np.errstate(divide="ignore"):
-        values = np.clip(np.log10(damage), MIN_LOG_DAMAGE, 0.0)
     # columns of one height each: cells hang below the profile as made
     s, edges = np.repeat(micro * body.faces(), 2)[1:-1], micro * body.edges
     top = micro * np.repeat(body.height, 2)
     image = axes.pcolormesh(
         np.broadcast_to(s, (len(edges), len(s))),
         top - edges[:, None],
-        np.repeat(values, 2, axis=1)[:, :-1],
-        vmin=MIN_LOG_DAMAGE,
-        vmax=0.0,
-        cmap="magma_r",
+        np.repeat(log_damage(body), 2, axis=1)[:, :-1],
+        **DAMAGE_COLOURS,
     )
     present = micro * np.repeat(body.profile, 2)
     axes.fill_between(s, present, top, color="w", lw=0.0)  # the worn part of a cell that is left

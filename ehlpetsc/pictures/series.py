@@ -43,9 +43,7 @@ def time_statistics(results: list[Result], name: str) -> np.ndarray:
         weights = filled_weights(result)
         row[0] = mean(result, name, weights)
         if np.isfinite(row[0]):
-            values = result.steps(name).astype(float)
-            used = np.isfinite(values) & (weights > 0.0)
-            row[1:] = weighted_percentiles(values[used], weights[used], BAND)
+            row[1:] = weighted_percentiles(result.steps(name).astype(float), weights, BAND)
     return rows.T
 
 

@@ -27,7 +27,8 @@ DESCRIPTION = (
 )
 
 
-def _parser() -> CommandParser:
+def main(words: Sequence[str]) -> int:
+    """Process each file and draw the processed results; returns the exit status."""
     parser = CommandParser("post", DESCRIPTION)
     add = parser.add_argument
     several = "several; OUTPUT.series.json: its members; OUTPUT.passes.json: its passes"
@@ -46,12 +47,7 @@ def _parser() -> CommandParser:
     add("--weibull", action="store_true", help=weibull)
     pictures = "also draw PNG and SVG, in FOLDER or beside the result"
     add("--pictures", nargs="?", const="", metavar="FOLDER", help=pictures)
-    return parser
-
-
-def main(words: Sequence[str]) -> int:
-    """Process each file and draw the processed results; returns the exit status."""
-    chosen = _parser().parse_args(words)
+    chosen = parser.parse_args(words)
     return exit_status("post", lambda: _run(chosen))
 
 
@@ -163,9 +159,7 @@ def _summary(output: str, wall: float) -> None:
 def _draw(jobs: Sequence[Job], chosen: argparse.Namespace) -> None:
     from ehlpetsc.pictures.damage_maps import draw, pictures, weibull_pictures
 
-    kinds = [pictures] if chosen.pictures is not None else []
-    for kind in kinds + [weibull_pictures] * chosen.weibull:
-        for name in draw(
-            [job.path for job in jobs], [job.output for job in jobs], chosen.pictures or "", kind
-        ):
+    inputs, outputs = [job.path for job in jobs], [job.output for job in jobs]
+    for kind in [pictures] * (chosen.pictures is not None) + [weibull_pictures] * chosen.weibull:
+        for name in draw(inputs, outputs, chosen.pictures or "", kind):
             print(name)

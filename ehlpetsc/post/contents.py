@@ -143,7 +143,7 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
 
 def write_result(path: str | Path, datasets: Mapping[str, Any], attributes: Mapping[str, Any]) -> None:
     """Write datasets by name, with units, texts and axes of their table; replaces `path` at once."""
-    table = {name: dataset for surface in UPPER_FIRST for name, dataset in stored_names(surface).items()}
+    table = stored_names(*UPPER_FIRST)
     image = io.BytesIO()  # HDF5 crashes on a full disk, a plain write does not
     with h5py.File(image, "w") as file:
         file.attrs.update({"format_version": POST_FORMAT_VERSION, **attributes})

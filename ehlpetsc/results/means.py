@@ -73,7 +73,9 @@ def means(result: Result) -> dict[str, float]:
 
 
 def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: Sequence[float]) -> np.ndarray:
-    """Weighted percentiles of values, both of shape (n,)."""
+    """Weighted percentiles of the finite values with a weight, both of shape (n,)."""
+    used = np.isfinite(values) & (weights > 0.0)
+    values, weights = values[used], weights[used]
     order = np.argsort(values)
     reached = 100.0 * (np.cumsum(weights[order]) - 0.5 * weights[order]) / weights.sum()
     return np.interp(percentiles, reached, values[order])

@@ -91,10 +91,11 @@ def post_path(path: str | Path) -> Path:
     return path.parent / f"{path.stem}.post.h5"
 
 
-def stored_names(surface: str) -> dict[str, Dataset]:
-    """The datasets that a result may have of a surface, by name in the file."""
+def stored_names(*surfaces: str) -> dict[str, Dataset]:
+    """The datasets that a result may have of surfaces, by name in the file."""
     return {
         key.format(n=surface, criterion=criterion): dataset
+        for surface in surfaces
         for key, dataset in DATASETS.items()
         for criterion in (COMPARED if "{criterion}" in key else ("",))
     }
@@ -134,15 +135,18 @@ class PostResult:
             if "damage/s" not in file:
                 raise OutputError(f"{path}: not a result of post-processing")
             self.attrs = attributes(file)
-            names = [name for surface in UPPER_FIRST for name in stored_names(surface)]
-            self._arrays = {name: file[name][:] for name in names if name in file}
+            self._arrays = {name: file[name][:] for name in stored_names(*UPPER_FIRST) if name in file}
+        self.section_y: float | None = None
+        self._assign()
+
+    def _assign(self) -> None:
+        """Set the attributes that are stored arrays."""
         named = ("a", "slide_roll_ratio", "surface")
         self.a, self.ratio, self.main = (self.attrs.get(name) for name in named)
         asperities = (f"asperities/{self.main}_{name}" for name in ("height", "damage"))
         self.height, self.under = map(self._arrays.get, asperities)
         self.s, self.z = self._arrays["damage/s"], self._arrays["damage/z_over_a"]
         self.y = self._arrays.get("damage/y")
-        self.section_y: float | None = None
         self.damage = self._of_surfaces("damage/{n}")
         self.surfaces = list(self.damage)
         passed = self._of_surfaces("damage/{n}_complete")
@@ -174,19 +178,13 @@ class PostResult:
         """Result along x in the row of a plane nearest to y [m], as that of a line contact."""
         if self.y is None:
             raise OutputError(f"{self.path}: a line contact has no sections")
-        row = int(np.argmin(np.abs(self.y - y)))
-        one = copy.copy(self)
-        one.y, one.section_y = None, float(self.y[row])
-        one.damage = {side: values[:, row] for side, values in self.damage.items()}
-        one.criteria = {
-            name: {side: values[:, row] for side, values in found.items()}
-            for name, found in self.criteria.items()
-        }
-        one.profiles = {side: (s, z[row]) for side, (s, z) in self.profiles.items()}
-        one.temperatures = {
-            side: PointTemperatures(*(values[row] for values in found))
-            for side, found in self.temperatures.items()
-        }
+        row, one, table = int(np.argmin(np.abs(self.y - y))), copy.copy(self), stored_names(*UPPER_FIRST)
+        one.section_y, one._arrays = float(self.y[row]), {}
+        for name, values in self._arrays.items():
+            axes = table[name].axes_of(values.ndim)
+            if axes != ["y"]:
+                one._arrays[name] = values.take(row, axes.index("y")) if "y" in axes else values
+        one._assign()
         return one
 
     def passed(self, surface: str, criterion: str | None = None) -> np.ndarray:
