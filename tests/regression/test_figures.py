@@ -44,7 +44,7 @@ def thin_ones_and_collisions(stack, index):
 
 @pytest.fixture(scope="module")
 def figure_4(tmp_path_factory):
-    values = [0.010, 0.0085, 0.007, 0.0055, 0.004, 0.0025, 0.001]
+    values = [0.010, 0.007, 0.0055, 0.004, 0.001]
     return series(tmp_path_factory.mktemp("fig4"), "fig4", 160, 1.7, values, NODE)
 
 

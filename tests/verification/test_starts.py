@@ -49,7 +49,7 @@ def test_continuation_ends_at_the_case_itself():
     assert continuation._ramp(0.0, 0.0, lambda share: (1.0, share)) == 1.0
 
 
-@pytest.mark.parametrize("xi", [2.0, -2.0, 8.0, -8.0])
+@pytest.mark.parametrize("xi", [2.0, -8.0])
 def test_results_are_independent_of_surface_names(xi):
     """The rough fast surface at xi is the rough slow one at -xi, to the last digit of Newton's method."""
     one, other = (list(Simulation(rough(side, ratio, 1.0))) for side, ratio in (("1", xi), ("2", -xi)))

@@ -32,7 +32,7 @@ def marched(name, changes, steps):
 )
 def test_strip_of_profiles_equals_the_line(name, changes):
     """Both surfaces rough, sliding, until solids touch; the strip takes the time steps of the line."""
-    steps = 60
+    steps = 40
     changes = {"time.courant": 1.0} | changes
     _, line = marched(name, changes, steps)
     simulation, strip = marched(name, changes | {"mesh.width": 0.08}, steps)

@@ -292,7 +292,7 @@ class Elimination:
             pressure, r = pressure + change * by_pressure, r + change * by_r
         sums = exchange.sums(pressure, np.float32 if operator.linear_rtol >= MIN_SINGLE else np.float64)
         separation = sums.deflection + p.balance.gap(border, p.share.local) + b_g
-        out, back = np.empty(operator.size), self.reduction.back[:, p.owned]
+        out, back = np.empty(operator.size), np.ascontiguousarray(self.reduction.back[:, p.owned])
         out[:local] = unknowns_of(sparse.kind, back, pressure, r, separation).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
         if p.owns_border:
