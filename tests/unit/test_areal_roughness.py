@@ -63,6 +63,10 @@ def test_means_over_a_period_are_the_mean_height():
     means = ContinuedSpline(surface.X, rows.T, "periodic").means(np.linspace(0.4e-4, 3.4e-4, 6))
     assert means.shape == (5, 7)
     assert means.mean() == pytest.approx(z[:-1, :-1].mean(), rel=1e-9)
+    measured = random_map((81, 21), middle=200e-6)
+    strip = measured.periodic_over(400e-6)
+    np.testing.assert_allclose(strip.Y[[0, -1]], (100e-6, 300e-6))
+    np.testing.assert_allclose(strip.z, measured.z[20:61], rtol=0, atol=1e-20)
 
 
 def test_a_profile_is_a_ridge_as_in_a_line_contact():
@@ -132,32 +136,24 @@ def test_a_map_is_cut_to_the_period_of_a_strip_without_a_seam(part):
     assert jump[0] == pytest.approx(jump[1], abs=1e-15)
 
 
-def test_a_strip_keeps_the_heights_of_the_middle_of_the_map():
-    measured = random_map((81, 21), middle=200e-6)
-    strip = measured.periodic_over(400e-6)
-    np.testing.assert_allclose(strip.Y[[0, -1]], (100e-6, 300e-6))
-    np.testing.assert_allclose(strip.z, measured.z[20:61], rtol=0, atol=1e-20)
-
-
-def test_waves_that_the_mesh_does_not_resolve_are_counted():
+def test_waves_that_do_not_fit_are_refused_and_those_not_resolved_counted():
+    wave = {"kind": "sine", "amplitude": 1e-7, "wavelength": 30e-6}
+    with pytest.raises(ProfileError, match=r"^wavelength_across = 8e-05 m; .* 0\.0003 m, .* 7\.5e-05 m$"):
+        made(True, **wave, wavelength_across=80e-6)
+    fitting = made(True, **wave, wavelength_across=75e-6)
+    faces = np.linspace(0.0, 2.0, 33) * WIDTH
+    rows = fitting.row_means(faces)
+    np.testing.assert_allclose(rows[:, :16], rows[:, 16:], atol=1e-19)
     wave = made(kind="sine", amplitude=1e-7, wavelength=30e-6, wavelength_across=75e-6)
     assert wave.unresolved_variance(7e-6, 18e-6) < 1e-3
     assert wave.unresolved_variance(8e-6, 18e-6) > 0.999
     assert wave.unresolved_variance(7e-6, 19e-6) > 0.999
     ridge = made(kind="sine", amplitude=1e-7, wavelength=30e-6)
     assert ridge.unresolved_variance(7e-6, 1.0) < 1e-3 < 0.999 < ridge.unresolved_variance(8e-6, 1.0)
-
-
-def test_a_wave_that_does_not_fit_a_strip_is_refused():
-    wave = {"kind": "sine", "amplitude": 1e-7, "wavelength": 30e-6}
-    with pytest.raises(
-        ProfileError, match=r"^wavelength_across = 8e-05 m; .* 0\.0003 m, next to it 7\.5e-05 m$"
-    ):
-        made(True, **wave, wavelength_across=80e-6)
-    fitting = made(True, **wave, wavelength_across=75e-6)
-    faces = np.linspace(0.0, 2.0, 33) * WIDTH
-    rows = fitting.row_means(faces)
-    np.testing.assert_allclose(rows[:, :16], rows[:, 16:], atol=1e-19)
+    with pytest.raises(ProfileError, match="^direction = 30: .*ground.*self-affine"):
+        made(kind="sine", amplitude=1e-7, wavelength=30e-6, direction=30.0)
+    with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 16000000 "):
+        made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=1e-3, short_cutoff=1e-6, seed=1)
 
 
 def test_ridges_are_endless_and_dents_round_and_periodic_in_a_strip():
@@ -178,7 +174,7 @@ def test_ridges_are_endless_and_dents_round_and_periodic_in_a_strip():
     np.testing.assert_allclose(in_strip.z[0].min(), -2e-6 * between, rtol=1e-6)
 
 
-def test_self_affine_heights_their_stretch_and_period():
+def test_self_affine_and_ground_surfaces_have_their_heights_stretch_and_period():
     keys = {"kind": "self-affine", "sq": 2e-7, "hurst": 0.8, "roll_off": 40e-6, "short_cutoff": 10e-6}
     isotropic = made(**keys, seed=1).parameters
     assert isotropic["Sq"] == pytest.approx(2e-7, rel=1e-12) and isotropic["Str"] > 0.8
@@ -188,9 +184,6 @@ def test_self_affine_heights_their_stretch_and_period():
     surface = made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=40e-6, short_cutoff=10e-6, seed=1)
     assert surface.Y[-1] - surface.Y[0] == pytest.approx(WIDTH, rel=1e-12)
     assert surface.across == surface.along == "periodic"
-
-
-def test_ground_surfaces_have_their_height_skewness_and_lay():
     keys = {"kind": "ground", "ra": 1e-7, "correlation": 10e-6, "correlation_across": 30e-6, "seed": 2}
     surface = made(**keys, skewness=-1.0)
     assert surface.parameters["Sa"] == pytest.approx(1e-7, rel=1e-9)
@@ -199,13 +192,6 @@ def test_ground_surfaces_have_their_height_skewness_and_lay():
     # exp(-(lag/l)^2) falls to 0.2 at l sqrt(ln 5)
     assert normal["Sal"] == pytest.approx(10e-6 * np.sqrt(np.log(5.0)), rel=0.08)
     assert normal["Str"] == pytest.approx(1.0 / 3.0, abs=0.06)
-
-
-def test_a_direction_of_a_wave_and_too_fine_a_random_map_are_refused():
-    with pytest.raises(ProfileError, match="^direction = 30: .*ground.*self-affine"):
-        made(kind="sine", amplitude=1e-7, wavelength=30e-6, direction=30.0)
-    with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 16000000 "):
-        made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=1e-3, short_cutoff=1e-6, seed=1)
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ def write(tmp_path):
     return make
 
 
-def test_values_are_read_as_written_and_left_out_ones_are_none_or_default():
+def test_values_are_read_as_written_or_overridden_and_left_out_ones_are_none_or_default():
     c = case.load(ROUGH)
     assert c.contact.youngs_modulus == (207e9, 207e9)
     assert (c.fluid.lambda_, c.fluid.eyring_stress) == (1.68e-9, 10e6)
@@ -66,9 +66,6 @@ def test_values_are_read_as_written_and_left_out_ones_are_none_or_default():
     assert contact.youngs_modulus == (206e9, 206e9) and contact.poisson_ratio == (0.29, 0.29)
     fluid = case.load(SMOOTH, {"fluid.gamma": None, "fluid.lambda": None}).fluid
     assert (fluid.gamma, fluid.lambda_) == (2.3e-9, 1.7e-9)
-
-
-def test_overrides_replace_values_and_no_override_keeps_the_text():
     given = ["fluid.viscosity=0.003", "output.fields=['pressure']", "time.travel = 2", "title=Mine"]
     c = case.load(ROUGH, given)
     assert (c.fluid.viscosity, c.output.fields, c.time.travel, c.title) == (0.003, ["pressure"], 2, "Mine")
@@ -102,6 +99,13 @@ def test_all_faults_of_a_case_are_reported_together():
         key = f"{word.partition('=')[0]}{' =' if '=' in word else ':'}"
         assert sum(key in line for line in found) == 1
     assert len(found) == 7
+    bound = fault(CASES / "running_in.toml", "contact.minimum_film=1e-9")
+    assert "contact.minimum_film = 1e-09: " in bound and 'contact.model = "direct"' in bound
+    assert fault(SMOOTH, "wear.coefficient=1e-18").endswith('wear: needs contact.model = "mixed" and [time]')
+    mixed = ("contact.model='mixed'", "contact.boundary_film=1e-8", "contact.asperity_height=2e-8")
+    assert "contact.boundary_film = 1e-08: needs contact.asperity_height left out (" in fault(SMOOTH, *mixed)
+    steel = {"contact.material": "16MnCr6", "contact.youngs_modulus": None, "contact.poisson_ratio": None}
+    assert 'contact.material = "16MnCr6": allowed: one of "16MnCr5"' in fault(SMOOTH, *steel.items())
 
 
 @pytest.mark.parametrize(
@@ -109,10 +113,7 @@ def test_all_faults_of_a_case_are_reported_together():
     [
         ("contact.radius=-0.02", [f"{ROUGH}: contact.radius = -0.02: ", ">= 1e-09 and <= 100 [m]"]),
         ("contact.radius=inf", ["contact.radius = Infinity: ", ">= 1e-09 and <= 100 [m]"]),
-        (
-            "contact.youngs_modulus=[207e9]",
-            ["contact.youngs_modulus = [207000000000.0]", ">= 1e+06 and <= 1e+18 [Pa]"],
-        ),
+        ("contact.youngs_modulus=[207e9]", ["youngs_modulus = [207000000000.0]", "<= 1e+18 [Pa]"]),
         ("contact.poisson_ratio=[0.3, 0.6]", ["contact.poisson_ratio = [0.3, 0.6]: ", "<= 0.5"]),
         ("fluid.law='sead'", ['fluid.law = "sead": ', '"barus", "roelands"']),
         ("fluid.reference_viscosity=0.01", ["reference_viscosity", "viscosity"]),
@@ -123,10 +124,7 @@ def test_all_faults_of_a_case_are_reported_together():
         ("output.fields=['presure']", ['output.fields = ["presure"]: ', '"pressure"']),
         ("petsc.-snes_monitor=''", ["petsc = ", '"-snes_monitor"', "dash"]),
         ("time=5", ["time = 5: ", "table"]),
-        (
-            "surface.1.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}",
-            ["surface.1: ", "file or synthetic"],
-        ),
+        ("surface.1.synthetic={kind='ridge', amplitude=1e-7, wavelength=1e-4}", ["surface.1: ", "file or "]),
         ("surface.1.cutoff=0.05", ["surface.1.file", "cutoff = 0.05 m", "0.001712 m"]),
         ("post.b=0.09", ["post.b = 0.09: ", "< 0"]),
         ("contact.yield_pressure=3e9", ['needs contact.model = "mixed"']),
@@ -212,16 +210,6 @@ def test_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
     path = write("[mesh]", "[surface.1]\nfile = 'p.csv'\n[mesh]")
     line = fault(path)
     assert line.startswith(f'{path}: surface.1.file = "p.csv": ') and words in line
-
-
-def test_needs_that_are_not_met_are_named():
-    bound = fault(CASES / "running_in.toml", "contact.minimum_film=1e-9")
-    assert "contact.minimum_film = 1e-09: " in bound and 'contact.model = "direct"' in bound
-    assert fault(SMOOTH, "wear.coefficient=1e-18").endswith('wear: needs contact.model = "mixed" and [time]')
-    mixed = ("contact.model='mixed'", "contact.boundary_film=1e-8", "contact.asperity_height=2e-8")
-    assert "contact.boundary_film = 1e-08: needs contact.asperity_height left out (" in fault(SMOOTH, *mixed)
-    steel = {"contact.material": "16MnCr6", "contact.youngs_modulus": None, "contact.poisson_ratio": None}
-    assert 'contact.material = "16MnCr6": allowed: one of "16MnCr5"' in fault(SMOOTH, *steel.items())
 
 
 def test_values_of_a_case_can_be_sent_to_other_ranks():
@@ -323,13 +311,17 @@ def test_any_fault_of_a_key_is_one_message(base, fault):
 def test_a_file_that_no_contact_can_use_is_reported_beside_other_faults(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "map.txt").write_text("\n".join(["0 1 0 2 1 0"] * 6))
-    faulty = tomllib.loads(POINT) | {
-        "surface": {"1": {"file": "no.txt"}, "2": {"file": "map.txt", "spacing": 1e-5}}
-    }
+    surfaces = {"1": {"file": "no.txt"}, "2": {"file": "map.txt", "spacing": 1e-5}}
+    faulty = tomllib.loads(POINT) | {"surface": surfaces}
     with pytest.raises(CaseError) as refused:
         load(faulty, ["mesh.inlet=4"])
     heads = sorted(line.split(": ")[1].split(" = ")[0] for line in refused.value.faults)
     assert heads == ["mesh.inlet", "surface.1.file"]
+    monkeypatch.chdir(tmp_path)
+    assert load(tomllib.loads(GEARS)).heat.bulk_temperature[0] > 313.0
+    fault = one_fault(load, tomllib.loads(GEARS), {"surface.1": {"file": "no.txt", "spacing": 1e-5}})
+    assert re.search("surface.1.* no such file", fault)
+    assert "cutoff" in one_fault(load, tomllib.loads(LAYER.replace("cutoff = 3e-5", "cutoff = -1")))
 
 
 @pytest.mark.parametrize(
@@ -340,14 +332,3 @@ def test_a_surface_file_that_is_none_is_answered_by_a_close_one(tmp_path, name, 
     (tmp_path / "flank.csv").write_text("0 1")
     fault = one_fault(load, CASES / "mixed.toml", {"surface": {"1": {"file": str(tmp_path / name)}}})
     assert re.search(f"{message}$", fault)
-
-
-def test_bulk_temperature_of_losses_with_a_map_and_without_its_file(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert load(tomllib.loads(GEARS)).heat.bulk_temperature[0] > 313.0
-    fault = one_fault(load, tomllib.loads(GEARS), {"surface.1": {"file": "no.txt", "spacing": 1e-5}})
-    assert re.search("surface.1.* no such file", fault)
-
-
-def test_a_bound_by_another_key_is_not_checked_against_a_faulty_one():
-    assert "cutoff" in one_fault(load, tomllib.loads(LAYER.replace("cutoff = 3e-5", "cutoff = -1")))

@@ -79,9 +79,8 @@ def test_statistics_are_weighted_by_the_time_step(path, capsys):
         dt = file["steps/dt"][:] = np.linspace(0.0, 1.0, 11)
         load = file["steps/load"][:] = np.arange(11.0) ** 2
     other = make_result(path.with_name("a.h5"))
-    (row,) = (
-        row for row in rows_of(capsys, path, other) if (row["scalar"], row["result"]) == ("load", "r.h5")
-    )
+    rows = {(row["scalar"], row["result"]): row for row in rows_of(capsys, path, other)}
+    row = rows["load", "r.h5"]
     assert float(row["mean"]) == pytest.approx(np.average(load, weights=dt), rel=1e-5)
     assert (row["unit"], row["min"], row["max"], row["steps"]) == ("N/m", "1", "100", "10")
     values, weights = np.array([3.0, 1.0, 2.0]), np.array([1000.0, 3000.0, 1000.0])

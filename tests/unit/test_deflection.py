@@ -120,9 +120,8 @@ def test_recurrence_sums_an_exponential():
     matrix[0, 0] -= np.exp(-rate)
     matrix[-1, -1] -= np.exp(-rate)
     distance = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
-    np.testing.assert_allclose(
-        np.linalg.solve(matrix, 2 * np.sinh(rate) * p), np.exp(-rate * distance) @ p, rtol=1e-12
-    )
+    found = np.linalg.solve(matrix, 2 * np.sinh(rate) * p)
+    np.testing.assert_allclose(found, np.exp(-rate * distance) @ p, rtol=1e-12)
     kernel = np.random.default_rng(0).standard_normal(40)
     i, j = np.arange(GROUP), 3 * GROUP + np.arange(GROUP)
     assert grouped_kernel(kernel)[3] == pytest.approx(kernel[np.subtract.outer(j, i)].mean())
@@ -179,12 +178,8 @@ def test_exponentials_are_the_same_with_every_kernel_of_openblas():
     if len(kernels) < 2:
         pytest.skip("one of these kernels alone runs on this processor, so there is nothing to compare")
     plain = {"PATH": os.environ["PATH"], "HOME": "/", "PYTHONPATH": str(ROOT)}
-    runs = [
-        subprocess.Popen(
-            [sys.executable, "-c", TERMS], env=plain | {"OPENBLAS_CORETYPE": name}, stdout=subprocess.PIPE
-        )
-        for name in kernels
-    ]
+    words, pipe = [sys.executable, "-c", TERMS], subprocess.PIPE
+    runs = [subprocess.Popen(words, env=plain | {"OPENBLAS_CORETYPE": name}, stdout=pipe) for name in kernels]
     first, *others = (json.loads(run.communicate(timeout=60)[0]) for run in runs)
     for name, other in zip(kernels[1:], others, strict=True):
         for (rates, weights), (expected_rates, expected_weights) in zip(other, first, strict=True):
@@ -200,10 +195,8 @@ def test_kernel_is_the_integral_over_a_cell():
     def integrand(t, s):
         return (1.0 - abs(s) / CELL_X) / np.hypot(3 * CELL_X - s, 2 * CELL_Y - t)
 
-    parts = (
-        dblquad(integrand, *ends, -CELL_Y / 2, CELL_Y / 2, epsabs=1e-14)[0]
-        for ends in ((-CELL_X, 0.0), (0.0, CELL_X))
-    )
+    ends = (-CELL_X, 0.0), (0.0, CELL_X)
+    parts = (dblquad(integrand, *end, -CELL_Y / 2, CELL_Y / 2, epsabs=1e-14)[0] for end in ends)
     assert free_kernel(8, 8, CELL_X, CELL_Y)[2, 3] == pytest.approx(sum(parts), abs=1e-15)
     exact = differences_of_primitive(NEAR + 20, NEAR + 20, CELL_X, CELL_Y)
     expansion = cell_potential(np.arange(NEAR + 20) * CELL_X, np.arange(NEAR + 20) * CELL_Y, CELL_X, CELL_Y)
@@ -227,9 +220,8 @@ def test_film_of_hertz_pressure_is_flat_to_second_order():
     for points in (16, 32, 64):
         x = np.arange(-2 * points, 2 * points + 1) / points
         square = x**2 + x[:, None] ** 2
-        deflection = PlaneDeflection(
-            (len(x), len(x)), (1 / points, 1 / points), CIRCLE, 1.0, False, slice(None)
-        )
+        shape, cell = (len(x), len(x)), (1 / points, 1 / points)
+        deflection = PlaneDeflection(shape, cell, CIRCLE, 1.0, False, slice(None))
         film = deflection.integral(np.sqrt(np.maximum(1.0 - square, 0.0)).ravel()) + 0.5 * square.ravel()
         inside = film[square.ravel() < 0.81]
         spreads.append(inside.std())
@@ -240,9 +232,8 @@ def test_film_of_hertz_pressure_is_flat_to_second_order():
 
 @pytest.mark.parametrize("periodic", (False, True))
 def test_convolution_has_the_precision_of_its_argument(periodic):
-    product = Convolution(
-        (periodic_kernel if periodic else free_kernel)(33, 24, CELL_X, CELL_Y), periodic, Transposition()
-    )
+    kernel = (periodic_kernel if periodic else free_kernel)(33, 24, CELL_X, CELL_Y)
+    product = Convolution(kernel, periodic, Transposition())
     pressure = np.random.default_rng(5).random(24 * 33)
     exact, single = product(pressure), product(pressure.astype(np.float32))
     assert single.dtype == np.float32

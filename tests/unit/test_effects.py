@@ -164,6 +164,9 @@ def test_effects_are_refused_in_contacts_that_they_do_not_serve(monkeypatch):
     expected = "case: heat: of line and strip contacts, and this is a point; leave it out"
     assert one_fault(load, case) == expected
     load(BALL)
+    text = (CASES / "table1_smooth.toml").read_text().replace('law = "roelands"', 'law = "own"')
+    with pytest.raises(CaseError, match='law = "own": .*; if it is of your own, set EHLPETSC_OWN to the'):
+        stored_case(text)
 
 
 class Additive(Effect):
@@ -211,9 +214,3 @@ def test_module_that_is_missing_is_named(tmp_path):
         done = called(command, tmp_path, SCRIPT | {"EHLPETSC_OWN": "nosuch"})
         assert done.returncode == 2 and done.stderr.count("\n") == 1
         assert "EHLPETSC_OWN = nosuch: No module named 'nosuch'; allowed: a module in this" in done.stderr
-
-
-def test_result_of_a_law_of_ones_own_names_the_variable():
-    text = (CASES / "table1_smooth.toml").read_text().replace('law = "roelands"', 'law = "own"')
-    with pytest.raises(CaseError, match='law = "own": .*; if it is of your own, set EHLPETSC_OWN to the'):
-        stored_case(text)

@@ -45,7 +45,7 @@ def test_results_without_common_conditions_are_refused(tmp_path, capsys):
     assert message.startswith("ehlpetsc summary: 2 results ") and not list(tmp_path.glob("*.csv"))
 
 
-def test_run_statistics_are_time_means_and_extremes(tmp_path):
+def test_run_statistics_are_time_means_extremes_and_damage_quantiles(tmp_path):
     (path, *_) = made(tmp_path, [50.0])
     with read_result(path) as result:
         figures = run_scalars(result)
@@ -56,24 +56,6 @@ def test_run_statistics_are_time_means_and_extremes(tmp_path):
         assert figures["h_min"] == result.steps("h_min")[filled].min()
         assert figures["p_max"] == result.steps("p_max")[filled].max()
     assert "dt" not in figures and "wall" not in figures
-
-
-def test_ensemble_table_of_a_series(tmp_path, capsys):
-    made(tmp_path, (5.0, 1.0))
-    files = [{"file": path.name} for path in sorted(tmp_path.glob("*.h5"))]
-    index = tmp_path / "e.series.json"
-    index.write_text(json.dumps({"members": files}))
-    assert summary(["--ensemble", str(index)]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    rows = {(row["ensemble"], row["scalar"]): row for row in csv.DictReader(lines)}
-    row = rows["entrainment_speed = 1", "contact_share"]
-    assert int(row["runs"]) == 6
-    assert float(row["mean"]) == pytest.approx(np.mean(SHARES), rel=0.02)
-    assert float(row["deviation"]) == pytest.approx(np.std(SHARES, ddof=1), rel=0.02)
-    assert float(row["min"]) < float(row["mean"]) < float(row["max"])
-
-
-def test_ensemble_has_damage_quantiles(tmp_path):
     (path, *_) = made(tmp_path, seeds=[1])
     with h5py.File(path) as result, h5py.File(path.replace(".h5", ".post.h5"), "w") as file:
         file.attrs.update(a=1e-3, case=result.attrs["case"])
@@ -91,6 +73,21 @@ def test_ensemble_has_damage_quantiles(tmp_path):
     assert figures["flash_temperature_2 q=0.5"] == pytest.approx(70.0)
     rows = ensemble_table(opened([path]))
     assert {unit for _, name, unit, *_ in rows if "flash" in name} == {"K"}
+
+
+def test_ensemble_table_of_a_series(tmp_path, capsys):
+    made(tmp_path, (5.0, 1.0))
+    files = [{"file": path.name} for path in sorted(tmp_path.glob("*.h5"))]
+    index = tmp_path / "e.series.json"
+    index.write_text(json.dumps({"members": files}))
+    assert summary(["--ensemble", str(index)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    rows = {(row["ensemble"], row["scalar"]): row for row in csv.DictReader(lines)}
+    row = rows["entrainment_speed = 1", "contact_share"]
+    assert int(row["runs"]) == 6
+    assert float(row["mean"]) == pytest.approx(np.mean(SHARES), rel=0.02)
+    assert float(row["deviation"]) == pytest.approx(np.std(SHARES, ddof=1), rel=0.02)
+    assert float(row["min"]) < float(row["mean"]) < float(row["max"])
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

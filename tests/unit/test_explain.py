@@ -1,4 +1,4 @@
-"""explain: figures of a case, predicted size and run time, disabled effects, warnings."""
+"""explain: figures of a case, size and run time, warnings; lines at the end of a run about its validity."""
 
 import csv
 import re
@@ -9,6 +9,7 @@ from support import CASES, ROOT, is_line_with
 
 from ehlpetsc.api import solve
 from ehlpetsc.case import loading as case
+from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import cost as forecast
 from ehlpetsc.run.forecast.cost import file_size
@@ -20,7 +21,7 @@ from ehlpetsc.run.forecast.explain import (
     explain,
     main,
 )
-from ehlpetsc.run.forecast.validity import warnings
+from ehlpetsc.run.forecast.validity import heat_warnings, limits, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
@@ -43,9 +44,6 @@ def test_explain_figures_of_the_main_case():
     parts = ["a = 0.335682 mm", "p0 = 0.999455 GPa", "M = 56.53, L = 3.70", "801 nodes", "1603 unknowns"]
     parts += ["1067 steps", "surfaces 1, 2 at 5.625, 4.375 m/s", "Ra 0.0785 um", "contact likely"]
     assert [part for part in parts if part not in text] == []
-
-
-def test_friction_of_solids_oil_and_start_are_named():
     (line,) = starting(lines("table1_smooth.toml"), "Solids: ")
     default = "0.1, the default of contact.boundary_friction, where they touch"
     assert line == f"Solids: coefficient of friction {default}"
@@ -94,13 +92,19 @@ def test_expected_errors_are_those_of_the_page_of_accuracy():
     assert line.startswith("Mesh error: at least 15 % of the waves")  # the film's are two thirds as long
 
 
-def test_heading_of_a_gear_run_has_the_steps_of_its_changing_conditions():
+def test_steps_of_changing_conditions_and_the_travel_that_post_processing_needs():
     gears = case.load(CASES / "fzg.toml", ())
     heading = forecast.banner(gears, Scales.of(gears), None, 1)[1]
     assert " 3170 steps; 1 rank" in heading
     steady = case.load(CASES / "table1_smooth.toml", ())
     assert " unknowns, steady; 1 rank" in forecast.banner(steady, Scales.of(steady), None, 1)[1]
     assert starting(lines("fzg.toml"), "Time: ")[0].endswith("; 3170 steps")
+    short = {"time.travel": 3.0, "mesh.inlet": -2.5, "mesh.outlet": 1.5, "motion.slide_roll_ratio": 0.5}
+    (line,) = starting(lines("table1_rough.toml", *of(short)), "Post-processing")
+    assert "no point of either surface passes the whole mesh, 4 a" in line and "time.travel = 7 is" in line
+    (line,) = starting(lines("table1_rough.toml", *of(short | {"time.travel": 5.0})), "Post-")
+    assert "no point of surface 2 passes" in line
+    assert not any("Post-" in line for line in lines("table1_rough.toml", *of(short | {"time.travel": 7.0})))
 
 
 @pytest.mark.parametrize(
@@ -115,13 +119,19 @@ def test_predicted_result_size_within_a_quarter(tmp_path, overrides):
 def test_coarse_mesh_and_stationary_roughness_are_warnings():
     c = case.load(CASES / "fig6.toml")
     assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.1", "surface.2"]
-    still = starting(
-        lines("table1_smooth.toml", "surface.2.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}"),
-        "Warning",
-    )
+    wave = "surface.2.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}"
+    still = starting(lines("table1_smooth.toml", wave), "Warning")
     assert len(still) == 1 and "surface.2 with [motion] but without [time]" in still[0]
     c = case.load(CASES / "dry_rough.toml")
     assert warnings(c, Scales.of(c)) == []
+    base = ["motion.entrainment_speed=1"]
+    for points, warned in ((300, False), (30, True)):
+        c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={points}"])
+        assert any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c))) == warned
+    lines_shown = next(line for line in warnings(c, Scales.of(c)) if "coarse" in line and "inlet" in line)
+    needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
+    c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
+    assert not any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c)))
 
 
 @pytest.mark.parametrize(
@@ -169,17 +179,6 @@ def test_tilted_profile_warning_names_the_key(level):
         assert "5 um over 4 mm" in found[0] and "level = true" in found[0]
 
 
-def test_mesh_within_ten_percent_has_no_warning():
-    base = ["motion.entrainment_speed=1"]
-    for points, warned in ((300, False), (30, True)):
-        c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={points}"])
-        assert any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c))) == warned
-    lines_shown = next(line for line in warnings(c, Scales.of(c)) if "coarse" in line and "inlet" in line)
-    needed = int(re.search(r"points_per_half_width = (\d+)", lines_shown)[1])
-    c = case.load(CASES / "table1_smooth.toml", [*base, f"mesh.points_per_half_width={needed - 1}"])
-    assert not any("coarse" in line and "inlet" in line for line in warnings(c, Scales.of(c)))
-
-
 def test_memory_of_a_large_map_is_that_of_reading_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     np.save("map.npy", np.random.default_rng(0).normal(0.0, 1e-8, (400, 500)))
@@ -205,10 +204,104 @@ def test_explain_refuses_what_a_run_refuses(capsys):
     assert is_line_with(capsys.readouterr().err, "[series] and time.passes: ", "one of them at a time")
 
 
-def test_explain_states_the_travel_that_post_processing_needs():
-    short = {"time.travel": 3.0, "mesh.inlet": -2.5, "mesh.outlet": 1.5, "motion.slide_roll_ratio": 0.5}
-    (line,) = starting(lines("table1_rough.toml", *of(short)), "Post-processing")
-    assert "no point of either surface passes the whole mesh, 4 a" in line and "time.travel = 7 is" in line
-    (line,) = starting(lines("table1_rough.toml", *of(short | {"time.travel": 5.0})), "Post-")
-    assert "no point of surface 2 passes" in line
-    assert not any("Post-" in line for line in lines("table1_rough.toml", *of(short | {"time.travel": 7.0})))
+WITHIN = {"p_max": 1.2e9, "oil_pressure": 1.2e9, "mass_error": 1e-7, "nodes_below_1nm": 0}
+
+
+def limit_lines(name="table1_smooth", overrides=(), boundary_friction=None, **changed):
+    case = load(CASES / f"{name}.toml", overrides)
+    scales = Scales.of(case)
+    return limits(case, scales, Roughness.of(case, scales), WITHIN | changed, boundary_friction)
+
+
+def test_no_limit_line_within_the_limits():
+    assert limit_lines(oil_pressure=5e9) == []  # 5e5 Pa s
+    assert limit_lines() == [] and limit_lines("table1_rough") == [] and limit_lines("dry_hertz") == []
+
+
+@pytest.mark.parametrize(
+    "changed, parts",
+    [
+        ({"p_max": 6.65e9}, ["pressure: ", " 6.65 GPa"]),
+        ({"oil_pressure": 9e9}, ["viscosity: 5.0e+08"]),
+        ({"mass_error": 0.44}, ["oil balance: ", " 44 % of "]),
+        ({"nodes_below_1nm": 7}, ["film: 7 times "]),
+    ],
+)
+def test_each_limit_line_has_its_figure(changed, parts):
+    (line,) = limit_lines(**changed)
+    assert line.startswith(parts[0]) and parts[-1] in line
+
+
+def test_friction_beyond_that_of_oils_has_a_limit_line():
+    heat = ["heat.bulk_temperature=363.0"]
+    (line,) = limit_lines(overrides=heat, friction_coefficient=-1.25)
+    assert line.startswith("friction: ") and " 1.25, " in line
+    assert limit_lines(overrides=heat, friction_coefficient=0.12) == []
+    rubbing = [*heat, "contact.model=mixed", "contact.boundary_film=10e-9", "contact.boundary_friction=0.2"]
+    assert limit_lines(overrides=rubbing, friction_coefficient=0.19) == []
+    heat = ["heat.bulk_temperature=363.0"]
+    assert limit_lines(overrides=heat, boundary_friction=0.3, friction_coefficient=0.25) == []
+    (line,) = limit_lines(overrides=heat, boundary_friction=0.1, friction_coefficient=0.25)
+    assert line.startswith("friction: a coefficient of 0.25")
+
+
+SLIDES = "motion={entrainment_speed=1.0,slide_roll_ratio=0.5}"
+MIXED_FILM = ["contact.model=mixed", "contact.boundary_film=10e-9"]
+
+
+@pytest.mark.parametrize(
+    "name, keys, totals, share",
+    [
+        ("table1_smooth", MIXED_FILM, {"contact_share": 0.031}, "3.1 % of the load"),
+        ("table1_smooth", [], {"contacts": 8000, "step": 9}, "%.3g %% of the Hertz contact"),
+        ("dry_hertz", [SLIDES], {}, "100 % of the load"),
+    ],
+)
+def test_friction_of_solids_that_is_left_out_has_a_limit_line(name, keys, totals, share):
+    heat = [*keys, "heat.bulk_temperature=363.0"]
+    points = 2 * load(CASES / f"{name}.toml").mesh.points_per_half_width
+    share = share % (8e5 / points / 10) if "%%" in share else share
+    (line,) = limit_lines(name, heat, **totals)
+    assert line.startswith(f"friction: the solids carry up to {share}") and " of 0.1, the default" in line
+    assert limit_lines(name, [*heat, "contact.boundary_friction=0.0"], **totals) == []
+    assert limit_lines("table1_smooth", MIXED_FILM + heat[-1:], contact_share=0.009) == []
+    if name != "dry_hertz":  # nothing slides
+        assert limit_lines(name, [*heat, "motion.slide_roll_ratio=0.0"], **totals) == []
+
+
+def test_unresolved_asperities_and_a_flattened_layer_have_limit_lines():
+    found = limit_lines("table1_rough", ["mesh.points_per_half_width=50"])
+    for side, line in zip("12", found, strict=True):
+        assert line.startswith(f"mesh: surface.{side}: ") and " 51.1 % of its height variance " in line
+    (line,) = limit_lines("stribeck", h_min=1.3e-9)
+    assert line.startswith("layer: flattened from 132 nm to a film of 1.3 nm")
+    assert limit_lines("stribeck", h_min=1.4e-9) == []
+
+
+HEAT = "heat.bulk_temperature=363.0"
+
+
+def warned(name, *keys):
+    case = load(CASES / f"{name}.toml", keys)
+    return heat_warnings(case, Scales.of(case))
+
+
+def limited(name, friction, *keys):
+    found = limit_lines(name, keys, friction_coefficient=friction)
+    return [line for line in found if line.startswith("heat")]
+
+
+def test_damage_case_has_a_heat_warning():
+    [line] = warned("table1_damage")
+    flash = float(line.split(" K ")[0].split()[-1])
+    assert 60.0 < flash < 110.0  # the mean of its surfaces is 50 to 60 K above bulk
+    assert warned("table1_damage", HEAT) == []
+    [line] = limited("table1_damage", 0.036)
+    assert "79 K" in line
+    assert limited("table1_damage", 0.036, HEAT) == []
+
+
+@pytest.mark.parametrize("name", ["table1_smooth", "table1_rough", "waviness", "moes", "dry_hertz"])
+def test_slow_or_rolling_contacts_have_no_heat_warning(name):
+    assert warned(name) == []
+    assert limited(name, 0.0114) == []

@@ -62,7 +62,7 @@ READERS = {".gsf": read_gsf, ".x3p": read_x3p, ".vti": read_vti}
 
 
 @pytest.mark.parametrize("ending", READERS)
-def test_the_command_writes_the_map_as_used(tmp_path, capsys, ending):
+def test_the_command_writes_the_map_as_used_and_a_profile_as_one_row(tmp_path, capsys, ending):
     np.save(tmp_path / "map.npy", Z + 1e-3 * DX * np.arange(60))
     target = tmp_path / f"out{ending}"
     keys = [f"spacing={DX}", f"spacing_across={DY}", "scale=2"]
@@ -81,12 +81,8 @@ def test_the_command_writes_the_map_as_used(tmp_path, capsys, ending):
     if ending != ".x3p":
         assert main([str(target)]) == 2
         assert f"format '{ending}' is written, not read; allowed: " in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("ending", READERS)
-def test_the_command_writes_a_profile_as_one_row(tmp_path, ending):
     np.savetxt(tmp_path / "p.csv", np.transpose([DX * np.arange(60), Z[0]]), delimiter=",")
-    target = tmp_path / f"out{ending}"
+    target = tmp_path / f"row{ending}"
     assert main([str(tmp_path / "p.csv"), "-o", str(target), "--set", "level=false"]) == 0
     z, dx, _ = READERS[ending](target.read_bytes())
     np.testing.assert_allclose(z, [Z[0] - Z[0].mean()], rtol=0, atol=1e-13)
@@ -200,19 +196,6 @@ def test_faulty_masks_and_levels_are_refused_in_one_sentence(tmp_path, capsys, m
     assert message in printed and printed.count("\n") == 1
 
 
-def test_a_mask_is_of_a_map(tmp_path):
-    (tmp_path / "p.csv").write_text("".join(f"{1e-6 * k}, {1e-7 * np.sin(k)}\n" for k in range(400)))
-    tables = {
-        "title": "mask",
-        "motion": {"entrainment_speed": 1.0, "slide_roll_ratio": 0.0},
-        "contact": {"radius": [0.01, 0.01], "load": 20.0, "youngs_modulus": 207e9, "poisson_ratio": 0.3},
-        "mesh": {"inlet": -2.0, "outlet": 1.5, "points_per_half_width": 8, "width": 4.0},
-        "surface": {"1": {"file": str(tmp_path / "p.csv"), "mask": "mask.npy"}},
-    }
-    with pytest.raises(CaseError, match="mask: of a map, not of a profile"):
-        load(tables)
-
-
 def test_the_difference_is_what_was_worn(tmp_path, capsys):
     """The map after the test begins elsewhere, by 5 rows and -22/3 columns."""
     fine = gaussian_filter(RANDOM.standard_normal((220, 750)), (3.0, 9.0))
@@ -247,3 +230,13 @@ def test_maps_of_other_places_or_spacings_have_no_difference(tmp_path, capsys):
     ridge = replace(found, Y=found.Y[:1], z=found.z[:1])
     with pytest.raises(ProfileError, match="a profile; allowed for a difference: maps"):
         difference(found, ridge)
+    (tmp_path / "p.csv").write_text("".join(f"{1e-6 * k}, {1e-7 * np.sin(k)}\n" for k in range(400)))
+    tables = {
+        "title": "mask",
+        "motion": {"entrainment_speed": 1.0, "slide_roll_ratio": 0.0},
+        "contact": {"radius": [0.01, 0.01], "load": 20.0, "youngs_modulus": 207e9, "poisson_ratio": 0.3},
+        "mesh": {"inlet": -2.0, "outlet": 1.5, "points_per_half_width": 8, "width": 4.0},
+        "surface": {"1": {"file": str(tmp_path / "p.csv"), "mask": "mask.npy"}},
+    }
+    with pytest.raises(CaseError, match="mask: of a map, not of a profile"):
+        load(tables)

@@ -65,9 +65,8 @@ def test_nodes_inside_and_interpolation_along_both_axes():
     assert np.flatnonzero(between.inside(0.0)).tolist() == [np.argmin(np.abs(X + 0.04))]
     np.testing.assert_array_equal(between.inside(0.2), np.abs(X + 0.04) <= 0.2)
     grid = grid_of("point")
-    fine = Grid(
-        (np.linspace(-0.7, 0.7, 15), np.linspace(-2.0, 0.9, 30)), (1.0, 1.0), (1.0, 1.0), (1.0, 1.0), 1.0
-    )
+    axes = np.linspace(-0.7, 0.7, 15), np.linspace(-2.0, 0.9, 30)
+    fine = Grid(axes, (1.0, 1.0), (1.0, 1.0), (1.0, 1.0), 1.0)
     y, x = grid.coordinates
     field = np.exp(-(x**2) - 2.0 * y**2)
     found = grid.interpolated(field, fine).reshape(fine.shape)
@@ -172,9 +171,6 @@ def test_depth_enters_with_the_profile():
     added = np.full(effect.scene.scales.nx, 1e-8)
     depth = effect.scene.mesh_on_bodies.add(record.depth, (0.0, 0.0), [added, added])
     np.testing.assert_allclose(in_gap(effect, record._replace(depth=depth))[1][1:-1], 1e-8, rtol=1e-9)
-
-
-def test_unshifted_pass_includes_all_depth_and_uniform_depth_is_everywhere():
     effect, before = made(PlasticDeformation, "time.pass_shift=0.0")
     assert effect.start(before).hidden.volume == 0.0
     effect, before = made(Wear)

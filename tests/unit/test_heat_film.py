@@ -30,9 +30,8 @@ def oil(*thermal):
     return 1, padded((4.0, 0.196e9, 0.6, *thermal, 363.0)), 363.0
 
 
-LAW = FilmLaw(
-    oil(EXPONENTIAL, 0.04, 0.0), True, 0.02, tuple(FlowLaw(EYRING, 10e6)), np.inf, 0.14, 0.0, 0.0, 12.5
-)
+VISCOSITY, FLOW = oil(EXPONENTIAL, 0.04, 0.0), tuple(FlowLaw(EYRING, 10e6))
+LAW = FilmLaw(VISCOSITY, True, 0.02, FLOW, np.inf, 0.14, 0.0, 0.0, 12.5)
 WALLS = (372.0, 368.0, 1.4e-8, 1.9e-8, 1.0)
 A, B, G, SPREAD = 2e4, 2e4 * 365.0, 3e7, 2.0
 
@@ -156,12 +155,21 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
 def test_exchange_is_continuous():
     a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
     law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
-    fluxes = [
-        film_at((1e6, 1e-6, 1.0), (a, a * float(t), 0.0), (0.0, 363.0, 363.0), walls, law)[3:5] for t in inlet
-    ]
+    node, last = (1e6, 1e-6, 1.0), (0.0, 363.0, 363.0)
+    fluxes = [film_at(node, (a, a * float(t), 0.0), last, walls, law)[3:5] for t in inlet]
     steps = np.diff(np.array(fluxes), axis=0)
     assert (steps > -1e-3).all()
     assert steps.max() < 12.0 * 0.14 / 1e-6 * 0.05
+    t, _, _, q1, q2, shear, *_ = solved(h=0.0, left=1.0)
+    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:4], (q1, q2), strict=True)]
+    assert walls[0] == pytest.approx(walls[1], abs=1e-9)
+    assert t == pytest.approx(walls[0], abs=1e-9)
+    assert shear == 0.0
+    law = LAW._replace(thinnest=1e-9)
+    thin, thinner, closed = (solved(h=h, law=law) for h in (1e-9, 1e-12, 0.0))
+    assert thinner[0] == pytest.approx(closed[0], abs=1e-3)
+    assert closed[5] == pytest.approx(thin[5], rel=0.01)
+    assert solved(h=0.0)[5] == 0.0
 
 
 @pytest.mark.parametrize("sliding", [1e-17, 1e-9, 12.5])
@@ -180,19 +188,6 @@ def test_stress_of_a_film_at_rest_but_for_rounding(sliding):
 def test_the_temperature_does_not_depend_on_the_guess(guess):
     for law in LAWS.values():
         assert solved(law=law, guess=guess)[0] == pytest.approx(solved(law=law)[0], abs=2e-5)
-
-
-def test_surfaces_in_contact_have_one_temperature_and_no_heat_of_shear():
-    t, _, _, q1, q2, shear, *_ = solved(h=0.0, left=1.0)
-    walls = [w + r * q for w, r, q in zip(WALLS[:2], WALLS[2:4], (q1, q2), strict=True)]
-    assert walls[0] == pytest.approx(walls[1], abs=1e-9)
-    assert t == pytest.approx(walls[0], abs=1e-9)
-    assert shear == 0.0
-    law = LAW._replace(thinnest=1e-9)
-    thin, thinner, closed = (solved(h=h, law=law) for h in (1e-9, 1e-12, 0.0))
-    assert thinner[0] == pytest.approx(closed[0], abs=1e-3)
-    assert closed[5] == pytest.approx(thin[5], rel=0.01)
-    assert solved(h=0.0)[5] == 0.0
 
 
 def state(n):
@@ -257,7 +252,7 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     found = solved.guess
     assert found[T_MEAN, 20] == pytest.approx(563.0) and heat.guess[T_MEAN, 20] == 370.0
     factor = np.exp(0.04 * 0.5 * (found[T_MEAN, 19] + found[T_MEAN, 20] - 2.0 * 363.0))
-    found = np.array(volumes.fluidities(hot, 19, 20))
+    found = np.array(volumes.fluidities(hot, np.uint64(19), np.uint64(20)))
     np.testing.assert_allclose(found, factor * cold[volumes.FLUIDITY, 19:21], rtol=1e-9)
     own = hot[volumes.THINNING, 19:21] ** 2 * hot[volumes.FLUIDITY, 19:21]
     assert own[1] > own[0] and found[1] < found[0]
@@ -284,9 +279,8 @@ def test_nodes_in_rows_have_the_properties_of_each_row_alone():
 
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
-STILL = FilmLaw(
-    (0, padded((0.0, 1.0, 1.0)), 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, 0.14, 0.0, 0.0, 0.0
-)
+THIN, NEWTONIAN = (0, padded((0.0, 1.0, 1.0)), 300.0), tuple(FlowLaw(NEWTON))
+STILL = FilmLaw(THIN, True, 1.0, NEWTONIAN, np.inf, 0.14, 0.0, 0.0, 0.0)
 
 
 def carried(profile, nodes, way=1.0, moving=False):

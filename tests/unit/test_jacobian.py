@@ -158,11 +158,8 @@ def test_assembled_jacobian_equals_the_operator(name):
     np.testing.assert_allclose(q_of(added, problem.n), np.where(blind, PIVOT_REGULARISATION, 0.0), atol=1e-9)
     np.testing.assert_allclose(w_of(added, problem.n), 0.0, atol=1e-9)
     # the product inside GMRES has the far kernel to its own tolerance
-    far = (
-        LINEAR_TOLERANCE
-        * problem.deflection.curvature[BLOCK + 1]
-        * np.abs(jacobian.state.p_w).max(initial=1.0)
-    )
+    far = LINEAR_TOLERANCE * problem.deflection.curvature[BLOCK + 1]
+    far *= np.abs(jacobian.state.p_w).max(initial=1.0)
     np.testing.assert_allclose(columns_of(system.operator, size), whole, rtol=0, atol=far)
 
 
@@ -173,10 +170,8 @@ def test_restricted_operator_is_a_block_of_the_jacobian(name):
     system, size = linearised(at), len(at.state)
     active_dofs = np.setdiff1d(np.arange(size), w_index(np.array(at.touching))).astype(np.int32)
     block = system.operator.createSubMatrix(PETSc.IS().createGeneral(active_dofs, comm=PETSc.COMM_SELF))
-    whole = columns_of(system.operator, size)
-    np.testing.assert_allclose(
-        columns_of(block, len(active_dofs)), whole[np.ix_(active_dofs, active_dofs)], rtol=1e-12
-    )
+    expected = columns_of(system.operator, size)[np.ix_(active_dofs, active_dofs)]
+    np.testing.assert_allclose(columns_of(block, len(active_dofs)), expected, rtol=1e-12)
     context = block.getPythonContext()
     np.testing.assert_array_equal(context.inactive_nodes, at.touching)
 

@@ -95,9 +95,6 @@ def test_passes_are_those_of_the_worst_point(result, tmp_path):
     stored = PostResult(tmp_path / "o.h5")
     expected = [1 / np.nanmax(stored.damage[side]) for side in ("1", "2")]
     assert passes_to_failure(result, settings) == pytest.approx(expected, rel=1e-12)
-
-
-def test_lines_give_ratios_and_the_factor_of_the_band(result):
     found = criteria_band(result)
     assert found.keys() == LIFE_CRITERIA.keys()
     assert found["morrow"][0] > found["von-mises"][0]  # benefit of compression

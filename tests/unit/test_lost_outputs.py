@@ -50,13 +50,8 @@ def content(path):
 @pytest.mark.parametrize("ending", ["flush", "close"])
 @pytest.mark.parametrize(
     "lose, word",
-    [
-        (os.unlink, "deleted"),
-        (rename_folder, "deleted"),
-        (move_another, "replaced"),
-        (overwrite, "replaced"),
-        (truncate, "replaced"),
-    ],
+    [(os.unlink, "deleted"), (rename_folder, "deleted")]
+    + [(lose, "replaced") for lose in (move_another, overwrite, truncate)],
 )
 def test_loss_is_noticed_and_another_file_kept(tmp_path, lose, word, ending):
     path = tmp_path / "out" / "r.h5"
@@ -177,7 +172,7 @@ def test_stopped_run_is_not_continued_with_another_profile(path, tmp_path):
     assert ehlpetsc.solve(read(path), output).attrs["restarts"] == 1
 
 
-def test_restart_reports_the_name_of_another_file(path, tmp_path):
+def test_restart_reports_the_name_of_another_file_and_a_changed_one_is_refused(path, tmp_path):
     restart = stopped(read(path), tmp_path / "r.h5")
     shutil.copy(tmp_path / FILE, tmp_path / "copy.csv")
     turn_over(path)
@@ -186,9 +181,6 @@ def test_restart_reports_the_name_of_another_file(path, tmp_path):
     with simulation.options, Recorder(simulation, tmp_path / "o.h5") as recorder:
         _, *notes = recorder.resume(restart)
     assert notes == ["surface.1.file was profile.csv, is copy.csv"]
-
-
-def test_simulation_refuses_a_file_that_changed_since_the_case_was_read(path):
     case = read(path)
     assert list(case.digests) == ["surface.1.file"] and len(case.digests["surface.1.file"]) == 64
     turn_over(path)

@@ -117,9 +117,11 @@ def test_filling_time_equals_the_explained_travel(surface, xi):
     s = result.scales
     fills = max(entry_times(p, s)[1] for p in (result.rough.surface_1, result.rough.surface_2) if p)
     assert filled_from(result) == pytest.approx(fills * s.a / s.u_max, rel=1e-12)
+    begun = {"surface": surface, "motion": motion, "time": {"travel": 6.0, "start": "rough"}}
+    assert filled_from(Stored(load(CASE | begun))) == 0.0
 
 
-def test_smooth_surfaces_fill_the_contact_from_the_start(tmp_path):
+def test_filling_time_of_smooth_surfaces_and_under_changing_speeds(tmp_path):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     with h5py.File(path, "r+", libver="latest") as file:
         file["surface/2/z"][:] = 0.0
@@ -129,9 +131,6 @@ def test_smooth_surfaces_fill_the_contact_from_the_start(tmp_path):
         file["surface/1/z"][:] = 0.0
     with read_result(path) as result:
         assert filled_from(result) == 0.0 and both_fill(result, result.steps("time")).all()
-
-
-def test_filling_time_follows_distance_under_changing_speeds(tmp_path):
     path = make_result(tmp_path / "r.h5", speed=50.0, rough=True)
     with read_result(path) as result:
         begin = filled_from(result)
@@ -172,9 +171,6 @@ def test_every_pass_of_an_index_is_processed(index, capsys):
         maxima = [post.passed("2")[depth].max() for post in posts]
         np.testing.assert_array_equal(line.get_xydata(), [[1, maxima[0]], [2, maxima[1]]])
     assert len(axes.lines) == 2 and maxima[1] < maxima[0]
-
-
-def test_damage_of_another_case_is_not_that_of_a_pass(index):
     pass_file = index.with_name("run.pass1.h5")
     assert main([str(pass_file)]) == ExitStatus.DONE
     with read_result(pass_file) as result:

@@ -45,9 +45,8 @@ def test_interruptions_keep_tolerances_and_results():
     case = ehlpetsc.load(CASES / "table1_smooth.toml", {"mesh.points_per_half_width": 20})
     given = {"snes_vi_zero_tolerance": 1e-7, "snes_max_it": 12}
     ones, others = ehlpetsc.Simulation(case, options=given), ehlpetsc.Simulation(case)
-    found = [
-        (s.stepper.problem.model.bound_tolerance, s.stepper.solver.start_iterations()) for s in (ones, others)
-    ]
+    steppers = [simulation.stepper for simulation in (ones, others)]
+    found = [(s.problem.model.bound_tolerance, s.solver.start_iterations()) for s in steppers]
     assert found == [(1e-7, 12), (1e-8, 210)]
     with pytest.raises(UsageError, match="-snes_vi_zero_tolerance much"):
         ehlpetsc.Simulation(case, options={"snes_vi_zero_tolerance": "much"})
@@ -171,17 +170,27 @@ def fault(simulation, change=lambda q, w, rows: None, tolerance=None):
     return find_fault(solver.problem, Unknowns(q, w, state.unknowns.border), rows, tolerance)
 
 
-def test_solution_passes_the_convergence_check(solved):
+def test_solution_passes_the_convergence_check(solved, monkeypatch):
     assert solved.stepper.solver.tolerance == pytest.approx(1e-7)
     assert fault(solved) is None
     assert fault(solved, tolerance=np.nan) is not None
 
+    def solve(guess, inputs, max_it=None, watch=None):
+        solver = simulation.stepper.solver
+        solver.tolerance = 1e-7
+        solver.system.set_initial_guess(guess, inputs)
+        return guess, 0
+
+    simulation = ehlpetsc.Simulation(solved.case)
+    monkeypatch.setattr(simulation.stepper.solver, "solve", solve)
+    with pytest.raises(NotConverged, match=r"check: .* load is .* 1\.0e-07 after 0 "):
+        simulation.advance()
+
 
 @pytest.mark.parametrize("model, tolerance", [("direct", 1e-5), ("mixed", 1e-7)])
 def test_mixed_contact_has_looser_default_tolerances(model, tolerance):
-    simulation = ehlpetsc.Simulation(
-        ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": model})
-    )
+    case = ehlpetsc.load(CASES / "table1_smooth.toml", MESH | {"contact.model": model})
+    simulation = ehlpetsc.Simulation(case)
     simulation.advance()
     assert simulation.stepper.solver.tolerance == pytest.approx(tolerance)
 
@@ -224,19 +233,6 @@ def test_contact_nodes_need_contact_pressure():
     assert fault(simulation, touching(0.3)) is None  # Reynolds is left out there
     assert "residual is -2.00e-07" in fault(simulation, touching(-2e-7))
     assert " -1e-06 a^2/R below" in fault(simulation, put(1, CLOSED, -1e-6))
-
-
-def test_unconverged_guess_is_rejected(solved, monkeypatch):
-    def solve(guess, inputs, max_it=None, watch=None):
-        solver = simulation.stepper.solver
-        solver.tolerance = 1e-7
-        solver.system.set_initial_guess(guess, inputs)
-        return guess, 0
-
-    simulation = ehlpetsc.Simulation(solved.case)
-    monkeypatch.setattr(simulation.stepper.solver, "solve", solve)
-    with pytest.raises(NotConverged, match=r"check: .* load is .* 1\.0e-07 after 0 "):
-        simulation.advance()
 
 
 @pytest.mark.parametrize(

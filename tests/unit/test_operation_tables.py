@@ -106,9 +106,6 @@ def test_case_text_contains_its_table(with_table, tmp_path):
     for one, other in zip(alone.conditions, case.conditions, strict=True):
         np.testing.assert_array_equal(one, other)
     assert alone.fluid.viscosity == 0.004 and alone.contact.load == case.contact.load
-
-
-def test_columns_from_the_case_or_from_python():
     tables = {"operation": {"time": np.array([0.0, 1e-4]), "load": [5e5, 6e5]}}
     overrides = {f"operation.{key}": value for key, value in tables["operation"].items()}
     case = load(CASE, overrides)

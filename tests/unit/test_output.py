@@ -32,12 +32,8 @@ SCALARS = dict.fromkeys(STEP_SCALARS, 1)
 
 
 def make_writer(path, attributes=SCALES, resume_step=None, contact_count=None, **changes):
-    layout = dict(
-        x=X,
-        fields=STORED,
-        scalars=list(STEP_SCALARS),
-        surfaces={"1": StoredSurface(np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6})},
-    )
+    surface = StoredSurface(np.arange(5.0), np.ones(5), 5.6, {"ra": 0.4e-6})
+    layout = dict(x=X, fields=STORED, scalars=list(STEP_SCALARS), surfaces={"1": surface})
     attributes = {"title": "ä", "case": 'title = "ä"\n'} | attributes
     going_on = dict(resume_step=resume_step, contact_count=contact_count)
     return ResultWriter(path, Layout(**(layout | changes)), attributes, **going_on)
@@ -346,9 +342,10 @@ def test_file_that_another_process_has_locked_is_not_called_damaged(tmp_path):
 
 
 def test_a_new_scalar_of_the_steps_is_one_entry_of_the_table(monkeypatch):
-    weight = StepScalar(
-        "N", "pressure by film", integrated=True, of=lambda o: o.node_size * o.fields["pressure"][3]
-    )
+    def pressed(o):
+        return o.node_size * o.fields["pressure"][3]
+
+    weight = StepScalar("N", "pressure by film", integrated=True, of=pressed)
     monkeypatch.setitem(quantities.STEP_SCALARS, "weight", weight)
     case = ehlpetsc.load(CASES / "dry_hertz.toml", {"mesh.points_per_half_width": 20})
     with ehlpetsc.solve(case) as result:

@@ -61,9 +61,6 @@ def test_wheel_contains_the_package_only(wheel):
     assert names == modules
     assert about <= {"METADATA", "WHEEL", "RECORD", "LICENSE", "entry_points.txt", "top_level.txt"}
     assert wheel.stat().st_size < 650_000
-
-
-def test_petsc_and_mpi_are_requirements_of_the_solver_extra_only(wheel):
     with zipfile.ZipFile(wheel) as archive:
         (name,) = [name for name in archive.namelist() if name.endswith("/METADATA")]
         needed = email.message_from_bytes(archive.read(name)).get_all("Requires-Dist")

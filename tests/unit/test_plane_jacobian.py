@@ -83,10 +83,8 @@ def test_product_equals_differences(name):
     system.set_initial_guess(state, inputs)
     vector, rng = system.x.array.copy(), np.random.default_rng(1)
     system.linearise(system.x)
-    direction, product = (
-        rng.standard_normal(len(vector)) * np.maximum(np.abs(vector), 1e-3),
-        system.x.duplicate(),
-    )
+    product = system.x.duplicate()
+    direction = rng.standard_normal(len(vector)) * np.maximum(np.abs(vector), 1e-3)
     change = system.x.duplicate()
     change.array[:] = direction
     system.operator.mult(change, product)
@@ -100,9 +98,8 @@ def test_product_equals_differences(name):
     expected = (4.0 * found[0] - found[1]) / 3.0
     scale = np.abs(expected).reshape(-1)[: 2 * system.n].reshape(-1, 2).max(axis=0)
     error = np.abs(rows - expected)[: 2 * system.n].reshape(-1, 2) / scale
-    assert error.max() < (
-        3e-7 if name == "carreau" else 1e-7
-    )  # the table interpolates derivatives by themselves
+    # the table of Carreau's law interpolates derivatives by themselves
+    assert error.max() < (3e-7 if name == "carreau" else 1e-7)
     np.testing.assert_allclose(rows[2 * system.n :], expected[2 * system.n :], rtol=1e-7)
 
 
@@ -194,11 +191,9 @@ def test_settled_pressures_balance_thin_oil():
     system, state, inputs = scene("rolling")
     reynolds, rng = system.problem.reynolds, np.random.default_rng(7)
     inlet = np.arange(system.n) % reynolds.n_x < 8
-    q, film = (
-        np.where(inlet, 0.01 + 0.02 * rng.random(system.n), state.q),
-        system.model.state(*state[:2]).film,
-    )
-    wrong = np.flatnonzero(inlet & (np.arange(system.n) % reynolds.n_x > 2))[5::40]
+    film = system.model.state(*state[:2]).film
+    q = np.where(inlet, 0.01 + 0.02 * rng.random(system.n), state.q)
+    wrong = np.flatnonzero(inlet & (np.arange(system.n) % reynolds.n_x > 2))[5::40].copy()
     cells = HeldFilms(reynolds, inputs, q, film)
     before = abs(cells.balance(wrong)[0]).max()
     settle(cells, q, wrong)

@@ -61,7 +61,7 @@ def test_pictures_of_a_point_contact(point, drawn, capsys, words, name, panels):
     assert ", a = 0.336 mm, b = 0.671 mm, p0 = 1 GPa" in drawn[0]._suptitle.get_text().replace("\n", ", ")
 
 
-def test_maps_show_fields_contacts_and_the_ellipse(point):
+def test_maps_and_sections_show_fields_contacts_and_the_ellipse(point):
     with read_result(point) as r:
         figure = r.plot(step=2)
         pressure, film = figure.axes[:2]
@@ -76,9 +76,6 @@ def test_maps_show_fields_contacts_and_the_ellipse(point):
         assert [text.get_text() for text in film.get_legend().texts] == ["dry contact", "in contact"]
         assert [axes.get_xlabel() for axes in (pressure, film)] == 2 * ["x/a, flow →"]
         np.testing.assert_allclose(np.hypot(*(film.lines[0].get_xydata() / (1.0, 2.0)).T), 1.0)
-
-
-def test_sections_through_the_middle_follow_both_axes(point):
     with read_result(point) as r:
         along, across = r.plot(step=2).axes[2:6:2]
         total = 1e-9 * r.frame("pressure", 2)

@@ -44,12 +44,11 @@ def test_pure_shear(tau):
     assert found.damage == pytest.approx(1 / shear_life(tau, 1.0, STEEL), rel=1e-8)
     assert found.inclination % 90 == pytest.approx(0, abs=1e-9) and found.tilt == 0
     soft = Material(poisson_ratio=0.5)  # 3G = E: the paper's equivalent range says the same
-    assert critical_plane(NONE, NONE, tau * WAVE, soft, SHEAR).damage == pytest.approx(
-        damage(NONE, NONE, tau * WAVE, soft).damage, rel=1e-8
-    )
+    expected = damage(NONE, NONE, tau * WAVE, soft).damage
+    assert critical_plane(NONE, NONE, tau * WAVE, soft, SHEAR).damage == pytest.approx(expected, rel=1e-8)
 
 
-def test_pure_shear_has_an_open_plane_beside_the_largest_shear():
+def test_fatemi_socie_in_pure_shear_and_tension_is_the_worst_of_all_planes():
     tau, k = 5e8, Criteria().sensitivity(STEEL)
     turned = np.radians(np.linspace(0, 45, 400))
     lives = [shear_life(tau * np.cos(2 * t), 1 + k * tau * np.sin(2 * t), STEEL) for t in turned]
@@ -57,6 +56,12 @@ def test_pure_shear_has_an_open_plane_beside_the_largest_shear():
     assert found.damage == pytest.approx(1 / min(lives), rel=5e-3) and found.damage <= 1.000001 / min(lives)
     best = np.degrees(turned[np.argmin(lives)])
     assert min(abs(found.inclination - place) for place in (best, 90 - best, 90 + best, 180 - best)) < 1.0
+    bar, sigma = Material(poisson_ratio=0.0), 8e8
+    k = Criteria().sensitivity(bar)
+    angles = np.radians(np.linspace(1, 89, 600))  # of the normal from the load
+    shear, normal = sigma * np.sin(2 * angles) / 2, sigma * np.cos(angles) ** 2
+    worst = min(shear_life(t, 1 + k * n, bar) for t, n in zip(shear, normal, strict=True))
+    assert critical_plane(NONE, sigma * WAVE, NONE, bar).damage == pytest.approx(1 / worst, rel=5e-3)
 
 
 @pytest.mark.parametrize("sigma", [5e8, 1e9, 1.6e9])
@@ -66,22 +71,20 @@ def test_uniaxial(sigma):
     assert found.damage == pytest.approx(1 / shear_life(sigma / 2, 1.0, bar), rel=1e-8)
 
 
-def test_uniaxial_fatemi_socie_is_the_worst_of_all_planes():
-    bar, sigma = Material(poisson_ratio=0.0), 8e8
-    k = Criteria().sensitivity(bar)
-    angles = np.radians(np.linspace(1, 89, 600))  # of the normal from the load
-    shear, normal = sigma * np.sin(2 * angles) / 2, sigma * np.cos(angles) ** 2
-    worst = min(shear_life(t, 1 + k * n, bar) for t, n in zip(shear, normal, strict=True))
-    assert critical_plane(NONE, sigma * WAVE, NONE, bar).damage == pytest.approx(1 / worst, rel=5e-3)
-
-
-def test_hydrostatic_stress_affects_dang_van_only():
+def test_hydrostatic_tension_and_residual_stress():
     fluid, size = Material(poisson_ratio=0.5), 4e8
     assert critical_plane(size * WAVE, size * WAVE, NONE, fluid).damage < 1e-30
     limits = Criteria(torsion_limit=4e8, bending_limit=6e8)
     slope = 3 * (4 / 6 - 0.5)
     assert dang_van(size * WAVE, size * WAVE, NONE, 0.5, limits) == pytest.approx(slope * size / 4e8)
     assert dang_van(-size * PULSE, -size * PULSE, NONE, 0.5, limits) == pytest.approx(0, abs=1e-12)
+    pulse = -1.5e9 * PULSE
+    shear = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, SHEAR).damage
+    plain = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL).damage
+    assert plain == pytest.approx(shear, rel=1e-9)  # no plane is opened
+    pulled = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, residual_stress=5e8)
+    pressed = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, residual_stress=-5e8)
+    assert pulled.damage > 1.5 * plain and pressed.damage == pytest.approx(plain, rel=1e-9)
 
 
 def test_pressure_at_the_surface_damages_out_of_plane():
@@ -138,9 +141,8 @@ def test_critical_planes_may_be_closed_at_all_times():
     tau, unit, turned = 3e8, 1.0 / constants.sensitivity(STEEL), np.radians(6.0)
     mean, deviation = -0.842 * unit, 1.332 * unit
     along = deviation * np.cos(turned) + tau * WAVE
-    found = critical_plane(
-        mean + along, mean - along, deviation * np.sin(turned) + NONE, STEEL, constants=constants
-    )
+    shear = deviation * np.sin(turned) + NONE
+    found = critical_plane(mean + along, mean - along, shear, STEEL, constants=constants)
     assert found.damage == pytest.approx(1 / shear_life(tau, 1.0, STEEL), rel=1e-3)
 
 
@@ -160,9 +162,6 @@ def test_proportional_load_keeps_its_plane():
     assert (small.inclination, small.tilt) == pytest.approx((large.inclination, large.tilt), abs=1e-9)
     assert small.damage < large.damage
     assert dang_van(*(8e8 * parts), 0.3) == pytest.approx(2 * dang_van(*(4e8 * parts), 0.3), rel=1e-9)
-
-
-def test_weights_are_those_of_the_tensor():
     rng = np.random.default_rng(3)
     nu = 0.3
     for theta, phi, psi in rng.uniform(0, np.pi, (20, 3)):
@@ -176,16 +175,6 @@ def test_weights_are_those_of_the_tensor():
         assert values @ np.array(shear) == pytest.approx(t @ tensor @ n)
         assert values @ np.array(normal) == pytest.approx(n @ tensor @ n)
         assert share == pytest.approx(n @ np.diag([1, 1, 0]) @ n)
-
-
-def test_tension_and_residual_stress():
-    pulse = -1.5e9 * PULSE
-    shear = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, SHEAR).damage
-    plain = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL).damage
-    assert plain == pytest.approx(shear, rel=1e-9)  # no plane is opened
-    pulled = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, residual_stress=5e8)
-    pressed = critical_plane(0 * pulse, pulse, 0 * pulse, STEEL, residual_stress=-5e8)
-    assert pulled.damage > 1.5 * plain and pressed.damage == pytest.approx(plain, rel=1e-9)
 
 
 def test_dang_van_under_hertz_reaches_one_at_the_iso_281_limit():

@@ -60,20 +60,15 @@ def test_strip_of_ridges_is_the_line(scene, tmp_path):
     write(tmp_path / "line.h5", scene)
     write_plane(tmp_path / "strip.h5", scene, "strip", y, p)
     for name in ("line", "strip"):
-        job, shares = (
-            Job(str(tmp_path / f"{name}.h5"), str(tmp_path / f"{name}.post.h5"), criteria=("dang-van",)),
-            [],
-        )
-        run(job, show=shares.append)
+        paths, shares = [str(tmp_path / f"{name}{end}") for end in (".h5", ".post.h5")], []
+        run(Job(*paths, criteria=("dang-van",)), show=shares.append)
     assert 0.0 < shares[0] < 0.1 and shares[-1] == pytest.approx(1.0) and (np.diff(shares) > 0.0).all()
     line, strip = PostResult(tmp_path / "line.post.h5"), PostResult(tmp_path / "strip.post.h5")
     assert strip.y == pytest.approx(y) and strip.damage["1"].shape == (3, 3, line.s.size)
     for side in ("1", "2"):
         for row in range(3):
-            for found, expected in (
-                (strip.damage[side], line.damage[side]),
-                (strip.criteria["dang-van"][side], line.criteria["dang-van"][side]),
-            ):
+            criteria = (one.criteria["dang-van"][side] for one in (strip, line))
+            for found, expected in ((strip.damage[side], line.damage[side]), criteria):
                 assert found[:, row] == pytest.approx(expected, rel=2e-5, nan_ok=True)
 
 

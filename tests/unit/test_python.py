@@ -36,16 +36,13 @@ def table():
     return PETSc.Options().getAll()
 
 
-def test_case_from_a_dict_equals_the_file():
+def test_case_from_a_dict_equals_the_file_and_profiles_may_be_arrays():
     path = CASES / "table1_smooth.toml"
     data = tomllib.loads(path.read_text())
     one = ehlpetsc.load(data, {"fluid.viscosity": np.float64(0.003)})
     assert one == ehlpetsc.load(path, ["fluid.viscosity=0.003"])
     assert ehlpetsc.load(tomllib.loads(one.text)) == one  # the text of the result runs the same case
     assert ehlpetsc.load(CASES / "table1_rough.toml", {"time": None, "surface": None}).time is None
-
-
-def test_profiles_may_be_arrays():
     x = np.linspace(0.0, 1e-3, 501)
     z = 1e-7 * np.cos(x / 20e-6)
     in_metres = {"x": x, "z": z}
@@ -249,9 +246,6 @@ def test_a_time_step_is_a_number_within_the_time_left():
     list(simulation)
     with pytest.raises(UsageError, match="^advance: "):
         simulation.advance()
-
-
-def test_pass_follows_a_complete_pass_of_the_same_contact():
     first = Simulation(running_in())
     for _ in range(2):  # before its start, and in its middle
         with pytest.raises(UsageError, match="^after: .* at its end"):

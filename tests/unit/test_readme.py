@@ -1,20 +1,32 @@
-"""Pages: links, modules, the case file and the output shown are current; the site contains every page."""
+"""Pages: links, modules, cases, output and keys shown are current; the site contains every page."""
 
 import re
 import runpy
 import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
-from support import ROOT
+from support import ROOT, refused
 
+import ehlpetsc
+from ehlpetsc.__main__ import main
 from ehlpetsc.base.environment import missing
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.keys import EXAMPLES, keys, template
 from ehlpetsc.case.loading import load
+from ehlpetsc.physics.oil.laws import density
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.surface import main as surface
 from ehlpetsc.run.forecast.cost import banner
+from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, TEXT_ENDINGS
 from ehlpetsc.surfaces.motion.roughness import Roughness
+
+sys.path.append(str(ROOT / ".github" / "site"))
+import key_page
 
 PAGES = sorted(p for p in ROOT.rglob("*.md") if not any(part.startswith(".") for part in p.parts))
 MAIN = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -78,16 +90,13 @@ def test_keys_and_parameters_on_the_page_of_surfaces_are_current(capsys):
     assert len(lines) == 10 and all(line in TEXTS["cases/surfaces"] for line in lines)
 
 
-def test_case_file_on_the_page_is_valid(tmp_path):
+def test_case_file_and_output_on_the_page_are_current(tmp_path):
     shown = re.search(r"```toml\n(.*?)```", MAIN, re.DOTALL)[1]
     path = tmp_path / "shown.toml"
     path.write_text(shown.replace("profiles/", f"{ROOT}/cases/profiles/"))
     case = load(path, ())
     assert (case.mesh.points_per_half_width, case.time.travel) == (100, 6.0)
     assert case.contact.model == "mixed" and "100 nodes per half-width" in MAIN
-
-
-def test_output_on_the_page_is_current():
     case = load(ROOT / "cases" / "mixed.toml", ())
     scales = Scales.of(case)
     lines = banner(case, scales, Roughness.of(case, scales), 1)
@@ -101,9 +110,8 @@ CONFIGURATION = runpy.run_path(str(ROOT / ".github" / "site" / "conf.py"))
 SITE = CONFIGURATION["PAGES"]
 LACKS = missing(("sphinx", "myst_parser", "furo", "matplotlib", "plotly", "xarray", "h5netcdf"))
 TEXTS = {page: (ROOT / f"{page}.md").read_text(encoding="utf-8") for page in SITE}
-needs_generator = pytest.mark.skipif(
-    bool(LACKS) or not CONFIGURATION["MATHJAX"].exists(), reason="no Sphinx with its theme, or no MathJax"
-)
+LACKS = LACKS or not CONFIGURATION["MATHJAX"].exists()
+needs_generator = pytest.mark.skipif(bool(LACKS), reason="no Sphinx with its theme, or no MathJax")
 
 
 def test_site_contains_every_page_once_numbered_equations_and_a_mathjax():
@@ -139,3 +147,65 @@ def test_site_has_search_and_equations_without_network(site):
     assert "viscosity" in index and re.search(r"\btorsion\b", index)  # part of the key torsion_limit
     from_net = re.compile(r"<(?:script|link|img)\b[^>]*?(?:src|href)=\"(http[^\"]*)")
     assert [page for page in site.rglob("*.html") if from_net.search(page.read_text())] == []
+
+
+def test_key_page_equals_the_table_and_lists_every_key_of_the_cases():
+    assert (ROOT / "cases" / "keys.md").read_text(encoding="utf-8") == key_page.page()
+    tex = key_page.tex("p_c <= beta E* exp(-h_a/sigma)^(1/n')")
+    assert tex == r"p_c \le \beta E^{\ast} \exp(-h_a/\sigma)^{1/n'}"
+    listed = keys()
+    for path in (ROOT / "cases").glob("*.toml"):
+        text = path.read_text(encoding="utf-8").partition("[petsc]")[0]
+        for key in re.findall(r"^(\w+) *=", text, re.MULTILINE):
+            assert f"\n  {key}: " in listed, (path.name, key)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("contact.load", "load: load per length of contact, w, .*; a number >= 0.001"),
+        ("contact.load", "of a point contact its load [N]"),
+        ("output", "RESULT.xdmf"),
+        ("fluid.viscosity", "required without grade"),
+        ("asperity_height", 'contact.asperity_height: rms .* needs contact.model = "mixed"'),
+        ("density", "fluid.grade.density: .*\n *heat.density: "),
+        ("alpha", "^fluid.pressure_viscosity: alpha; "),
+    ],
+)
+def test_a_key_is_found_by_its_name(name, words):
+    assert re.search(words.replace("[", r"\["), keys(name), re.DOTALL)
+
+
+def test_refused_density_constants_explain_the_textbook_form(tmp_path):
+    """1 + 0.6e-9 p/(1 + 1.7e-9 p) is the program's law with the sum of both as gamma."""
+    case = ROOT / "cases" / "table1_smooth.toml"
+    with pytest.raises(CaseError, match=r"1 \+ 0.6e-9 p/\(1 \+ 1.7e-9 p\) .* gamma = 2.3e-9"):
+        load(case, ["fluid.gamma=0.6e-9", "fluid.lambda=1.7e-9"])
+    fluid = load(case, ["fluid.gamma=2.3e-9", "fluid.lambda=1.7e-9"]).fluid
+    p = np.linspace(0.0, 3e9, 7)
+    np.testing.assert_allclose(density(p, fluid)[0], 1 + 0.6e-9 * p / (1 + 1.7e-9 * p), rtol=1e-14)
+
+
+@pytest.mark.parametrize("kind", ["roller", "gears"])
+def test_template_is_a_case(tmp_path, kind):
+    path = tmp_path / "mine.toml"
+    path.write_text(template(kind))
+    case = load(path)
+    assert case.fluid.viscosity < 0.03 and (case.conditions is None) == (kind != "gears")  # of hot oil
+
+
+@pytest.mark.parametrize("kind", EXAMPLES)
+def test_template_expects_contact_and_resolves_its_waves(kind):
+    text = explain(load(tomllib.loads(template(kind))))
+    assert 0.3 < float(re.search(r"Lambda ratio ([\d.]+)", text)[1]) < 1.3
+    nodes = [float(number) for number in re.findall(r"([\d.]+) nodes to the shortest one", text)]
+    assert len(nodes) == (kind in ("point", "strip")) and all(number > 16.0 for number in nodes)
+
+
+def test_commands_print_keys_and_a_template_that_shows_contact(capsys):
+    steps = ehlpetsc.solve(load(tomllib.loads(template("roller")))).steps
+    assert 0.1 < steps.contact_share[0] < 0.3 and 0.03 < steps.friction_coefficient[0] < 0.05
+    for words, text in ((["keys"], keys()), (["keys", "mesh"], keys("mesh"))):
+        assert main(words) == 0 and capsys.readouterr().out == text + "\n"
+    assert main(["template"]) == 0 and capsys.readouterr().out == template()
+    assert "mush: " in refused(capsys, main, "keys", "mush")

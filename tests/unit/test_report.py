@@ -103,9 +103,8 @@ def test_summary_line_is_parsable():
     figures |= dict(load_error=2.5e-12, mass_error=3e-4)
     means = dict(friction_coefficient=0.04, film_central=2e-7, lambda_ratio=0.5, mean_gap_ratio=1.5)
     given = {"step" if name == "steps" else name: value for name, value in figures.items()}
-    line = report.summary_line(
-        ExitStatus.DONE, Totals(given | dict(friction_coefficient=0.05, retries=3), means), 12.34
-    )
+    totals = Totals(given | dict(friction_coefficient=0.05, retries=3), means)
+    line = report.summary_line(ExitStatus.DONE, totals, 12.34)
     assert line.startswith("ehlpetsc: done steps=")
     values = {key: float(value) for key, value in re.findall(r"(\w+)=(\S+)", line)}
     assert values == figures | means | {"wall": 12.3}
@@ -133,10 +132,8 @@ def written(stream, now):
 
 def test_line_is_written_over_itself_with_the_time_remaining(now):
     text = written(Terminal(), now)
-    assert [entry.rstrip() for entry in text.split("\r")[1:3]] == [
-        "post a.h5: 12 %, 3m30s remaining",
-        "post a.h5: 25 %, 3m00s remaining",
-    ]
+    shown = [entry.rstrip() for entry in text.split("\r")[1:3]]
+    assert shown == ["post a.h5: 12 %, 3m30s remaining", "post a.h5: 25 %, 3m00s remaining"]
     assert "\n" not in text and text.endswith(ERASE)
     assert written(io.StringIO(), now) == ""
 

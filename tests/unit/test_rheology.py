@@ -41,9 +41,8 @@ def cross_factor(kind, sigma, zeta, h=1e-7, eta=0.5):
     gradient, sliding = 2.0 * stress * sigma / h, zeta * stress * h / eta
     of_pressure = np.inf if kind == rheology.NEWTON else stress
     resting = rheology.mobilities(h, gradient, 1.0 / eta, 1.0 / eta, of_pressure, 0.0)[0]
-    return (
-        cross_mobility(h, resting, 1.0 / eta, sliding, rheology.FlowLaw(kind, stress))[0] * 12.0 * eta / h**3
-    )
+    law = rheology.FlowLaw(kind, stress)
+    return cross_mobility(h, resting, 1.0 / eta, sliding, law)[0] * 12.0 * eta / h**3
 
 
 @pytest.mark.parametrize("zeta", [0.1, 10.0, 1e4])
@@ -191,9 +190,8 @@ def test_derivatives_of_a_tabulated_flow(gradient, law, own):
 
     def mobility(values):
         fluidity = np.exp(-values["ln_eta"])
-        return tabulated_flow.tabulated_mobilities(
-            values["h"], values["gradient"], fluidity, fluidity, STRESS, 2.0 / STRESS, table
-        )[1]
+        at = values["h"], values["gradient"], fluidity, fluidity, STRESS, 2.0 / STRESS
+        return tabulated_flow.tabulated_mobilities(*at, table)[1]
 
     value, *derivatives = mobility(state)
     for key, derivative in zip(state, derivatives, strict=True):

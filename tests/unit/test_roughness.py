@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from support import CASES
 
-import ehlpetsc
 from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.results.means import filled_from
 from ehlpetsc.surfaces.files.profiles import read_profile
 from ehlpetsc.surfaces.filters import levelled, mean_line, without_form
 from ehlpetsc.surfaces.motion.profile_checks import entry_times, mesh_warnings
@@ -63,27 +61,6 @@ def test_rough_start_is_the_later_part_of_an_entering_profile():
         assert one.travelled == pytest.approx(other.travelled + ahead)
 
 
-@pytest.mark.slow
-def test_film_of_a_rough_start_is_that_of_an_entered_profile():
-    wave = {"2": {"synthetic": {"kind": "ground", "ra": 5e-8, "correlation": 3e-5, "seed": 1}}}
-    mesh = {"mesh.points_per_half_width": 64, "mesh.inlet": -2.0, "contact.model": "mixed"}
-    sets = mesh | {"motion.slide_roll_ratio": 0.0, "surface": wave}
-    filled, entered = (
-        ehlpetsc.solve(
-            case.load(CASES / "table1_smooth.toml", sets | {"motion.slide_roll_ratio": 0.0} | time)
-        )
-        for time in ({"time.start": "rough", "time.travel": 1.5}, {"time.travel": 5.1})
-    )
-    a, u = filled.attrs["a"], filled.attrs["u2"]
-    time = filled.steps.time
-    later = np.interp(time + 3.6 * a / u, entered.steps.time, entered.steps.film_central)
-    difference = np.abs(filled.steps.film_central / later - 1.0)
-    assert difference.max() < 0.03 and difference[-1] < 0.002
-    assert filled_from(filled) == 0.0 < filled_from(entered)
-    iterations = [run.steps.newton[-60:].mean() for run in (filled, entered)]
-    assert iterations[0] <= iterations[1]  # the steps are predicted from the smooth film
-
-
 @pytest.mark.parametrize(("ratio", "left"), [(1.0, 0.5), (0.5, 1 - 2.0**-4), (4.0, 1 - 2.0 ** (-1 / 16))])
 def test_the_gaussian_filter_has_the_transmission_of_iso_16610_21(ratio, left):
     # of the amplitude at wavelength ratio x cut-off, 1 - 2^-(1/ratio^2) passes the high-pass
@@ -131,19 +108,7 @@ def test_surface_keys_are_applied_in_order():
     assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
 
 
-def test_heights_move_with_body_points():
-    x = np.linspace(-2.5, 1.5, 801) * A
-    X, z, _ = read_profile(ALICONA)
-    p = profile(X, z, speed=2.0, duration=3e-3)
-    t = 1.3e-3
-    at = phi(Roughness(p, None), x, t)
-    np.testing.assert_allclose(at[400:], -p.height(x - 2.0 * t)[400:], rtol=0, atol=0)
-    # moved by exactly one sample spacing times speed, the film sees the sample before
-    later = phi(Roughness(p, None), x + 2.0 * 0.7e-3, t + 0.7e-3)
-    np.testing.assert_allclose(later, at, atol=1e-17)
-
-
-def test_cell_mean_of_a_polynomial():
+def test_cell_means_of_a_polynomial_a_ridge_and_a_ramp():
     # a clamped cubic spline is exact for a cubic level at both ends; beside x = 0 and l it is mirrored
     X = np.linspace(0.0, 1.0, 6) * A
     p = profile(X, 1e-7 * (3 * (X / A) ** 2 - 2 * (X / A) ** 3), moving=False)
@@ -151,6 +116,21 @@ def test_cell_mean_of_a_polynomial():
     integral = np.vectorize(_cubic_integral)(faces / A)
     expected = 1e-7 * np.diff(integral) / np.diff(faces / A)
     np.testing.assert_allclose(p.mean_height(faces - 2.5 * A), expected, rtol=1e-12)
+    X = np.linspace(0.4, 0.6, 101) * A
+    z = 1e-7 * np.exp(-(((X / A - 0.5) / 0.02) ** 2))
+    p = profile(X, z, speed=1.0, repeats=False)
+    for dx in (0.01 * A, 0.33 * A):  # far coarser than the ridge: a node would miss it
+        x = np.arange(-2.5 * A, 1.5 * A, dx)
+        volume = -phi(Roughness(p, None), x, 1.5 * A, dx).sum() * dx
+        assert volume == pytest.approx(1e-7 * 0.02 * A * np.sqrt(np.pi), rel=1e-6)
+    X, z, _ = read_profile(ALICONA)
+    for speed in (2.0, -2.0):
+        p = profile(X, z, speed=speed)
+        s = (-2.5 * A - np.linspace(-0.05, 0.3, 701) * A) if speed > 0 else np.linspace(1.4, 1.8, 801) * A
+        narrow = np.stack([s - 1e-9, s + 1e-9], axis=1)
+        means = np.array([p.mean_height(pair)[0] for pair in narrow])
+        np.testing.assert_allclose(means, p.height(s), atol=1e-12)
+    assert (profile(X, z).mean_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
 
 
 def _cubic_integral(x):
@@ -160,39 +140,6 @@ def _cubic_integral(x):
     turns, rest = divmod(x, 2.0)
     back = max(rest - 1.0, 0.0)
     return turns + (rest**3 - rest**4 / 2 if not back else 1.0 - ((1 - back) ** 3 - (1 - back) ** 4 / 2))
-
-
-@pytest.mark.parametrize("nodes", [2.3, 8.0, 64.0])  # a wavelength
-def test_cell_mean_of_a_wave_is_its_sinc(nodes):
-    X = np.linspace(0.0, 0.5e-4, 2001)  # half a wave: mirrored it is whole
-    p = profile(X, 1e-7 * np.cos(2 * np.pi * X / 1e-4), speed=3.0, duration=1.0)
-    dx = 1e-4 / nodes
-    x, t = np.arange(-1.2 * A, 1.2 * A, dx), 7.77e-3
-    factor = np.sinc(1.0 / nodes)
-    np.testing.assert_allclose(
-        phi(Roughness(p, p), x, t, dx), factor * phi(Roughness(p, p), x, t), rtol=0, atol=1e-18
-    )
-
-
-def test_cell_means_conserve_the_volume_of_a_ridge():
-    X = np.linspace(0.4, 0.6, 101) * A
-    z = 1e-7 * np.exp(-(((X / A - 0.5) / 0.02) ** 2))
-    p = profile(X, z, speed=1.0, repeats=False)
-    for dx in (0.01 * A, 0.33 * A):  # far coarser than the ridge: a node would miss it
-        x = np.arange(-2.5 * A, 1.5 * A, dx)
-        volume = -phi(Roughness(p, None), x, 1.5 * A, dx).sum() * dx
-        assert volume == pytest.approx(1e-7 * 0.02 * A * np.sqrt(np.pi), rel=1e-6)
-
-
-def test_cell_mean_has_a_ramp_and_converges():
-    X, z, _ = read_profile(ALICONA)
-    for speed in (2.0, -2.0):
-        p = profile(X, z, speed=speed)
-        s = (-2.5 * A - np.linspace(-0.05, 0.3, 701) * A) if speed > 0 else np.linspace(1.4, 1.8, 801) * A
-        narrow = np.stack([s - 1e-9, s + 1e-9], axis=1)
-        means = np.array([p.mean_height(pair)[0] for pair in narrow])
-        np.testing.assert_allclose(means, p.height(s), atol=1e-12)
-    assert (profile(X, z).mean_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
 
 
 def test_profile_enters_with_its_first_point_at_the_inlet_or_moving_back_at_the_outlet():
@@ -223,9 +170,6 @@ def test_height_is_continuous_where_the_profile_begins():
     assert np.abs(slope).max() == pytest.approx(15 / 8 * 1e-6 / (RAMP_LENGTH * A), rel=1e-4)
     assert np.abs(curvature).max() == pytest.approx(10 / np.sqrt(3) * 1e-6 / (RAMP_LENGTH * A) ** 2, rel=1e-3)
     assert np.abs(np.diff(curvature)).max() < 0.02 * np.abs(curvature).max()
-
-
-def test_short_profile_is_mirrored_smoothly():
     X, z, _ = read_profile(ALICONA)
     p = profile(X, z, speed=1.0)
     d = np.linspace(0, 1e-5, 50)
@@ -360,10 +304,6 @@ def test_travel_to_entry_and_filling():
     assert entry_times(ridge.surface_2, s)[1] == pytest.approx((2.5 + 0.4) * s.u1 / s.u2)
     still, s = rough("dry_rough.toml")
     assert entry_times(still.surface_2, s) is None
-
-
-def test_surface_at_rest_in_the_reference_state_enters_slowly():
-    """In the direction in which it moves later, at a thousandth of the faster speed, slow as that may be."""
     scales = SimpleNamespace(u1=0.02, u2=0.0, u_max=0.02)
     later = SimpleNamespace(conditions=SimpleNamespace(directions=lambda: (1.0, -1.0)))
     assert directed_speeds(later, scales) == pytest.approx((0.02, -2e-5))

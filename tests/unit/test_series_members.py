@@ -22,10 +22,8 @@ def series(tmp_path, *overrides):
 
 def made(case, tmp_path):
     names = named(settings_of(tomllib.loads(case.text)["series"]))
-    return [
-        Member(name, value, member, tmp_path / "out.h5")
-        for name, (value, member) in zip(names, members(case), strict=True)
-    ]
+    named_members = zip(names, members(case), strict=True)
+    return [Member(name, value, one, tmp_path / "out.h5") for name, (value, one) in named_members]
 
 
 def test_files_are_named_after_output_and_value_and_longest_members_run_first(tmp_path):
@@ -44,9 +42,8 @@ SEVERAL = {"series.key": None, "series.keys": ["fluid.viscosity", "motion.entrai
 
 
 def several(tmp_path, values, combine=None):
-    return made(
-        load("cases/fig4.toml", SEVERAL | {"series.values": values, "series.combine": combine}), tmp_path
-    )
+    keys = SEVERAL | {"series.values": values, "series.combine": combine}
+    return made(load("cases/fig4.toml", keys), tmp_path)
 
 
 def test_several_keys_make_a_grid_or_vary_together(tmp_path):

@@ -73,13 +73,11 @@ def test_mistyped_option_is_refused_in_one_line(name, capsys):
 def test_texts_of_cases_need_neither_petsc_nor_mpi():
     code = "import sys; sys.modules.update(dict.fromkeys(['petsc4py', 'mpi4py']))\n"
     code += "from ehlpetsc.__main__ import main\n"
-    code += (
-        "print([int(main(line.split())) for line in ('explain cases/dry_hertz.toml', 'keys', 'template')])"
-    )
+    code += "cases = 'explain cases/dry_hertz.toml', 'keys', 'template'\n"
+    code += "print([int(main(line.split())) for line in cases])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0 and "[contact]" in done.stdout and done.stdout.endswith("[0, 0, 0]\n"), (
-        done.stderr
-    )
+    assert done.returncode == 0, done.stderr
+    assert "[contact]" in done.stdout and done.stdout.endswith("[0, 0, 0]\n")
 
 
 def test_ranks_are_started_by_the_script_of_a_clone(monkeypatch, capsys):
@@ -102,10 +100,8 @@ def test_advice_of_an_installed_package_names_the_page(monkeypatch):
     monkeypatch.setattr(environment, "SCRIPT", ROOT / "none")
     assert "the section Install of the page README.md" in environment.advice(["petsc4py"], [])
     assert "builds PETSc from source" in environment.advice(["petsc4py"], [])
-    assert "PETSc" not in environment.advice(
-        ["matplotlib"], ["plot", "result.h5"]
-    )  # which plot does not need
-    assert "-m pip install matplotlib; " in environment.advice(["matplotlib"], ["plot", "result.h5"])
+    advice = environment.advice(["matplotlib"], ["plot", "result.h5"])  # which needs no PETSc
+    assert "PETSc" not in advice and "-m pip install matplotlib; " in advice
 
 
 @pytest.mark.parametrize(

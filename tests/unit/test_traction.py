@@ -147,9 +147,8 @@ def test_film_of_rounding_size_has_solid_shear():
         w = h / scales.h
         w[[30, 60]] = left
         state = state_of(problem, p / scales.p0, w)
-        _, fields, touching = diagnostics(
-            Scene(case, scales, operation_of(case, scales), None), problem, [], state, 0.0
-        )
+        setting = Scene(case, scales, operation_of(case, scales), None)
+        _, fields, touching = diagnostics(setting, problem, [], state, 0.0)
         assert touching.sum() == (0 if left else 2)
         found.append((fields["shear_stress_2"], fields["shear_stress_1"]))
     for one in found[1:]:
@@ -176,9 +175,8 @@ def test_published_correlations_by_hand():
     assert light == least
     # f = -8.916465 - 0.354068 * 0.24 + 2.812084 exp(-0.24) + 0.620305 exp(0.2) = -6.03187
     found = xu_kahraman(1.2e9, -0.2, 10.0, 0.01, 0.01, 0.2e-6)
-    assert found == pytest.approx(
-        np.exp(-6.03187) * 1.207257 * 0.188717 * 0.793235 * 5.659198 * 6.053413, rel=1e-4
-    )
+    by_hand = np.exp(-6.03187) * 1.207257 * 0.188717 * 0.793235 * 5.659198 * 6.053413
+    assert found == pytest.approx(by_hand, rel=1e-4)
     # 0.0127 lg(3.17e8 w'/(nu v_s v_r^2)): lbf/in, mPa s, in/s
     imperial = 3.17e8 * LOAD / 175.1268 / (11.2 * (1.0 / 0.0254) * (SUM_SPEED / 0.0254) ** 2)
     expected = 0.0127 * np.log10(imperial)

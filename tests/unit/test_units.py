@@ -74,15 +74,10 @@ def test_case_with_units_equals_the_case_in_si(tmp_path):
     fzg = CASES / "fzg.toml"
     speeds = [load(fzg, {"gears.speed": text}).conditions.u1[0] for text in ("2250 rpm", "2250 1/min")]
     assert speeds == [load(fzg, {"gears.speed": 2250}).conditions.u1[0]] * 2
-
-
-def test_series_accepts_units():
     series = {"series.key": "fluid.viscosity", "series.values": ["5 mPa s", "10 mPa s"]}
     assert [value for value, _ in members(load(SMOOTH, series))] == [0.005, 0.01]
-    both = {
-        "series.keys": ["contact.load", "motion.slide_roll_ratio"],
-        "series.values": [["300 N/mm", "400 N/mm"], [0.1]],
-    }
+    keys = ["contact.load", "motion.slide_roll_ratio"]
+    both = {"series.keys": keys, "series.values": [["300 N/mm", "400 N/mm"], [0.1]]}
     assert [value for value, _ in members(load(SMOOTH, both))] == [(300e3, 0.1), (400e3, 0.1)]
 
 
