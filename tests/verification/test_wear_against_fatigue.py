@@ -76,7 +76,7 @@ def test_wear_dominates_at_a_high_rate_and_fatigue_at_a_low_rate(tmp_path):
 
 # a narrow contact of 88 um, whose mesh puts 18 nodes into the shortest wave
 RESOLVED = {"contact.radius": 0.005, "contact.load": 140e3, "mesh.points_per_half_width": 64}
-RESOLVED |= {"surface.1.short_cutoff": 25e-6, "surface.2.short_cutoff": 25e-6, "time.travel": 7.0}
+RESOLVED |= {"surface.1.short_cutoff": 25e-6, "surface.2.short_cutoff": 25e-6, "time.travel": 5.0}
 
 
 def first_round(keys, path, unresolved=False):
