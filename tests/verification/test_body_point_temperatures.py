@@ -32,7 +32,7 @@ CHANGES = {
     "mesh.inlet": -1.4,
     "mesh.outlet": 1.3,
     "time.travel": 5.8,
-    "time.courant": 0.4,  # half a node of the faster surface
+    "time.courant": 0.8,  # a node of the faster surface
     "contact.model": "mixed",
     "contact.asperity_height": 200e-9,
     **{

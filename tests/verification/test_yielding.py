@@ -109,7 +109,7 @@ def bounded_reference(x, limit):
 
     p = y = onto_the_load(np.sqrt(np.maximum(1.0 - x**2, 0.0)))
     t = 1.0
-    for _ in range(1500):  # Nesterov's momentum
+    for _ in range(500):  # Nesterov's momentum
         new = onto_the_load(y - rate * (influence @ y + gap))
         t, old = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * t * t)), t
         y, p = new + (old - 1.0) / t * (new - p), new
