@@ -33,11 +33,7 @@ COMMANDS = {  # module and its function, by default main, packages that it needs
     "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
     "surface": ("ehlpetsc.pictures.surface", DRAWING, "roughness parameters of a profile or map file"),
-    "explain": (
-        "ehlpetsc.run.forecast.explain",
-        FORECAST,
-        "film, run time, effects of a case",
-    ),
+    "explain": ("ehlpetsc.run.forecast.explain", FORECAST, "film, run time, effects of a case"),
     "keys": ("ehlpetsc.case.keys", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": ("ehlpetsc.case.keys:template_command", READING, "a commented case to begin with"),
 }

@@ -66,9 +66,7 @@ KINDS["strip"] = KINDS["line"]._replace(
     sweeps="",
 )
 KINDS["point"] = KINDS["strip"]._replace(
-    is_whole=True,
-    radii=" in a point contact, of two radii",
-    geometry="physics.contact.geometry:POINT",
+    is_whole=True, radii=" in a point contact, of two radii", geometry="physics.contact.geometry:POINT"
 )
 """Kinds of contact by name, :attr:`Case.kind`."""
 

@@ -72,7 +72,7 @@ def _extents(noun: str, contact: str) -> dict[str, StepScalar]:
         f"contact_{noun}": extent(
             f"{noun} where solids carry; of a compliant layer, integral of the real area fraction",
             only=mixed,
-            of=lambda o: o.node_size * o.model.real_area_fraction(o.loads).sum(),
+            of=lambda o: o.node_size * o.problem.model.real_area_fraction(o.loads).sum(),
         ),
         f"contact_{noun}_10mpa": extent(
             f"{noun} where asperities carry more than 10 MPa",
@@ -162,10 +162,10 @@ STEP_SCALARS = {
     "lambda_ratio": AtEnd(
         "1",
         "expected smooth minimum film over the combined Rq",
-        of=lambda o: o.smooth_film / o.rq if o.rq else np.nan,
+        of=lambda o: o.smooth_film / o.scene.rq if o.scene.rq else np.nan,
     ),
     "mean_gap_ratio": AtEnd(
-        "1", "mean film over the combined Rq", of=lambda o: o.mean_film / o.rq if o.rq else np.nan
+        "1", "mean film over the combined Rq", of=lambda o: o.mean_film / o.scene.rq if o.scene.rq else np.nan
     ),
     "oil_pressure": StepScalar(
         "Pa",

@@ -175,12 +175,7 @@ def _missing(place: str, key: Key, data: Tables, root: Tables, misspelt: Set[str
 
 
 def _checked(
-    place: str,
-    table: KeyTable,
-    key: Key,
-    value: object,
-    data: Tables,
-    scope: _Scope,
+    place: str, table: KeyTable, key: Key, value: object, data: Tables, scope: _Scope
 ) -> tuple[Any, list[Fault]]:
     """Value of a key of a table and its faults."""
     inner = _table_of(key, value)

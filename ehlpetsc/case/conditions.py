@@ -1,7 +1,8 @@
 """Conditions that change with time, from `[operation]` or `[gears]`.
 
 A case with either has a reference state, from which its scales come: the load and radius of the widest
-contact and the fastest entrainment. It is filled in under the keys of constant cases.
+contact and the fastest entrainment. It is filled in under the keys of constant cases. Keys that give the same
+conditions twice are refused.
 """
 
 from __future__ import annotations
@@ -18,16 +19,18 @@ from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.base.units import UnitFault, factor
-from ehlpetsc.case.checking import check, in_kind
+from ehlpetsc.case.checking import Fault, check, in_kind
 from ehlpetsc.case.tables import Case
+from ehlpetsc.case.tables.contact import CONTACT
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
-from ehlpetsc.case.values import is_number, shortened
+from ehlpetsc.case.values import is_number, shortened, show
 from ehlpetsc.physics.scales import reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.physics.variable_operation import ConditionsTable
 
+OF_GEARS = {"contact": ("load", "radius"), "motion": ("entrainment_speed", "slide_roll_ratio")}
 Columns = Mapping[str, tuple[str, ...]]  # names of columns in files by key
 
 
@@ -239,3 +242,39 @@ def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
     half = 0.5 * cells / mesh.points_per_half_width
     inlet = f" with mesh.inlet = {-half:.12g}" if abs(half + mesh.inlet) > 1e-9 else ""
     return [f"{fault}; allowed: {half:.12g}{inlet}, a whole number of cells with the inlet as far out"]
+
+
+def given_by_gears(data: Tables, kind: str) -> list[Fault]:
+    """Faults of keys beside `[gears]`, which gives their values and is of line contacts and strips."""
+    if "gears" not in data:
+        return []
+    if KINDS[kind].is_whole:
+        text = f"contact.radius = {show(data['contact']['radius'])}: a {kind} contact has no [gears]"
+        text += "; leave the radius out (mesh.width: a strip), or [gears]"
+        return [Fault("contact.radius", text)]
+    faults = []
+    for table, keys in OF_GEARS.items():
+        values = data.get(table)
+        for key in keys if isinstance(values, dict) else ():
+            if key in values:
+                text = f"{table}.{key} = {show(values[key])}: follows from [gears]; leave out one of both"
+                faults.append(Fault(f"{table}.{key}", text))
+    return faults
+
+
+def approach_faults(data: Tables, kind: str) -> list[Fault]:
+    """Faults of an approach in another contact than a point's, and of loads beside it."""
+    contact = data.get("contact")
+    if not isinstance(contact, dict) or "approach" not in contact:
+        return []
+    beside = ["contact.load"] * ("load" in contact)
+    beside += [f"[{name}]" for name in ("operation", "gears") if name in data]
+    if "radius" in contact and kind not in CONTACT.keys["approach"].contacts:
+        reason = (
+            "of point contacts, and one radius is of a line or a strip; allowed: two radii, or contact.load"
+        )
+    elif beside:
+        reason = f"in place of the load, which {' and '.join(beside)} would give; leave out one of both"
+    else:
+        return []
+    return [Fault("contact.approach", f"contact.approach = {show(contact['approach'])}: {reason}")]

@@ -24,18 +24,26 @@ from ehlpetsc.base.toml_file import (
     read_text,
     settings_of,
 )
-from ehlpetsc.case.checking import Fault, check, in_kind, in_si, unsound_tables
-from ehlpetsc.case.conditions import conditions_of, reversal_faults, with_columns, with_reference_state
+from ehlpetsc.case.checking import Fault, check, entries, in_kind, in_si, unsound_tables
+from ehlpetsc.case.conditions import (
+    approach_faults,
+    conditions_of,
+    given_by_gears,
+    reversal_faults,
+    with_columns,
+    with_reference_state,
+)
 from ehlpetsc.case.derived import (
+    modulus_of,
     rating_of,
     resolve_measured_layer,
     with_derived,
     with_layer_stiffness,
 )
-from ehlpetsc.case.kinds import approach_faults, contact_faults, given_by_gears
 from ehlpetsc.case.tables import CASE, Case, extend
-from ehlpetsc.case.tables.surface import PROFILE, SIDES, file_digests
+from ehlpetsc.case.tables.surface import AREAL, PROFILE, SIDES, file_digests
 from ehlpetsc.case.values import is_number, shortened, show
+from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.oil.law import Law
@@ -46,6 +54,7 @@ if TYPE_CHECKING:
 
 DICT_NAME = "case"  # name of a case without a file in messages
 NO_SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
+MAX_PLANE_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
 OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
 Overrides = Tables | Iterable[str] | str | None
 __all__ = ["Case", "CaseError", "load", "members", "stored_case"]
@@ -181,6 +190,34 @@ def _checked(
         faults += [Fault("mesh", line) for line in reversed_flow]
         faults += contact_faults(cast(Case, case), data) if case.contact and case.mesh else []
     return (case if case and not faults else None), faults + found
+
+
+def contact_faults(case: Case, data: Tables) -> list[Fault]:
+    """Faults of keys and effects that the kind of contact does not have, and of a plane of too many nodes."""
+    given = [(holder[name], key, place) for holder, name, key, place in entries(data, CASE, "") if key]
+    served = {place: key.contacts for value, key, place in given if key.contacts and value != key.default}
+    served |= {(e.table.name if e.table else e.name): e.contacts for e in EFFECTS if e.is_in(case)}
+    served |= {"[life]": ("line", "strip")} if case.life else {}
+    for value, _, place in given:
+        if place in ("surface.1.z", "surface.2.z") and isinstance(value[0], list):
+            served[place] = AREAL
+    faults = [
+        Fault(place, f"{place}: of {' and '.join(of)} contacts, and this is a {case.kind}; leave it out")
+        for place, of in served.items()
+        if case.kind not in of
+    ]
+    return faults + (_size_faults(case) if KINDS[case.kind].is_areal else [])
+
+
+def _size_faults(case: Case) -> list[Fault]:
+    """Fault of a plane with too many nodes."""
+    geometry = KINDS[case.kind].part("geometry")
+    rows = geometry.rows(case.mesh, geometry.dry(case.contact, modulus_of(case)))
+    if rows * case.mesh.nodes <= MAX_PLANE_NODES:
+        return []
+    size = f"{case.mesh.nodes} x {rows} nodes; allowed: {MAX_PLANE_NODES} in all"
+    cure = "a smaller mesh.width or mesh.points_per_half_width (two: along and across) has fewer"
+    return [Fault("mesh", f"mesh: {size}; {cure}")]
 
 
 def _file_fault(data: Tables, error: ProfileError) -> Fault:

@@ -149,12 +149,7 @@ class EHLProblem:
         loads = self.model.surface_loads(q, w, nodes.film, residual)
         return Solution(unknowns, nodes, loads, residual, self._mass(nodes, inputs.fluid), inputs)
 
-    def evaluate(
-        self,
-        unknowns: Unknowns,
-        inputs: StepInputs,
-        sums: Any = None,
-    ) -> Evaluation:
+    def evaluate(self, unknowns: Unknowns, inputs: StepInputs, sums: Any = None) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.
 
         `sums` of the pressures at these unknowns are required unless the window is the whole mesh.

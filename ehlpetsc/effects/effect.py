@@ -54,7 +54,7 @@ class Scene:
 
         return Roughness.of(self.case, self.scales, self.begin)
 
-    @property
+    @cached_property
     def rq(self) -> float:
         """See :func:`combined_rq`."""
         return combined_rq(self.case, self.roughness)

@@ -20,12 +20,6 @@ if TYPE_CHECKING:
 ALLOWED = ("newton", "sweep")
 
 
-def check_scheme(name: str | None) -> None:
-    """Raise a `UsageError` for an unknown scheme."""
-    if name and name not in ALLOWED:
-        raise UsageError(f"-ehl_scheme {name}: allowed: {', '.join(ALLOWED)}")
-
-
 def solver_of(
     case: Case, scales: Scales, film_scale: float, comm: PETSc.Comm, options: RunOptions
 ) -> NewtonSolver | GaussSeidelSolver:
@@ -34,7 +28,8 @@ def solver_of(
     `film_scale`: expected film in a^2/R.
     """
     name, kind = options.value("ehl_scheme"), KINDS[case.kind]
-    check_scheme(name)
+    if name and name not in ALLOWED:
+        raise UsageError(f"-ehl_scheme {name}: allowed: {', '.join(ALLOWED)}")
     if name != "sweep":
         bounded = options.value("snes_type", "vinewtonrsls") == "vinewtonrsls"
         tolerance = options.real("snes_vi_zero_tolerance", ZERO_TOLERANCE) if bounded else 0.0

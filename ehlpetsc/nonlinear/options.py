@@ -29,10 +29,7 @@ DEFAULTS = {
 # six digits; mixed contact conserves the oil to 1e-6, which needs 1e-7.
 # A compliant layer makes the load nonlinear in the film: 1e-8 balances it to 1e-10.
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
-PRECONDITIONER = {
-    "pc_type": "python",
-    "pc_python_type": "ehlpetsc.nonlinear.line.system.FarFieldBand",
-}
+PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.line.system.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.line.gmres.FlexibleGMRES"}
 # of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its
 # pressures

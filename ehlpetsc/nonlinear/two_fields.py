@@ -22,16 +22,7 @@ from petsc4py import PETSc
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.step_inputs import StepInputs
-from ehlpetsc.discretisation.unknowns import (
-    Rows,
-    Unknowns,
-    border_of,
-    n_dofs,
-    nodes_of_w,
-    pairs,
-    q_of,
-    w_of,
-)
+from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, n_dofs, nodes_of_w, pairs, q_of, w_of
 from ehlpetsc.nonlinear.options import ASSEMBLY, PRODUCT, RESIDUAL
 from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_max, global_sum
 
@@ -160,11 +151,7 @@ class TwoFields:
     """
 
     def __init__(
-        self,
-        problem: EHLProblem,
-        exchange: Exchange,
-        matrices: Matrices,
-        comm: PETSc.Comm = PETSc.COMM_WORLD,
+        self, problem: EHLProblem, exchange: Exchange, matrices: Matrices, comm: PETSc.Comm = PETSc.COMM_WORLD
     ):
         self.problem, self.exchange, self.matrices, self.comm = problem, exchange, matrices, comm
         self.n, self.local, self.model = problem.n, problem.local, problem.model

@@ -97,11 +97,10 @@ def expected_friction(fluid: Fluid, load: float, a: float, sliding: float, film:
     return float(min(abs(stress[0]) / p[0], MAX_FRICTION))
 
 
-def flash_temperature(friction: float, scales: Scales, solids: tuple[Solid, Solid] = (STEEL, STEEL)) -> float:
-    """Blok's flash temperature [K] of a contact, of its middle row, with a coefficient of friction."""
-    effusivities = [solid.effusivity for solid in solids]
+def flash_temperature(friction: float, scales: Scales) -> float:
+    """Flash temperature [K] of the middle row of a contact of steels, by its coefficient of friction."""
     conditions = scales.load_per_length, scales.u1 - scales.u2, scales.u1, scales.u2, scales.a
-    return blok_flash_temperature(friction, *conditions, effusivities)
+    return blok_flash_temperature(friction, *conditions, (STEEL.effusivity, STEEL.effusivity))
 
 
 def film_rise(friction: float, scales: Scales, film: float) -> float:

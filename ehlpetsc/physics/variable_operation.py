@@ -214,7 +214,7 @@ class VariableOperation:
         u1, u2 = (0.0 if abs(u) < rounding else u for u in (u1, u2))
         return Conditions(load, radius, u1, u1 if abs(u1 - u2) < rounding else u2)
 
-    def _position(self, time: float) -> tuple[float, ...]:
+    def travelled(self, time: float) -> tuple[float, ...]:
         """Distances that both surfaces have travelled since time 0 [m]; before it at the speeds of time 0."""
         if time < 0.0:
             now = self.at(0.0)
@@ -224,13 +224,8 @@ class VariableOperation:
 
     def displacement(self, time: float, dt: float) -> tuple[float, float]:
         """Distances that surfaces 1 and 2 travel from `time` to `time` + `dt` [m], signed."""
-        before, after = self._position(time), self._position(time + dt)
+        before, after = self.travelled(time), self.travelled(time + dt)
         return after[0] - before[0], after[1] - before[1]
-
-    def travelled(self, time: float) -> tuple[float, float]:
-        """Distances that both surfaces have travelled since time 0 [m], signed."""
-        first, second = self._position(time)
-        return first, second
 
     def extent(self) -> tuple[tuple[float, float], ...] | None:
         """Minimum and maximum displacement of both surfaces over the run [m]: two pairs."""
@@ -260,15 +255,9 @@ class VariableOperation:
         half_width = self.half_width(fine.load, fine.radius)
         cell = self.courant * self.dx
         with np.errstate(over="ignore"):
-            rates = [
-                fine.step_speed / cell,  # steps per second: the film moves by the Courant number a step
-                # and so do the edges of the Hertz contact
-                0.5
-                * self.growth
-                * half_width
-                * np.abs(slopes[0] / fine.load + slopes[1] / fine.radius)
-                / cell,
-            ]
+            widening = np.abs(slopes[0] / fine.load + slopes[1] / fine.radius)
+            # steps per second: film and edges of the Hertz contact move by the Courant number a step
+            rates = [fine.step_speed / cell, 0.5 * self.growth * half_width * widening / cell]
             rates += [np.abs(v) / (MAX_SPEED_CHANGE * self.courant * fine.speed.max()) for v in slopes[2:]]
         rate = np.maximum.reduce(rates)
         if (rate * self.period < 1.0).any():  # nothing moves for some time

@@ -19,6 +19,7 @@ from ehlpetsc.physics.contact.grid import Grid
 
 SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inlet sweep
 MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum
+START_FILM = 1.3  # over the expected film
 AMBIENT_PRESSURE = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
 MAX_ITERATIONS = 1000  # of the projected gradient method
 STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
@@ -31,12 +32,12 @@ def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
     return inputs.phi + change * problem.grid.undeformed
 
 
-def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: float = 1.3) -> Unknowns:
+def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknowns:
     """Hertz pressure with a film above the expected one at every node; downstream of the contact a cavity.
 
     The pressure is smoothed over `SMOOTHING` times the length of the inlet sweep, film^(2/3): the infinite
     slope at the edge of the Hertz pressure would dominate the flow through a thick film. `film` is the
-    expected one in a^2/R, `thick` the factor on it.
+    expected one in a^2/R.
 
     Without entrainment the solids carry the load, in oil at ambient pressure: no flow fills a cavity.
     """
@@ -53,7 +54,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs, thick: flo
         gap = lowest + np.where(p > 0.0, 0.0, np.maximum(h - h[np.argmax(p)], 0.0))
         q, w = problem.model.dry_start(p, gap)
         return Unknowns(q, w, balance.uniform(lowest - h[np.argmax(p)]))
-    raised = problem.model.start_film(thick * film) - h.min()
+    raised = problem.model.start_film(START_FILM * film) - h.min()
     h += raised
     oil, w = problem.model.oil_start(p, h)
     behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT_PRESSURE)

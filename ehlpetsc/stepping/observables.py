@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
 from ehlpetsc.effects.effect import Effect, Scene, Step
@@ -41,11 +40,6 @@ class Observation:
         return self.state.solution.loads
 
     @property
-    def model(self) -> ContactModel:
-        """Contact model of the case."""
-        return self.problem.model
-
-    @property
     def node_size(self) -> float:
         """Size of a cell [m], of a point contact [m^2]."""
         return self.scene.scales.grid.node_size
@@ -54,11 +48,6 @@ class Observation:
     def size(self) -> float:
         """Size of the Hertz contact of the instant over that of the scales."""
         return self.scene.scales.size(self.conditions)
-
-    @cached_property
-    def rq(self) -> float:
-        """Combined rms height [m]."""
-        return self.scene.rq
 
     @cached_property
     def load(self) -> float:
@@ -98,8 +87,20 @@ class Observation:
 
     @property
     def mass_error(self) -> float:
-        """See :func:`mass_error`."""
-        return mass_error(self.problem, self.state.solution, self.size)
+        r"""Mass defect of a step over the mass that the contact carries.
+
+        :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` in the Hertz contact, of the
+        instant, both times u: 0 where mass is conserved at every node. At contact nodes of direct contact, F
+        is the mass that is not conserved; at other nodes, and at all nodes in mixed contact, it is the
+        residual of Newton's method. (The mass flow at the inlet is no reference: nearly all of the thick film
+        there flows back.) The inlet node has no balance: its pressure or its oil film is prescribed.
+        """
+        problem, solution, grid = self.problem, self.state.solution, self.problem.grid
+        if problem.fluid is None:
+            return 0.0
+        defect = problem.film_scale * np.abs(grid.rows(solution.residual)[:, 1:]).sum()
+        carried = solution.mass[grid.inside(self.size)].mean()
+        return float(defect / (max(carried, MIN_BALANCE_FILM / problem.scales.h) * grid.breadth))
 
     @property
     def oil_pressure(self) -> np.ndarray:
@@ -109,7 +110,7 @@ class Observation:
     @cached_property
     def thin(self) -> np.ndarray:
         """Nodes whose film is thin, ``output.thin_film``."""
-        return self.loads.film < self.scene.case.output.thin_film * self.model.minimum_film
+        return self.loads.film < self.scene.case.output.thin_film * self.problem.model.minimum_film
 
     @property
     def wall(self) -> float:
@@ -170,21 +171,3 @@ def mean_film(scales: Scales, h: np.ndarray, size: float) -> float:
     """
     middle = scales.grid.inside(0.5 * size)
     return float(h[middle].mean() * scales.h)
-
-
-def mass_error(problem: EHLProblem, solution: Solution, size: float) -> float:
-    r"""Mass defect of a step over the mass that the contact carries.
-
-    :math:`\sum_{i\ge1}|F_i|` over the mean of :math:`\rho h(1-\theta)` in the Hertz contact, `size` its
-    size at the instant over that of the scales, both times u: 0 where mass is conserved at every node. At
-    contact nodes of direct contact, F is the mass that is not conserved; at other nodes, and at all nodes in
-    mixed contact, it is the residual of Newton's method. (The mass flow at the inlet is no reference: nearly
-    all of the thick film there flows back.) The inlet node has no balance: its pressure or its oil film is
-    prescribed.
-    """
-    if problem.fluid is None:
-        return 0.0
-    grid = problem.grid
-    defect = problem.film_scale * np.abs(grid.rows(solution.residual)[:, 1:]).sum()
-    carried = solution.mass[grid.inside(size)].mean()
-    return float(defect / (max(carried, MIN_BALANCE_FILM / problem.scales.h) * grid.breadth))

@@ -200,7 +200,11 @@ def combined(
 def mixed_record(pairs: Sequence[tuple[HeatRecord, HeatRecord]], cold: float) -> HeatRecord:
     """Record for the next solve, from those before and after the last ones; `cold` is unheated oil [K]."""
     after = pairs[-1][1]
-    near = [pair for pair in pairs if pair[0].levels and _change(*pair) < FAR * _rise(pair[1], cold)]
+    near = [
+        (before, found)
+        for before, found in pairs
+        if before.levels and np.abs(found.film - before.film).max() < FAR * np.abs(found.film - cold).max()
+    ]
     if not near or near[-1] is not pairs[-1]:
         return after
     before, found = (np.array([_lagged(pair[k]) for pair in near[-DEPTH:]]) for k in (0, 1))
@@ -214,11 +218,3 @@ def mixed_record(pairs: Sequence[tuple[HeatRecord, HeatRecord]], cold: float) ->
 
 def _lagged(record: HeatRecord) -> np.ndarray:
     return np.concatenate([getattr(record, name) for name in LAGGED])
-
-
-def _change(before: HeatRecord, after: HeatRecord) -> float:
-    return np.abs(after.film - before.film).max()
-
-
-def _rise(record: HeatRecord, cold: float) -> float:
-    return np.abs(record.film - cold).max()

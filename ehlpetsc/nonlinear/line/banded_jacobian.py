@@ -238,7 +238,7 @@ class BandedJacobian:
         """Refill what a change of contact or cavity touches."""
         before, self.entries = self.entries, entries
         pressure, depth, film = entries[:3]
-        if before is not None and same_deflection(pressure, depth, film, *before[:3]):
+        if before is not None and same_deflection((pressure, depth, film), tuple(before[:3])):
             return
         changed = np.ones(len(pressure), dtype=bool)
         if before is not None:

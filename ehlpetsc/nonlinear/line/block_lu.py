@@ -247,9 +247,8 @@ class ReducedSystem:
             lu, pivots, singular = dgbtrf(band.T, self._below, self._above, overwrite_ab=True)
             if singular:
                 regularise_pivots(lu[self._diagonal])
-            solution = dgbtrs(lu, self._below, self._above, solution.T, pivots, trans=1, overwrite_b=True)[
-                0
-            ].T
+            right, options = solution.T, {"trans": 1, "overwrite_b": True}
+            solution = dgbtrs(lu, self._below, self._above, right, pivots, **options)[0].T
         return np.concatenate((solution.ravel(), CONSTANTS))[self._rows].reshape(len(self._rows), -1)
 
 

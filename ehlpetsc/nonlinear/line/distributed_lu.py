@@ -131,7 +131,7 @@ def are_close(entries: np.ndarray, before: np.ndarray, tolerance: float) -> bool
     `tolerance`: of each entry, as a fraction of the largest one of its row.
     """
     rows, old_rows = entries[3], before[3]
-    if not same_deflection(*entries[:3], *before[:3]):
+    if not same_deflection(entries[:3], before[:3]):
         return False
     for i in range(unsigned(len(rows))):
         largest = change = 0.0

@@ -89,12 +89,8 @@ def choose_pairs(state: tuple, depth: tuple, compliance: float, found: tuple) ->
         deflection[1, i] = -compliance if yields else film_first
         deflection[2, i] = h_w if film else 0.0
         if film:
-            unknowns[0, i, 0], unknowns[0, i, 1], unknowns[1, i, 0], unknowns[1, i, 1] = (
-                1.0,
-                0.0,
-                q_by_film,
-                1.0,
-            )
+            unknowns[0, i, 0], unknowns[0, i, 1] = 1.0, 0.0
+            unknowns[1, i, 0], unknowns[1, i, 1] = q_by_film, 1.0
             continue
         unknowns[0, i, 0], unknowns[1, i, 0] = (1.0 if by_oil else 0.0), 1.0
         if by_oil:
@@ -120,15 +116,9 @@ def reynolds_by_pairs(
 
 
 @compiled
-def same_deflection(
-    pressure: np.ndarray,
-    depth: np.ndarray,
-    film: np.ndarray,
-    old_pressure: np.ndarray,
-    old_depth: np.ndarray,
-    old_film: np.ndarray,
-) -> bool:
+def same_deflection(now: tuple, before: tuple) -> bool:
     """Whether the deflection rows of two states have the same entries."""
+    (pressure, depth, film), (old_pressure, old_depth, old_film) = now, before
     for i in range(len(pressure)):
         if pressure[i] != old_pressure[i] or depth[i] != old_depth[i] or film[i] != old_film[i]:
             return False

@@ -102,7 +102,8 @@ class LineMatrices(Matrices):
 
     def jacobian(self, ksp: PETSc.KSP) -> JacobianOperator:
         """See :class:`.two_fields.Matrices`."""
-        self.factors = Factors(self.problem, self.ranks) if is_ours(ksp.pc) else None
+        is_ours = ksp.pc.getType() == "python" and isinstance(ksp.pc.getPythonContext(), FarFieldBand)
+        self.factors = Factors(self.problem, self.ranks) if is_ours else None
         return JacobianOperator(self.problem, self.exchange.linear, self.ranks, self.factors)
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> NearFieldMatrix | None:
@@ -116,11 +117,6 @@ class LineMatrices(Matrices):
         """See :class:`.two_fields.Matrices`."""
         if self.factors:
             self.factors.invalidate()
-
-
-def is_ours(pc: PETSc.PC) -> bool:
-    """Whether a preconditioner is a :class:`FarFieldBand`."""
-    return pc.getType() == "python" and isinstance(pc.getPythonContext(), FarFieldBand)
 
 
 def line_system(

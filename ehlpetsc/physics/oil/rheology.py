@@ -233,12 +233,7 @@ def flow_factors(sigma: float) -> tuple[float, float, float, float]:
 
 @compiled
 def mobilities(
-    h: float,
-    gradient: float,
-    fluidity_l: float,
-    fluidity_r: float,
-    eyring: float,
-    slip: float,
+    h: float, gradient: float, fluidity_l: float, fluidity_r: float, eyring: float, slip: float
 ) -> tuple[tuple, tuple]:
     r"""Pressure-driven flow per pressure gradient, :math:`M = h^3 S/(12\eta)`, of two oils in one gap.
 

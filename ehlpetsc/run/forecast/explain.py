@@ -62,9 +62,8 @@ def main(words: list[str]) -> int:
 
 def _explain(chosen: argparse.Namespace) -> None:
     """Print the summary; raise `CaseError` for a case that a run refuses."""
-    progress = ProgressLine(
-        "explain: surfaces", 3.0, sys.stderr
-    )  # of large maps, which take most of the time
+    # of large maps, which take most of the time
+    progress = ProgressLine("explain: surfaces", 3.0, sys.stderr)
     progress.reach(0.0)
     case = load(chosen.case, chosen.set)
     progress.reach(1.0)
@@ -251,9 +250,8 @@ def _variable(case: Case, s: Scales) -> list[str]:
 def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     seconds, passes = START_SECONDS + work_time(case, s, rough), case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
-    nodes, spacing = (
-        " x ".join(f(v) for v in vs[::-1]) for f, vs in ((str, s.grid.shape), (_um, s.grid.spacings))
-    )
+    nodes = " x ".join(map(str, s.grid.shape[::-1]))
+    spacing = " x ".join(f"{1e6 * length:.3f}" for length in s.grid.spacings[::-1])
     extent = f"from {s.x[0]:g} to {s.x[-1]:g} a"
     if KINDS[case.kind].is_areal:
         strip, point = (0.5 * s.grid.breadth, "a"), (s.grid.axes[0][-1] * s.a / s.b, "b")
@@ -265,10 +263,6 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
         f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}; "
         f"memory: about {1e-6 * memory(s, rough):.0f} MB",
     ]
-
-
-def _um(length: float) -> str:
-    return f"{1e6 * length:.3f}"
 
 
 def _series(case: Case) -> list[str]:
