@@ -31,6 +31,27 @@ def westergaard_pressure(x, mean_pressure, amplitude, wavelength, modulus):
     return 2.0 * mean_pressure * np.abs(np.cos(psi)) / edge * root
 
 
+def quartic_pressure(x, a, radius, modulus, quartic):
+    r"""Pressure [Pa] of the dry profile :math:`x^2/(2R)+Bx^4` in contact over half-width a.
+
+    :math:`p=\left[E'/(4R)+E'B(x^2+a^2/2)\right]\sqrt{a^2-x^2}`: the two powers of the Steuermann profiles
+    (Johnson 1985, section 5.3) added.
+
+    Parameters
+    ----------
+    quartic : float
+        B [1/m^3].
+    """
+    x = np.asarray(x)
+    slope = modulus / (4.0 * radius) + modulus * quartic * (x**2 + a**2 / 2.0)
+    return slope * np.sqrt(np.maximum(a**2 - x**2, 0.0))
+
+
+def quartic_load(a, radius, modulus, quartic):
+    r"""Load of `quartic_pressure` [N/m], :math:`\pi E'a^2/(8R)+3\pi E'Ba^4/8`."""
+    return np.pi * modulus * a**2 / 8.0 * (1.0 / radius + 3.0 * quartic * a**2)
+
+
 def moving_band(x, flux, diffusivity, conductivity, speed):
     """Steady surface temperature [K] by `band_kernel` of a flux [W/m^2] at equally spaced x [m]."""
     n = len(x)

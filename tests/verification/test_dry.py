@@ -48,6 +48,43 @@ def test_hertz_with_its_order():
     assert np.interp(2.5, scene.x, scene.film) == pytest.approx(12.27534e-6, rel=1e-6)
 
 
+def parabola_and_quartic(points, width, folder):
+    """Errors of pressure over its maximum, mean and within 0.9 of the contact, and the contact's half-width.
+
+    The load is Table 1's, of Hertz half-width a; the quartic makes the contact's half-width `width` a.
+    """
+    s = Scene("dry_hertz.toml", mesh(points)).scales
+    contact = width * s.a
+    quartic = (1.0 / width**2 - 1.0) / (3.0 * s.R * contact**2)
+    assert exact_solutions.quartic_load(contact, s.R, s.E, quartic) == pytest.approx(s.load, rel=1e-12)
+    x = np.linspace(-1.52, 1.52, 3041) * s.a
+    np.savetxt(folder / "quartic.csv", np.column_stack([x, -quartic * x**4]), delimiter=",")
+    scene = Scene(
+        "dry_hertz.toml",
+        mesh(points),
+        "mesh.inlet=-1.52",
+        "mesh.outlet=1.52",
+        f"surface.2.file='{folder}/quartic.csv'",
+    ).start(MAX_IT)
+    x = scene.x * s.a
+    exact = exact_solutions.quartic_pressure(x, contact, s.R, s.E, quartic)
+    wrong = np.abs(scene.pressure - exact) / exact.max()
+    touching = np.abs(scene.x[scene.pressure > 1e-6 * s.p0]).max() / width
+    return wrong.sum() / points, wrong[np.abs(x) <= 0.9 * contact].max(), touching, scene
+
+
+def test_parabola_and_quartic_with_its_order(tmp_path):
+    """Pressure at a given load, edge at a node of every mesh: the same orders as Hertz."""
+    found = [parabola_and_quartic(points, 0.8, tmp_path) for points in (25, 50, 100, 200, 400)]
+    mean, inside, touching = np.array([errors[:3] for errors in found]).T
+    assert mean[-1] < 2e-4 and inside[-1] < 2e-5
+    assert observed_order(mean) > 1.45
+    assert observed_order(inside) > 1.9
+    assert touching[-1] == pytest.approx(1.0, abs=0.005)
+    s = found[-1][3].scales
+    assert s.spacing * found[-1][3].pressure.sum() == pytest.approx(s.load, rel=1e-10)
+
+
 class Wave:
     """The central wave of a wavy cylinder.
 

@@ -125,6 +125,55 @@ def test_oil_inflow_minus_outflow_equals_storage(rough):
     assert abs(change - gained) < 1e-8 * passed
 
 
+RIDGES = """
+[surface.2]
+file = "ridges.csv"
+[time]
+travel = 2.0
+courant = 1.0
+"""
+POCKET = (
+    "motion.slide_roll_ratio=0.0",
+    "motion.entrainment_speed=0.2",
+    "fluid.viscosity=0.005",
+    "fluid.law=barus",
+    "fluid.pressure_viscosity=2e-8",
+    "fluid.density=incompressible",
+    "mesh.inlet=-1.5",
+    "mesh.outlet=1.3",
+)
+
+
+@pytest.mark.slow
+def test_pocket_between_two_contacts_conserves_its_oil(tmp_path):
+    """Two flat ridges, 1 um high, 90 um apart, in pure rolling: one node a step, as windows travel along."""
+    x, first, apart = np.arange(0.0, 600e-6, 0.5e-6), 100e-6, 90e-6
+    z = 1e-6 * sum(np.exp(-(((x - place) / 15e-6) ** 6)) for place in (first, first + apart))
+    np.savetxt(tmp_path / "ridges.csv", np.column_stack([x, z]), delimiter=",")
+    text = (CASES / "table1_mixed.toml").read_text()
+    (tmp_path / "case.toml").write_text(text[: text.index("[surface.1]")] + RIDGES)
+    simulation = Simulation(load(tmp_path / "case.toml", POCKET), options={"snes_atol": "1e-9"})
+    case, scales = simulation.case, simulation.scales
+    front = round((first + apart) / scales.spacing)  # nodes that the second ridge is behind
+    contents, leak = [], 0.0
+    for accepted in simulation:
+        state, left = accepted.dimensionless, accepted.step - front
+        right = left + round(apart / scales.spacing)
+        if left < 10 or not (accepted.in_contact[left - 2 : left + 2].all()):
+            continue
+        assert accepted.in_contact[right - 2 : right + 2].all()
+        if contents:
+            # the window moves on by a node, as what it holds
+            leak += flow(case, scales, state, left - 1) - flow(case, scales, state, right - 1)
+        contents.append(stored(state)[left:right].sum())
+        middle, width = (left + right) // 2, (right - left) // 2
+        within, beyond = accepted.pressure[middle], accepted.pressure[[left - width, right + width]]
+    assert len(contents) > 200
+    assert contents[-1] - contents[0] == pytest.approx(leak, abs=1e-9 * contents[0])
+    assert abs(leak) < 3e-3 * contents[0]
+    assert within > beyond.max()
+
+
 @pytest.mark.slow
 def test_vinewtonrsls_takes_the_iterations_of_newtonls(rough):
     simulation, states = rough
