@@ -17,8 +17,8 @@ class FilmStress(NamedTuple):
         Shear stress [Pa]; heat fluxes into both walls [W/m^2].
     by_ln_eta, by_ln_h, by_beta, by_t1, by_t2
         Derivatives of the stress, those by the walls' temperatures with the viscosity that they change.
-    mean, middle, maximum
-        Temperature averaged across the film, in the middle, and maximum with the walls.
+    mean, middle
+        Temperature averaged across the film and in the middle.
     y
         Of :func:`resolved_stress`.
     """
@@ -33,7 +33,6 @@ class FilmStress(NamedTuple):
     q2: np.ndarray
     mean: np.ndarray
     middle: np.ndarray
-    maximum: np.ndarray
     y: np.ndarray
 
 
@@ -84,10 +83,6 @@ def film_stress(
     y, tau, by_x, by_heating, by_d, mean, exchange = _resolve(x, heating, d, flow, limit)
     by_eta_and_t, by_split = -0.5 * beta * by_x, 0.5 * beta * by_d
     conducted = k / h * (t1 - t2) * exchange
-    rho = heating * tau * np.sinh(y) / y
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inner = np.log(np.sinh(y) ** 2 / (4.0 * rho)) / beta
-        maximum = np.where(np.abs(np.sinh(d)) < np.abs(2.0 * rho), inner, 0.5 * np.abs((t1 - t2).real))
     results = FilmStress(
         stress=tau,
         by_ln_eta=by_x,
@@ -99,7 +94,6 @@ def film_stress(
         q2=0.5 * tau * u + conducted,
         mean=mean / beta,
         middle=2.0 / beta * np.log(np.cosh(0.5 * y) / np.cosh(0.5 * d)),
-        maximum=maximum,
         y=y,
     )
     return FilmStress(*(np.reshape(value, shape) for value in results))
