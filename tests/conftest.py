@@ -18,18 +18,18 @@ MPI_TESTS = Path(__file__).parent / "mpi"
 # and the solver, those up to test_report_page nothing, those up to test_stops but the first one nothing with
 # heat: processes would compile the same at the same time.
 DEAREST = """
-test_post_run test_compliant test_plot_series test_plane_pictures test_case_fuzz test_packaging test_output
-test_readme test_run_script test_derived_files test_report_page test_post_planes test_measured_gears
-test_wear_against_fatigue test_figures test_operation test_series test_stops test_measured test_heat
-test_points test_two_minutes test_plane_operation test_cases test_passes test_options test_yielding
-test_waves test_lives_with_effects test_strips test_sweep test_order test_body_point_temperatures
-test_lives_killed test_outputs test_extremes test_heat_order test_heat_runs test_heat_state test_plane_heat
-test_film_shear test_batch test_interruptions test_python test_heat_with_effects test_starts test_waviness
-test_gears test_mixed test_effects test_collisions test_lost_outputs test_plane_cases test_linear_cost
+test_post_run test_compliant test_plot_series test_plane_pictures test_case_fuzz test_packaging
+test_output test_readme test_run_script test_derived_files test_report_page test_post_planes
+test_measured_gears test_wear_against_fatigue test_figures test_operation test_series test_stops
+test_cases test_effects test_two_minutes test_starts test_waves test_passes test_measured test_options
+test_order test_interruptions test_gears test_plane_operation test_outputs test_extremes test_yielding
+test_heat test_python test_collisions test_lost_outputs test_plane_cases test_linear_cost
 test_plane_results test_domain test_areal_parameters test_surface_parameters test_deflection
-test_subcommands test_notebook test_compliant_runs test_plot test_rough test_rheology test_fuzz
-test_thermal_reduction test_stored_figures test_roughness test_post_histories test_post_criteria test_life
-test_newton test_asperities test_dry test_ridge
+test_subcommands test_notebook test_batch test_waviness test_life test_strips test_lives_killed
+test_heat_state test_points test_plot test_body_point_temperatures test_lives_with_effects
+test_heat_with_effects test_heat_runs test_sweep test_plane_heat test_thermal_reduction test_heat_order
+test_film_shear test_fuzz test_newton test_ridge test_roughness test_post_criteria test_compliant_runs
+test_rheology test_post_histories test_dry test_stored_figures test_mixed
 """.split()
 # what a shell starts in the background ignores Ctrl-C, nohup a hangup, and every process would inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
