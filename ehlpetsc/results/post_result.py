@@ -178,7 +178,8 @@ class PostResult:
         """Result along x in the row of a plane nearest to y [m], as that of a line contact."""
         if self.y is None:
             raise OutputError(f"{self.path}: a line contact has no sections")
-        row, one, table = int(np.argmin(np.abs(self.y - y))), copy.copy(self), stored_names(*UPPER_FIRST)
+        row, table = int(np.argmin(np.abs(self.y - y))), stored_names(*UPPER_FIRST)
+        one = copy.copy(self)
         one.section_y, one._arrays = float(self.y[row]), {}
         for name, values in self._arrays.items():
             axes = table[name].axes_of(values.ndim)
