@@ -111,17 +111,12 @@ def band(lives: list[LifeHistory], name: str) -> tuple[np.ndarray, np.ndarray]:
     """Passes at which any life has a row, up to the end of the shortest, shape (n,), and mean of a figure
     with its bootstrap bounds, shape (3, n), interpolated between the rows of each life.
     """
-    every = [life(name) for life in lives]
     passes = np.unique(np.concatenate([life("passes") for life in lives]))
     passes = passes[passes <= min(life.done for life in lives)]
     begin = [0.0] if name != "friction" else []  # nothing is worn or damaged before the first pass
-    values = np.array(
-        [
-            np.interp(passes, [*begin, *life("passes")], [*begin, *figure])
-            for life, figure in zip(lives, every, strict=True)
-        ]
-    )
-    return passes, np.array([(column.mean(), *bootstrap_bounds(column)) for column in values.T]).T
+    values = [np.interp(passes, [*begin, *life("passes")], [*begin, *life(name)]) for life in lives]
+    columns = np.array(values).T
+    return passes, np.array([(column.mean(), *bootstrap_bounds(column)) for column in columns]).T
 
 
 def lines_of_ensembles(lives: Lives) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -80,22 +80,19 @@ def _say(text: str) -> None:
 
 
 def _job(path: str, chosen: argparse.Namespace) -> Job:
+    settings = list(chosen.set)
+    if chosen.depths:
+        settings.append(f"post.depths={chosen.depths}")
+    if chosen.mean_stress:
+        settings.append(f"post.mean_stress={chosen.mean_stress}")
     return Job(
         path,
         chosen.output or str(post_path(path)),
         UPPER_FIRST if chosen.surface == "both" else (chosen.surface,),
         jobs=chosen.jobs,
         criteria=tuple(sorted(chosen.criterion)),
-        settings=(*chosen.set, *_settings(chosen)),
+        settings=tuple(settings),
     )
-
-
-def _settings(chosen: argparse.Namespace) -> Iterator[str]:
-    """Settings that have an option of their own."""
-    if chosen.depths:
-        yield f"post.depths={chosen.depths}"
-    if chosen.mean_stress:
-        yield f"post.mean_stress={chosen.mean_stress}"
 
 
 def _process(job: Job, inputs: Sequence[str], overwrite: bool) -> None:

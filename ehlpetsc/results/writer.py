@@ -105,12 +105,7 @@ class Layout:
             file[group].attrs.update({"speed": surface.speed} | surface.statistics)
 
     def _add(
-        self,
-        file: h5py.File,
-        name: str,
-        quantity: Field,
-        values: np.ndarray | None = None,
-        **options: Any,
+        self, file: h5py.File, name: str, quantity: Field, values: np.ndarray | None = None, **options: Any
     ) -> None:
         """Create a dataset with a checksum, unit, name and dimension scales."""
         options = {"dtype": quantity.dtype, "fletcher32": True} | options
@@ -196,9 +191,8 @@ class ResultWriter(GrowingFile):
 
     def _create_in(self, file: h5py.File, layout: Layout, attributes: dict[str, Any]) -> None:
         provenance = {"versions": versions(attributes.get("versions", {})), "git_commit": git_commit()}
-        common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]"}
+        common = {"format_version": FORMAT_VERSION, "restarts": 0, "history": "[]", "kind": layout.kind}
         # texts of fixed length, which may be overwritten while the file is read
-        common |= {"kind": layout.kind}
         ending = {"status": np.array(b"running", "S16"), "limits": np.array(b"", "S2000")}
         file.attrs.update(attributes | provenance | common | ending)
         layout.create_in(file)

@@ -137,11 +137,7 @@ class Spectrum(NamedTuple):
 
 
 def random_heights(
-    shape: Sequence[int],
-    spacing: Sequence[float],
-    spectrum: Spectrum,
-    seed: int,
-    direction: float = 0.0,
+    shape: Sequence[int], spacing: Sequence[float], spectrum: Spectrum, seed: int, direction: float = 0.0
 ) -> np.ndarray:
     """Periodic heights [m] of one realisation, Gaussian, of mean 0 and root mean square `sq` exactly.
 

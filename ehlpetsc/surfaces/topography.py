@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -130,8 +131,11 @@ class Topography:
         """
         if self.is_ridge:
             return self.z[0]
+        return np.concatenate([spline.means(faces).T for spline in self._splines_across()])
+
+    def _splines_across(self) -> Iterator[ContinuedSpline]:
         blocks = np.array_split(self.z, range(BLOCK_COLUMNS, len(self.X), BLOCK_COLUMNS), axis=1)
-        return np.concatenate([ContinuedSpline(self.Y, z, self.across).means(faces).T for z in blocks])
+        return (ContinuedSpline(self.Y, z, self.across) for z in blocks)
 
     def periodic_over(self, width: float) -> Topography:
         r"""The same surface with a period across, for a strip: mirrored, hence without a seam.
@@ -145,8 +149,7 @@ class Topography:
         part = width / (2 * np.ceil(width / (2 * extent) * (1 - 1e-9)))
         begin = np.clip(self.middle - 0.5 * part, self.Y[0], max(self.Y[-1] - part, self.Y[0]))
         Y = np.linspace(begin, begin + part, max(round(part / self.dy), 3) + 1)
-        blocks = np.array_split(self.z, range(BLOCK_COLUMNS, len(self.X), BLOCK_COLUMNS), axis=1)
-        z = np.concatenate([ContinuedSpline(self.Y, block, "mirrored")(Y) for block in blocks], axis=1)
+        z = np.concatenate([spline(Y) for spline in self._splines_across()], axis=1)
         return replace(self, Y=Y, z=z, middle=begin + 0.5 * part)
 
     def unresolved_variance(self, dx: float, dy: float = 0.0) -> float:
@@ -201,10 +204,7 @@ def difference(before: Topography, after: Topography) -> Topography:
     whole = np.rint(moved).astype(int)
     begin = np.maximum(whole, 0)
     end = np.minimum(before.z.shape, after.z.shape + whole)
-    own, other = (
-        tuple(slice(first, last) for first, last in zip(begin - by, end - by, strict=True))
-        for by in (np.zeros(2, int), whole)
-    )
+    own, other = (tuple(map(slice, begin - by, end - by)) for by in (0, whole))
     z = before.z[own] - shift(after.z, moved - whole, order=3, mode="mirror")[other]
     x, y = 1e6 * moved[1] * before.dx, 1e6 * moved[0] * before.dy
     note = (
@@ -237,9 +237,8 @@ def displacement(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, float]:
     best = np.unravel_index(correlation.argmax(), correlation.shape)
     moved = np.array(best, float)
     for axis, (k, n) in enumerate(zip(best, shape, strict=True)):
-        low, middle, high = np.take(
-            np.take(correlation, [k - 1, k, (k + 1) % n], axis), best[1 - axis], 1 - axis
-        )
+        line = np.moveaxis(correlation, axis, 0)[:, best[1 - axis]]
+        low, middle, high = line[[k - 1, k, (k + 1) % n]]
         curvature = low - 2.0 * middle + high
         moved[axis] += 0.5 * (low - high) / curvature if curvature < 0.0 and min(low, high) > -1.0 else 0.0
         moved[axis] -= n if k >= a.shape[axis] else 0

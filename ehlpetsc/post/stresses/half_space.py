@@ -131,12 +131,7 @@ def plane_strain(kernels: np.ndarray, nu: float) -> np.ndarray:
     """
     a, b, c, e = kernels
     zero = np.zeros_like(a)
-    return np.stack(
-        [
-            [c, nu * (a + c), a, zero, zero, b],
-            [e, nu * (b + e), b, zero, zero, c],
-        ]
-    )
+    return np.stack([[c, nu * (a + c), a, zero, zero, b], [e, nu * (b + e), b, zero, zero, c]])
 
 
 def fading(periods: float | np.ndarray) -> np.ndarray:

@@ -86,13 +86,11 @@ def read_profile(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray, tu
     is_text = from_softgauge is None and path.suffix.lower() in TEXT_ENDINGS
     if text_keys and not is_text:
         raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
-    read = from_softgauge or (
-        _from_text(path, layout)
-        if is_text
-        else by_package(
-            "SurfaceTopography", _from_surface_topography, path, ".csv or two-column text, x and z in m"
-        )
-    )
+    if is_text:
+        read = _from_text(path, layout)
+    else:
+        otherwise = ".csv or two-column text, x and z in m"
+        read = from_softgauge or by_package("SurfaceTopography", _from_surface_topography, path, otherwise)
     x, z, notes = checked(*read, layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, notes

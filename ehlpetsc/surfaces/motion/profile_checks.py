@@ -49,10 +49,7 @@ def doubts(surface: Topography) -> list[str]:
 
 
 def _implausible(
-    surface: Topography,
-    spacings: tuple[float, float],
-    rq: float,
-    beside: tuple[str, str] = ("", ""),
+    surface: Topography, spacings: tuple[float, float], rq: float, beside: tuple[str, str] = ("", "")
 ) -> tuple[str, str] | None:
     """Words on a spacing along or across, an Rq or a slope above its limit, and a question on its cause.
 
