@@ -156,7 +156,7 @@ def test_a_file_that_is_no_npy_matrix_is_refused_in_one_sentence(tmp_path, conte
     assert "\n" not in str(caught.value)
 
 
-def test_a_value_far_from_all_others_is_no_height(tmp_path):
+def test_a_value_far_from_all_others_is_no_height_and_gaps_are_as_wide_as_a_circle(tmp_path):
     z = Z + 1e-9 * np.random.default_rng(2).standard_normal(Z.shape)
     z[10:13, 20:24] = z[30, 5] = 9.999e-3
     np.save(tmp_path / "map.npy", z)
@@ -259,7 +259,7 @@ def spec(path, **keys):
     return values_of(PROFILE, {"file": path.name} | keys)
 
 
-def test_keys_of_a_map_are_applied_in_order(tmp_path):
+def test_keys_of_a_map_are_applied_in_order_and_a_strip_has_its_period(tmp_path):
     path = tmp_path / "map.npy"
     np.save(path, Z + 1e-3 * X + 5e-6)
     keys = {"spacing": DX, "spacing_across": DY}

@@ -54,7 +54,7 @@ def test_cells_have_the_exact_means_of_a_wave(passage, sign):
         np.testing.assert_allclose(gap(wave, passage, sign * travelled), expected, atol=1e-12)
 
 
-def test_means_over_a_period_are_the_mean_height():
+def test_a_period_has_the_mean_height_and_a_strip_the_middle_of_the_map():
     surface = random_map(along="periodic", across="periodic")
     z = surface.z.copy()
     z[-1], z[:, -1] = z[0], 0.0
@@ -84,7 +84,7 @@ def test_a_profile_is_a_ridge_as_in_a_line_contact():
         np.testing.assert_allclose(rows, np.broadcast_to(alone, rows.shape), rtol=0, atol=1e-21)
 
 
-def test_ranks_with_some_rows_have_the_same_heights():
+def test_ranks_with_some_rows_have_the_same_heights_and_surfaces_enter_from_both_ends():
     whole = gap(random_map(), FORWARD, ENTERED)
     parts = [gap(random_map(), FORWARD, ENTERED, Y_NODES[own]) for own in (slice(0, 17), slice(17, 48))]
     np.testing.assert_allclose(np.concatenate(parts), whole, rtol=0, atol=1e-20)

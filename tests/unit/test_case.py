@@ -91,7 +91,7 @@ def test_series_members_differ_in_the_series_key_only_and_all_are_checked():
     assert "fluid.visc" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
 
 
-def test_all_faults_of_a_case_are_reported_together():
+def test_all_faults_of_a_case_and_needs_that_are_not_met_are_reported():
     given = "contact.radius=-1 fluid.viscosity=nan mesh.inlett=4 surface.1.file='nowhere.csv'".split()
     given += "surface.2.file='missing.csv' motion.entrainment_speed=0 nonsense".split()
     found = faults(ROUGH, *given)
@@ -144,7 +144,7 @@ def test_missing_key_is_named(write, key):
     assert f".{key} " in line and "missing" in line and " <= " in line
 
 
-def test_missing_tables_are_named(write, tmp_path):
+def test_missing_tables_and_keys_of_another_kind_are_named(write, tmp_path):
     path = tmp_path / "empty.toml"
     path.write_text("")
     found = faults(path)
@@ -212,7 +212,7 @@ def test_bad_profile_is_a_fault_of_the_case(write, tmp_path, content, words):
     assert line.startswith(f'{path}: surface.1.file = "p.csv": ') and words in line
 
 
-def test_values_of_a_case_can_be_sent_to_other_ranks():
+def test_values_can_be_sent_to_other_ranks_and_tables_declared_elsewhere_are_checked():
     sent = case.load(ROUGH, {"time.courant": 1})
     received = pickle.loads(pickle.dumps(sent))
     assert received == sent and (received.text, received.path) == (sent.text, sent.path)
@@ -308,7 +308,7 @@ def test_any_fault_of_a_key_is_one_message(base, fault):
         assert ".".join((*above, name)) in one_fault(load, faulty)
 
 
-def test_a_file_that_no_contact_can_use_is_reported_beside_other_faults(tmp_path, monkeypatch):
+def test_faults_of_files_and_bounds_are_reported_beside_others_or_alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "map.txt").write_text("\n".join(["0 1 0 2 1 0"] * 6))
     surfaces = {"1": {"file": "no.txt"}, "2": {"file": "map.txt", "spacing": 1e-5}}

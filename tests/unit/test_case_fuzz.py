@@ -59,7 +59,7 @@ def _used(case):
 def corrupted(text, rng):
     """One to three random faults: bytes, lines, values, keys, tables."""
     for _ in range(rng.randint(1, 3)):
-        corrupt = rng.choice((_bytes, _value, _value, _value, _key, _line_away, _line_twice, _table, _cut))
+        corrupt = rng.choice((_bytes, _value, _value, _value, _key, AWAY, TWICE, _table, _cut))
         text = corrupt(text, rng)
     return text
 
@@ -81,6 +81,9 @@ def _lines(text, rng, change):
     return "\n".join(lines)
 
 
+AWAY, TWICE = partial(_lines, change=lambda line: []), partial(_lines, change=lambda line: [line, line])
+
+
 def _value(text, rng):
     return _lines(text, rng, lambda line: [line.split("=")[0] + "= " + rng.choice(VALUES)])
 
@@ -89,14 +92,6 @@ def _key(text, rng):
     names = ("x", "radius.x", "lambda_", "__root__", "a.b.c.d", '""', "key", "'\\u00e9'", "file", "-", "self")
     name = rng.choice(names)
     return _lines(text, rng, lambda line: [name + " =" + line.partition("=")[2]])
-
-
-def _line_away(text, rng):
-    return _lines(text, rng, lambda line: [])
-
-
-def _line_twice(text, rng):
-    return _lines(text, rng, lambda line: [line, line])
 
 
 def _table(text, rng):

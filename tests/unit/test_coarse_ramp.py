@@ -98,7 +98,7 @@ def test_ripple_on_a_uniform_film_is_advected_by_whole_nodes(model):
     np.testing.assert_allclose(w[3:], rough.w[:-3], rtol=1e-9)
 
 
-def test_cavity_is_not_advected_into_oil():
+def test_neither_cavities_nor_smooth_pressures_are_advected_into_others():
     """A cavity of the smooth film in which the layer keeps the gap full stays full; one of both stays one."""
     problem = problem_of("mixed")
     smooth, _ = smooth_and_rough(problem)
@@ -118,7 +118,7 @@ def test_cavity_is_not_advected_into_oil():
     assert q[problem.x > 0.0] == pytest.approx(0.06)
 
 
-def test_prediction_uses_the_level_nearest_to_whole_nodes():
+def test_prediction_uses_the_nearest_level_and_bounded_values():
     problem = problem_of()
     smooth, _ = smooth_and_rough(problem)
     levels = [smooth_and_rough(problem, seed)[1] for seed in (1, 2, 3)]

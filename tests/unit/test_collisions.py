@@ -75,7 +75,7 @@ def test_collisions_are_found_at_their_positions(series):
     assert entrapment.find(series[-1]) == []
 
 
-def test_contacts_are_those_of_the_frame(tmp_path):
+def test_contacts_and_printed_films_are_those_of_the_frame(tmp_path):
     whole = make(tmp_path / "whole.h5", 0.01, [(-0.2, 20e-6, 6e-6, 0.35)])
     assert whole.in_contact.any() and not whole.in_contact.all()
     np.testing.assert_array_equal(whole.contacts_at(40, slice(100, 200)), whole.in_contact[40, 100:200])

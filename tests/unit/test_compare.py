@@ -29,7 +29,7 @@ def run(capsys, *arguments):
     return status, *capsys.readouterr()
 
 
-def test_equal_results_compare_bitwise_equal(tmp_path, result, capsys):
+def test_equal_results_compare_bitwise_equal_and_a_nan_is_a_difference(tmp_path, result, capsys):
     status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5"), "--rtol", 0)
     assert status == 0
     assert text.splitlines()[-1].startswith("same")

@@ -113,7 +113,7 @@ def test_exponentials_approximate_the_kernel_within_half_a_half_width(points, er
     assert found.sum() / far.sum() == pytest.approx(1.0, abs=0.06)
 
 
-def test_recurrence_sums_an_exponential():
+def test_recurrence_sums_an_exponential_and_groups_have_the_mean_over_pairs():
     rate, n = 0.3, 60
     p = np.random.default_rng(0).standard_normal(n)
     matrix = np.diag(np.full(n, 2 * np.cosh(rate))) - np.eye(n, k=1) - np.eye(n, k=-1)
@@ -191,7 +191,7 @@ CELL_X, CELL_Y = 0.03, 0.05
 CIRCLE = 2.0 / np.pi**2  # C of a circular contact
 
 
-def test_kernel_is_the_integral_over_a_cell():
+def test_kernel_of_a_plane_is_the_integral_over_a_cell_near_and_far():
     def integrand(t, s):
         return (1.0 - abs(s) / CELL_X) / np.hypot(3 * CELL_X - s, 2 * CELL_Y - t)
 
@@ -203,7 +203,7 @@ def test_kernel_is_the_integral_over_a_cell():
     np.testing.assert_allclose(expansion[NEAR - 1 :, NEAR - 1 :], exact[NEAR - 1 :, NEAR - 1 :], rtol=1e-12)
 
 
-def test_strip_sums_to_the_line():
+def test_strip_sums_to_the_line_and_over_many_periods():
     line = -2.0 * CELL_X * -(deflection_kernel(100) - np.log(CELL_X))
     np.testing.assert_allclose(periodic_kernel(100, 24, CELL_X, CELL_Y).sum(axis=0), line, rtol=0, atol=1e-15)
     n_y, periods = 20, 200

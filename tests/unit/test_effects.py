@@ -12,8 +12,10 @@ from support import CASES, one_fault, roelands_oil
 from support.driving import Scene
 from support.running import PYTHON, SCRIPT, called
 
+from ehlpetsc.base.declarations import Key
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
+from ehlpetsc.case.tables import extend
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.heat.effect import Heat
 
@@ -42,95 +44,43 @@ def test_law_and_effect_of_the_page_work_as_they_are(folder):
     supply, film = map(float, re.findall(r"\d\.\d+", printed))
     assert supply == pytest.approx(0.7**2, rel=0.05)  # the faster surface travels 1.125 as far
     assert film < 0.995
-    both = "from my_oil import LAWS\nfrom my_supply import EFFECTS\n"
-    (folder / "both.py").write_text(both)
-    assert "starved.h5" in call(folder, "-m", "ehlpetsc", "summary", "starved.h5", EHLPETSC_OWN="both")
+    own = "from my_oil import LAWS\nfrom my_supply import EFFECTS\n"
+    (folder / "both.py").write_text(own)
+    words = "summary starved.h5", "plot starved.h5 --field oil", "keys starving"
+    code = f"from ehlpetsc.__main__ import main\nfor line in {words}: assert main(line.split()) == 0"
+    printed = call(folder, "-c", code, EHLPETSC_OWN="both")
+    assert (
+        "starved.h5," in printed and "\nstarved.oil.png\n" in printed and "loss: in a half-width" in printed
+    )
     with h5py.File(folder / "starved.h5") as file:
         oil = file["film_thickness"][:] * (1.0 - file["void_fraction"][:])
         np.testing.assert_allclose(file["oil"][:], oil, rtol=1e-15)
         assert file["oil"].attrs["long_name"] == "oil in the film"
-    words = "plot", "starved.h5", "--field", "oil"
-    assert call(folder, "-m", "ehlpetsc", *words, EHLPETSC_OWN="both") == "starved.oil.png\n"
-    listed = call(folder, "-m", "ehlpetsc", "keys", "starving", EHLPETSC_OWN="my_supply")
-    assert "loss: in a half-width" in listed
 
 
-LIMITS = """
-import ehlpetsc, my_density, my_oil
-keys = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}
-
-def film(law, **own):
-    return ehlpetsc.solve(ehlpetsc.load("table1_smooth.toml", keys | law, **own)).film_thickness
-
-own = {"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}
-print(abs(film(own, laws=my_oil.LAWS) / film({"fluid.law": "barus"}) - 1.0).max())
-keys |= {"fluid.gamma": None, "fluid.lambda": None}
-rigid = film({"fluid.density": "incompressible"})
-for law in ({"fluid.density": "bulk", "fluid.bulk_modulus": 1e12}, {"fluid.density": "bulk"}):
-    print(abs(film(law, density_laws=my_density.DENSITY_LAWS) / rigid - 1.0).max())
-"""
-
-
-def test_laws_of_the_page_have_the_films_of_barus_and_of_incompressible_oil_as_limits(folder):
-    """In a process of its own, as laws stay in the tables; the density law by its default compresses."""
-    saturating, stiff, other = map(float, call(folder, "-c", LIMITS).split())
-    assert 0.0 < saturating < 0.01
-    assert stiff == pytest.approx(1e-3, rel=0.2)  # p0 over the bulk modulus
-    assert other > 0.05
-
-
-SHEARED = """
-import ehlpetsc, my_shear, numpy
-keys = {"mesh.points_per_half_width": 20, "mesh.inlet": -2.0, "fluid.eyring_stress": None}
-keys |= {"motion.slide_roll_ratio": 0.5}
-newton = ehlpetsc.solve(ehlpetsc.load("table1_smooth.toml", keys))
-films = []
-for stress in (1e12, 5e6):
-    own = {"fluid.cross_stress": stress, "fluid.cross_exponent": 0.9}
-    case = ehlpetsc.load("table1_smooth.toml", keys | own, shear_laws=my_shear.SHEAR_LAWS)
-    result = ehlpetsc.solve(case)
-    films.append(abs(result.film_thickness / newton.film_thickness - 1.0).max())
-k = numpy.argmin(abs(result.x))
-p, h = result.pressure[0, k], result.film_thickness[0, k]
-eta = case.fluid.viscosity * numpy.exp(ehlpetsc.physics.oil.laws.viscosity(p, case.fluid)[0])
-rate = eta * 0.5 * case.motion.entrainment_speed / h
-mean = 0.5 * (result.shear_stress_1 - result.shear_stress_2)[0, k]
-print(*films, abs(mean) / (rate / (1.0 + (rate / 5e6) ** 0.9)))
-try:
-    ehlpetsc.load("table1_smooth.toml", {"fluid.cross_stress": 5e6})
-except ehlpetsc.CaseError as error:
-    print(error)
-"""
-
-
-def test_shear_law_of_the_page(folder):
-    """Newtonian films under a high stress; else the stress of the law in the middle, and thinner films."""
-    found, fault, *_ = call(folder, "-c", SHEARED).splitlines()
-    stiff, other, stress = map(float, found.split())
-    assert stiff < 1e-3 < 0.05 < other
-    assert stress == pytest.approx(1.0, rel=1e-5)
-    assert "fluid.cross_stress = 5000000.0: needs fluid.eyring_stress left out" in fault
-
-
-LAW, EFFECT = "from my_oil import Key, LAWS\n", "from my_supply import Starving, replace\n"
-MINE = f"{EFFECT}EFFECTS = [Starving]\nStarving."
-BAD = {  # code of a module by what it would replace
-    '"barus": a viscosity law': f"{LAW}LAWS = {{'barus': LAWS['saturating']}}",
-    '"incompressible": a density law': f"{LAW}DENSITY_LAWS = {{'incompressible': LAWS['saturating']}}",
-    '"eyring": a shear law': f"{LAW}SHEAR_LAWS = {{'eyring': LAWS['saturating']}}",
-    '"gamma": a key of [fluid]': f"{LAW}LAWS['saturating'].keys['gamma'] = Key('of mine')",
-    '"wear": an effect': f"{MINE}name = 'wear'",
-    '"contact": a table or key': f"{MINE}table = replace(Starving.table, name='contact')",
-    '"h_min": a quantity': f"{MINE}scalars = {{'h_min': Starving.scalars['supply']}}",
-}
-
-
-@pytest.mark.parametrize(("replaced", "code"), BAD.items(), ids=BAD)
-def test_built_in_names_are_refused(folder, replaced, code):
-    (folder / "bad.py").write_text(code)
+def test_built_in_names_are_refused(folder, monkeypatch):
+    (folder / "bad.py").write_text("from my_oil import LAWS\nLAWS = {'barus': LAWS['saturating']}")
     done = called([PYTHON, "-m", "ehlpetsc", "keys", "fluid"], folder, SCRIPT | {"EHLPETSC_OWN": "bad"})
     assert done.returncode == 2
-    assert done.stderr == f"{replaced} of this name is built in; allowed: another name\n"
+    assert done.stderr == '"barus": a viscosity law of this name is built in; allowed: another name\n'
+    monkeypatch.syspath_prepend(folder)
+    import my_oil
+    import my_supply
+
+    law, table = my_oil.LAWS["saturating"], replace(my_supply.Starving.table, name="contact")
+    own = {
+        '"incompressible": a density law': {"density_laws": {"incompressible": law}},
+        '"eyring": a shear law': {"shear_laws": {"eyring": law}},
+        r'"gamma": a key of \[fluid\]': {"laws": {"own": replace(law, keys={"gamma": Key("of mine")})}},
+        '"wear": an effect': {"effects": [type("Own", (my_supply.Starving,), {"name": "wear"})]},
+        '"contact": a table or key': {"effects": [type("Own", (my_supply.Starving,), {"table": table})]},
+        '"h_min": a quantity': {
+            "effects": [type("Own", (my_supply.Starving,), {"scalars": {"h_min": Key("of mine")}})]
+        },
+    }
+    for replaced, given in own.items():
+        with pytest.raises(CaseError, match=f"{replaced} of this name is built in"):
+            extend(**given)
 
 
 BALL = {
@@ -141,23 +91,60 @@ BALL = {
     "mesh": {"inlet": -1.8, "outlet": 1.4, "points_per_half_width": 10, "width": 3.0},
     "time": {"travel": 0.3},
 }
-IN_A_POINT = f"""
-import ehlpetsc, my_supply
+FILMS = f"""
+import ehlpetsc, my_density, my_oil, my_shear, my_supply, numpy
+keys = {{"mesh.points_per_half_width": 20, "mesh.inlet": -2.0}}
+
+def solved(law, **own):
+    case = ehlpetsc.load("table1_smooth.toml", keys | law, **own)
+    return case, ehlpetsc.solve(case)
+
+def change(law, film, **own):
+    return abs(solved(law, **own)[1].film_thickness / film - 1.0).max()
+
+barus = solved({{"fluid.law": "barus"}})[1].film_thickness
+print(change({{"fluid.law": "saturating", "fluid.saturation_pressure": 1e12}}, barus, laws=my_oil.LAWS))
+keys |= {{"fluid.gamma": None, "fluid.lambda": None}}
+rigid, bulk = solved({{"fluid.density": "incompressible"}})[1].film_thickness, {{"fluid.density": "bulk"}}
+for law in (bulk | {{"fluid.bulk_modulus": 1e12}}, bulk):
+    print(change(law, rigid, density_laws=my_density.DENSITY_LAWS))
+keys |= {{"fluid.density": "incompressible", "fluid.eyring_stress": None, "motion.slide_roll_ratio": 0.5}}
+newton, cross = solved({{}})[1].film_thickness, {{"fluid.cross_exponent": 0.9}}
+print(change(cross | {{"fluid.cross_stress": 1e12}}, newton, shear_laws=my_shear.SHEAR_LAWS))
+case, result = solved(cross | {{"fluid.cross_stress": 5e6}})
+print(abs(result.film_thickness / newton - 1.0).max())
+k = numpy.argmin(abs(result.x))
+p, h = result.pressure[0, k], result.film_thickness[0, k]
+eta = case.fluid.viscosity * numpy.exp(ehlpetsc.physics.oil.laws.viscosity(p, case.fluid)[0])
+rate = eta * 0.5 * case.motion.entrainment_speed / h
+mean = 0.5 * (result.shear_stress_1 - result.shear_stress_2)[0, k]
+print(abs(mean) / (rate / (1.0 + (rate / 5e6) ** 0.9)))
 case = ehlpetsc.load({BALL} | {{"starving": {{"loss": 0.5}}}}, effects=my_supply.EFFECTS)
-simulation = ehlpetsc.Simulation(case)
-state = list(simulation)[-1]
+*_, state = ehlpetsc.Simulation(case)
 oil = (state.film_thickness * (1.0 - state.void_fraction))[:, 0]
 print(state.supply / 0.15e-6, abs(oil / state.supply - 1.0).max())
+try:
+    ehlpetsc.load("table1_smooth.toml", {{"fluid.cross_stress": 5e6}})
+except ehlpetsc.CaseError as error:
+    print(error)
 """
 
 
-def test_effect_of_the_page_in_a_point(folder):
-    supply, difference = map(float, call(folder, "-c", IN_A_POINT).split())
-    assert supply == pytest.approx(0.5**0.3, rel=1e-6)
-    assert difference < 1e-6
+def test_films_of_the_laws_and_of_the_effect_of_the_page(folder):
+    """In a process of its own, as laws stay in the tables."""
+    lines = call(folder, "-c", FILMS).splitlines()
+    figures, fault = map(float, " ".join(lines[:7]).split()), lines[7]
+    saturating, stiff, other, newton, thinning, stress, supply, difference = figures
+    assert 0.0 < saturating < 0.01  # that of Barus
+    assert stiff == pytest.approx(1e-3, rel=0.2)  # p0 over the bulk modulus
+    assert other > 0.05  # by its default the law compresses the film
+    assert newton < 1e-3 < 0.05 < thinning
+    assert stress == pytest.approx(1.0, rel=1e-5)
+    assert supply == pytest.approx(0.5**0.3, rel=1e-6) and difference < 1e-6  # of every row at the inlet
+    assert "fluid.cross_stress = 5000000.0: needs fluid.eyring_stress left out" in fault
 
 
-def test_effects_are_refused_in_contacts_that_they_do_not_serve(monkeypatch):
+def test_effects_are_refused_where_they_do_not_serve_and_own_laws_are_named(monkeypatch):
     case = BALL | {"heat": {"bulk_temperature": 363.0}}
     load(case)
     monkeypatch.setattr(Heat, "contacts", ("line", "strip"))
@@ -193,7 +180,7 @@ def started(name, effects, *keys):
     return scene.simulation.advance()
 
 
-def test_effects_change_oil_and_friction_one_after_the_other():
+def test_effects_change_oil_and_friction_of_film_and_solids():
     """Two effects that double the viscosity: the friction is that of the oil four times as thick."""
     keys = ["mesh.points_per_half_width=32", "mesh.inlet=-2.5", "fluid.law=barus"]
     more = Additive(SimpleNamespace())

@@ -39,7 +39,7 @@ def starting(found, word):
     return [line for line in found if line.startswith(word)]
 
 
-def test_explain_figures_of_the_main_case():
+def test_explain_figures_oil_friction_and_start_of_cases():
     text = "\n".join(lines("table1_rough.toml"))
     parts = ["a = 0.335682 mm", "p0 = 0.999455 GPa", "M = 56.53, L = 3.70", "801 nodes", "1603 unknowns"]
     parts += ["1067 steps", "surfaces 1, 2 at 5.625, 4.375 m/s", "Ra 0.0785 um", "contact likely"]
@@ -116,7 +116,7 @@ def test_predicted_result_size_within_a_quarter(tmp_path, overrides):
     assert file_size(c, Scales.of(c)) == pytest.approx((tmp_path / "r.h5").stat().st_size, rel=0.25)
 
 
-def test_coarse_mesh_and_stationary_roughness_are_warnings():
+def test_coarse_mesh_and_stationary_roughness_are_warnings_where_not_noise():
     c = case.load(CASES / "fig6.toml")
     assert [line.split(":")[0] for line in warnings(c, Scales.of(c))] == ["surface.1", "surface.2"]
     wave = "surface.2.synthetic={kind='sine',amplitude=1e-7,wavelength=1e-4}"

@@ -155,7 +155,7 @@ def sampled(folder, **keys):
     return areal_samples(folder, values_of(PROFILE, {"file": "map.npy", "spacing": STEP} | keys), 0.0, False)
 
 
-def test_rows_of_a_scanner_are_levelled_line_by_line(tmp_path):
+def test_rows_of_a_scanner_are_levelled_and_masked_heights_are_missing(tmp_path):
     lines = RANDOM.normal(0.0, 1e-6, (2, 200, 1))
     waves = 1e-7 * np.cos(2 * np.pi * np.arange(240) / 24) * np.ones((200, 1))
     np.save(tmp_path / "map.npy", waves + lines[0] + lines[1] * np.linspace(-1, 1, 240))
@@ -218,7 +218,7 @@ def test_the_difference_is_what_was_worn(tmp_path, capsys):
     assert [file.name for file in tmp_path.glob("*.png")] == ["before.minus.png"]
 
 
-def test_maps_of_other_places_or_spacings_have_no_difference(tmp_path, capsys):
+def test_maps_of_other_places_have_no_difference_and_profiles_no_mask(tmp_path, capsys):
     np.save(tmp_path / "map.npy", WAVES)
     np.save(tmp_path / "b.npy", 1e-7 * RANDOM.standard_normal((200, 240)))
     assert main([str(tmp_path / "map.npy"), "--minus", str(tmp_path / "b.npy"), "--no-picture", *KEYS]) == 2

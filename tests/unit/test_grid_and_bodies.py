@@ -155,7 +155,7 @@ def test_steady_start_has_no_depth_ahead_of_a_shifted_profile(kind):
     assert record.depth is before.depth, "hidden, not removed"
 
 
-def test_depth_enters_with_the_profile():
+def test_depth_enters_with_the_profile_or_is_everywhere():
     effect, before = made(PlasticDeformation)
     record, scales = effect.start(before), effect.scene.scales
     way = 1.5 * scales.a

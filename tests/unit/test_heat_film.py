@@ -152,7 +152,7 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
     assert by_h == pytest.approx(numeric, rel=1e-4)
 
 
-def test_exchange_is_continuous():
+def test_exchange_is_continuous_and_surfaces_in_contact_have_one_temperature():
     a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
     law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
     node, last = (1e6, 1e-6, 1.0), (0.0, 363.0, 363.0)

@@ -101,7 +101,7 @@ def test_yasutomi_by_the_equation_in_degrees_celsius():
     np.testing.assert_allclose(found, expected, rtol=6e-4)
 
 
-def test_constants_of_yasutomi_in_degrees_celsius():
+def test_constants_in_degrees_celsius_are_converted_or_refused():
     """C2 and A1 are differences of temperatures, Tg is a temperature: C2 and A1 were 273.15 K too large."""
     celsius = {"yasutomi_c2": "17.38 degC", "yasutomi_glass": "-83.2 C", "yasutomi_a1": "340.11 degF"}
     given = {f"fluid.{key}": value for key, value in ({"law": "yasutomi"} | OF_YASUTOMI | celsius).items()}
@@ -153,7 +153,7 @@ def test_compiled_loops_get_the_law_of_the_case(fluid):
     assert found[1] == pytest.approx(laws.density(p, fluid), rel=1e-14)
 
 
-def test_eyring_stress_of_bair_and_winer():
+def test_eyring_stress_of_bair_and_winer_and_another_one_grow_with_pressure():
     """2 Lambda/alpha(p, T) at 60 degrees C: 4.9 MPa without pressure, 7.2 MPa at 1 GPa."""
     fluid = of_oil("m100", **{"fluid.temperature": "60 degC"}).fluid
     secant = laws.viscosity(1e9, fluid)[0] / 1e9
@@ -291,7 +291,7 @@ def test_viscosity_of_a_grade(celsius, nu):
     assert barus.fluid.pressure_viscosity == pytest.approx(secant, rel=1e-10)
 
 
-def test_named_oil_has_the_viscosities_of_its_class():
+def test_named_grade_has_the_viscosities_of_its_class_and_keys_override_it():
     named = {"fluid.grade": "ISO VG 220"} | LEFT_OUT | ROELANDS
     for celsius, nu in ((40.0, 220e-6), (100.0, 19.4e-6)):
         fluid = load(CASE, named | {"fluid.temperature": f"{celsius} degC"}).fluid

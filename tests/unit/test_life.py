@@ -74,7 +74,7 @@ def test_passes_to_reach_a_sum(slope):
     assert laws.sum_over(laws.passes_to(0.7, 0.05, slope), 0.05, slope) == pytest.approx(0.7, rel=1e-13)
 
 
-def test_rates_are_extrapolated_without_change_of_sign():
+def test_rates_are_extrapolated_without_change_of_sign_and_no_rate_reaches_nothing():
     rates = Rates(np.array([3.0, 1.0, 1.0]), np.zeros((1, 3)), 2.0)
     found = rates.continued((np.array([2.0, 0.9, 9.0]), np.zeros((1, 3)), 2.0), 10, column_area=0.1)
     assert found.slopes[0] == pytest.approx([0.1, 0.01, -1.0 / (MAX_EXTRAPOLATION * 10)])
@@ -182,7 +182,7 @@ def of_pass(damage, depth=0.01, columns=8):
     return OfBody(np.arange(columns) * 1.0, np.array([0.0, 4.0]), rows, (none, worn))
 
 
-def test_cells_worn_before_failure_do_not_fail():
+def test_cells_worn_before_failure_do_not_fail_and_damage_is_expected_at_wear_out():
     """A cell at Z fails before it is gone where the sum over its way to the surface reaches 1."""
     ends = {}
     for depth in (0.01, 0.2):
@@ -208,7 +208,7 @@ def test_cells_worn_before_failure_do_not_fail():
     assert one.damage_ahead(0.0 * wear, 0.0 * added) == 0.0
 
 
-def test_surfaces_outside_the_computed_length_have_mean_wear():
+def test_surfaces_outside_the_computed_length_have_mean_wear_and_stretches_whole_columns():
     one = body()._replace(wear=np.arange(8.0))
     field = one.gap_field((2.0, 5.0), (-3.0, 12.0))
     faces = np.array([-3.0, 1.5, 2.5, 3.5, 4.5, 5.5, 12.0])
@@ -221,7 +221,7 @@ def test_surfaces_outside_the_computed_length_have_mean_wear():
     assert one.faces() == pytest.approx(1e-5 * (np.arange(9.0) - 0.5))
 
 
-def test_life_file_round_trip(tmp_path):
+def test_life_file_round_trip_and_refusal_of_nan(tmp_path):
     life, path = LifeHistory("text", "title"), tmp_path / "a.life.h5"
     strip = LifeBody.new(np.arange(5.0), np.ones((3, 5)), EDGES, np.arange(3.0))
     for passes in (10, 30):

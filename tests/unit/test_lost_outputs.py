@@ -96,7 +96,7 @@ def test_run_ends_with_a_status_of_its_own_and_can_be_continued(tmp_path, monkey
         assert step == STEPS or np.array_equal(rest.pressure[-1], whole.pressure[-1])
 
 
-def test_life_is_written_again_where_it_was_deleted_and_keeps_another_file(tmp_path, capsys):
+def test_life_is_written_again_where_it_was_deleted_and_its_loss_has_a_status(tmp_path, capsys):
     path, life, file = tmp_path / "a.life.h5", LifeHistory("", ""), LifeFile(tmp_path / "a.life.h5")
     for passes in (10, 20):
         life.add({"passes": passes}, (), {})

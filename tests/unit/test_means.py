@@ -161,7 +161,7 @@ def index(tmp_path):
     return path
 
 
-def test_every_pass_of_an_index_is_processed(index, capsys):
+def test_every_pass_of_an_index_is_processed_and_damage_of_another_case_left_out(index, capsys):
     assert main([str(index)]) == ExitStatus.DONE
     assert capsys.readouterr().out.count("ehlpetsc post: done ") == 2
     posts = [PostResult(index.with_name(f"run.pass{k}.post.h5")) for k in (1, 2)]

@@ -28,7 +28,7 @@ def interrupt():
     raise Interruption
 
 
-def test_interruptions_keep_tolerances_and_results():
+def test_interruptions_keep_tolerances_and_results_and_options_belong_to_their_call():
     case = ehlpetsc.load(CASES / "table1_rough.toml", TOUCHING | {"time.travel": 0.1})
     expected = list(ehlpetsc.Simulation(case))
     simulation = ehlpetsc.Simulation(case)
@@ -170,7 +170,7 @@ def fault(simulation, change=lambda q, w, rows: None, tolerance=None):
     return find_fault(solver.problem, Unknowns(q, w, state.unknowns.border), rows, tolerance)
 
 
-def test_solution_passes_the_convergence_check(solved, monkeypatch):
+def test_solution_passes_the_convergence_check_and_an_unconverged_guess_does_not(solved, monkeypatch):
     assert solved.stepper.solver.tolerance == pytest.approx(1e-7)
     assert fault(solved) is None
     assert fault(solved, tolerance=np.nan) is not None

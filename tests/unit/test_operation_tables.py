@@ -37,7 +37,7 @@ def with_table(tmp_path):
     return write
 
 
-def test_table_sets_conditions_and_reference_state(with_table):
+def test_table_sets_conditions_and_reference_state_in_units_of_its_heading(with_table):
     case = load(with_table(TABLE, repeat=2))
     assert (case.contact.load, case.contact.radius) == (527e3, 0.020)
     assert case.motion.entrainment_speed == pytest.approx(4.5)
@@ -96,7 +96,7 @@ def test_bad_table_is_refused_with_its_line(with_table, text, sentence):
     assert re.search(f'"mesh.csv": .*{sentence}', one_fault(load, with_table(text)))
 
 
-def test_case_text_contains_its_table(with_table, tmp_path):
+def test_case_text_contains_its_table_and_columns_may_be_arrays(with_table, tmp_path):
     path = with_table(TABLE, repeat=2)
     case = load(path, ["fluid.viscosity=0.004"])
     assert case.operation.file == "mesh.csv"
@@ -152,7 +152,7 @@ def test_speeds_that_are_rounding_of_rest_or_rolling_are_zero(last):
     assert operation.at(2.9e-3).sliding > 1e-3
 
 
-def test_interpolation_does_not_overshoot():
+def test_distances_are_integrals_of_speeds_and_interpolation_does_not_overshoot():
     operation = make(load=[1e5, 5e5, 5e5, 1e5])
     loads = [operation.at(t).load for t in np.linspace(0.0, 3e-3, 999)]
     assert min(loads) == 1e5 and max(loads) == 5e5

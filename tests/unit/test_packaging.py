@@ -51,7 +51,7 @@ def environment(wheel, tmp_path_factory):
     return folder
 
 
-def test_wheel_contains_the_package_only(wheel):
+def test_wheel_contains_the_package_only_and_petsc_is_of_the_solver_extra(wheel):
     parts = {".py", ".html", ".css", ".js", ".toml"}
     inside = [path for path in (ROOT / "ehlpetsc").rglob("*") if path.suffix in parts]
     modules = {str(path.relative_to(ROOT)) for path in inside}

@@ -58,27 +58,16 @@ def test_load_of_a_point_is_converted_and_xdmf_is_not_of_a_line():
 
 WAVE = {"kind": "sine", "amplitude": 1e-8, "wavelength": 5e-5}
 MAP, PROFILE = {"z": np.eye(8) * 1e-9, "spacing": 1e-5}, {"z": [0.0, 1e-9] * 50, "spacing": 1e-5}
+ACROSS = WAVE | {"wavelength_across": 7e-5}
 REFUSED = {  # by key: tables, overrides, words of the message
     "[gears]": (POINT, {"gears": {"speed": 1}}, "leave the radius out (mesh.width: a strip)"),
     "[life]": (POINT, {"life": {"passes": 10}}, "of line and strip contacts, and this is a point"),
     "mesh.near_field": (POINT, {"mesh.near_field": 5}, "of line contacts, and this is a point"),
     "contact.load": (STRIP, {"contact.load": "20 N"}, "allowed: one of N/m"),
     "mesh": (POINT, {"mesh.width": 900}, "allowed: 1000000 in all"),
-    "wavelength_across": (
-        STRIP,
-        {"surface.1": {"synthetic": WAVE | {"wavelength_across": 7e-5}}},
-        "allowed: whole waves over the width of the strip",
-    ),
-    "direction": (
-        POINT,
-        {"surface.1": {"synthetic": WAVE, "direction": 30.0}},
-        "of a map in a file or of a random surface",
-    ),
-    "spacing_across": (
-        POINT,
-        {"surface.1": PROFILE | {"spacing_across": 1e-5}},
-        "of a map, not of a profile",
-    ),
+    "wavelength_across": (STRIP, {"surface.1": {"synthetic": ACROSS}}, "allowed: whole waves over the width"),
+    "direction": (POINT, {"surface.1": {"synthetic": WAVE, "direction": 30.0}}, "of a map in a file or"),
+    "spacing_across": (POINT, {"surface.1": PROFILE | {"spacing_across": 1e-5}}, "of a map, not of a"),
     "position_across": (POINT, {"surface.1": MAP | {"position_across": 1e-3}}, "allowed: on the map"),
     "x_unit": (POINT, {"surface.1": MAP | {"x_unit": "mm"}}, "of x, not of spacing"),
 }

@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import h5py
 import matplotlib
@@ -201,18 +202,7 @@ def test_page_holds_maps_of_every_frame(point, monkeypatch):
     assert len(np.frombuffer(base64.b64decode(maps["y"]), "<f4")) <= 21
 
 
-VISITOR = """
-addEventListener("load", async () => {
-  const wait = ms => new Promise(done => setTimeout(done, ms)), slider = document.getElementById("slider");
-  const shown = () => document.querySelector("#instant .js-plotly-plot");
-  await wait(1500);
-  slider.value = 2;
-  slider.dispatchEvent(new Event("input"));
-  await wait(500);
-  const found = { pressure: shown().data[0].z, edge: shown().layout.shapes[0].y1 };
-  document.body.appendChild(document.createElement("output")).textContent = JSON.stringify(found);
-});
-"""
+VISITOR = (Path(__file__).parents[1] / "data" / "plane_visitor.js").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow

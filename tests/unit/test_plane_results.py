@@ -62,7 +62,7 @@ def test_point_has_fields_over_time_y_and_x(path, capsys):
     assert lines[0].startswith("x [m],y [m],") and len(lines) == 1 + 49 * 49
 
 
-def test_integrals_of_a_strip_are_per_metre(path, tmp_path):
+def test_integrals_of_a_strip_are_per_metre_and_single_precision_halves_frames(path, tmp_path):
     mesh = BALL["mesh"] | {"width": 0.5}
     strip = {"radius": 0.0125, "load": 5e4}
     tables = {key: value for key, value in BALL.items() if key not in ("time", "surface")}
@@ -96,7 +96,7 @@ def test_section_is_the_result_of_a_line(path):
             row.section()
 
 
-def test_comparison_names_the_place_across(path, tmp_path, capsys):
+def test_comparison_names_the_place_across_and_refuses_other_contacts(path, tmp_path, capsys):
     other = tmp_path / "other.h5"
     other.write_bytes(path.read_bytes())
     with h5py.File(other, "r+") as file:

@@ -156,7 +156,7 @@ def test_path_reduction_keeps_ends_and_bends(direction):
     assert 8 in places[:count] and count <= 5
 
 
-def test_proportional_load_keeps_its_plane():
+def test_proportional_load_keeps_its_plane_and_weights_are_those_of_the_tensor():
     parts = np.array([0.3, -1.0, 0.4])[:, None] * WAVE
     small, large = (critical_plane(*(size * parts), STEEL, SHEAR) for size in (4e8, 8e8))
     assert (small.inclination, small.tilt) == pytest.approx((large.inclination, large.tilt), abs=1e-9)

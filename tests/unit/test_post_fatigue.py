@@ -41,7 +41,7 @@ def pulse(size, samples=41):
     return np.zeros(samples), sz, np.zeros(samples)
 
 
-def test_restored_values():
+def test_restored_values_and_extremes():
     assert STEEL.hardening_coefficient == pytest.approx(2232.77e6, rel=1e-6)
     strains = [4.92393e-3, 8.634665e-3, 1.911124e-2, 0.1555341, 0.9793237]
     assert strain_range(RANGES, STEEL) == pytest.approx(strains, rel=1e-6)
@@ -167,7 +167,7 @@ def test_table_error_is_below_1e9(rule):
     assert found == pytest.approx(exact, rel=1e-9)
 
 
-def test_strain_rules_apply_with_and_without_morrow():
+def test_strain_rules_apply_with_and_without_morrow_and_lower_the_damage():
     sz = -2e9 * np.sin(np.linspace(0, np.pi, 41)) ** 2
     parts, dsv = (0 * sz, sz, 0 * sz), 2e9 * np.sqrt(0.79)
     for rule in ("neuber", "glinka"):
@@ -183,7 +183,7 @@ def test_strain_rules_apply_with_and_without_morrow():
     assert glinka == pytest.approx([1.180, 2.685, 9.969, 129.6], rel=1e-3)
 
 
-def test_loop_of_an_inner_cycle_and_of_the_whole():
+def test_loop_of_an_inner_cycle_of_equal_ends_and_of_the_whole():
     series = np.array([0.0, 10, 2, 6, 1, 12, 0])
     assert loop_of(series, 7, 2, 3) == (2, 2)  # beyond 2 and 6 the next samples leave the range
     series = np.array([0.0, 10, 5, 2, 4, 6, 3, 1, 12, 0])
@@ -244,7 +244,7 @@ def test_no_mean_no_correction(name):
     assert corrected.damage == pytest.approx(plain.damage, rel=1e-9)
 
 
-def test_order_under_tension_and_under_compression():
+def test_order_under_tension_and_compression_and_failure_beyond_the_strength():
     names = ("none", "gerber", "goodman")
     tension = [post.damage(*swing(0, 8e8), TENSILE, mean_stress=name).damage for name in names]
     assert tension == sorted(tension) and tension[0] < tension[2] / 2
@@ -256,7 +256,7 @@ def test_order_under_tension_and_under_compression():
     assert reversed_range(3, 1e8, 2e9, 1.5e9, 0.6) == np.inf
 
 
-def test_estimates_of_a_steel():
+def test_estimates_of_a_steel_and_keys_of_what_is_computed():
     """42CrMo4 of 295 HB: 3.45 HB in MPa, Dowling's exponent."""
     strength, exponent = Material(fatigue_strength=4.25e6 * 295 + 225e6).mean_stress_constants()
     assert strength == pytest.approx(1018e6, abs=1e6)

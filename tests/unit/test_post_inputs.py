@@ -36,7 +36,7 @@ def test_field_that_is_not_finite_is_refused(name, scene, tmp_path):
     assert not (tmp_path / "o.h5").exists()
 
 
-def test_history_contains_every_sample_of_every_point(scene, tmp_path):
+def test_history_contains_every_sample_of_every_point_to_the_default_depths(scene, tmp_path):
     """As many as the sweep counts, also where a frame finds the point at the first node but for rounding."""
     from support.histories import history_at
 

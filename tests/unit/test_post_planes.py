@@ -198,7 +198,7 @@ def test_criteria_of_six_components_are_those_of_three_in_any_axes():
 
 @pytest.mark.usefixtures("coarse_pictures")
 def test_pictures_of_a_plane(scene, tmp_path, capsys):
-    y = scene.x[14:35] - scene.x[24]
+    y = scene.x[18:31] - scene.x[24]
     p = np.broadcast_to(sphere(scene, y), (scene.time.size, y.size, scene.x.size))
     path = write_plane(tmp_path / "point.h5", scene, "point", y, p, depths=(0.0, 0.1, 0.2, 0.3))
     assert main([str(path), "--surface", "2", "--pictures", str(tmp_path), "--weibull"]) == 0

@@ -16,7 +16,7 @@ from ehlpetsc.post.fatigue.statistics import asperities, benard_ranks, exceedanc
 DATA = [16, 34, 53, 75, 93, 120]
 
 
-def test_textbook_data():
+def test_textbook_data_by_regression_and_likelihood():
     fit = weibull_fit(DATA)
     assert (fit.beta, fit.alpha) == pytest.approx((1.43966, 76.1096), rel=4e-6)
     assert 0.99 < fit.r_squared < 1
@@ -73,7 +73,7 @@ def test_nearly_equal_values_have_no_shape(spread):
     assert np.isfinite(weibull_fit(7.0 * (1 + 1e-4 * np.linspace(0, 1, 20)))).all()
 
 
-def test_censored_lives_of_one_shape():
+def test_censored_lives_of_one_shape_and_failures_before_the_first_value():
     """With a given shape the scale is (sum x^beta/failures)^(1/beta), survivors in the sum alone."""
     values, survived = np.array([16.0, 34, 53, 75, 93, 120, 120, 120]), np.arange(8) > 4
     fit = weibull_likelihood(values, survived)
@@ -141,7 +141,7 @@ def three_point(series):
     return {size: count for size, count in total.items() if size > 0}
 
 
-def test_astm_example_repeated():
+def test_largest_range_and_the_astm_example_repeated():
     assert counts(rainflow(ASTM)) == {3: 1, 4: 1, 7: 1, 9: 1}
     series = [0, 100, -50, 80, -100, 0]
     assert counts(rainflow(series)) == {200: 1, 130: 1}
@@ -214,7 +214,7 @@ def test_sum_of_closed_ranges_is_half_the_path(series):
     assert 2 * cycles[:, 0].sum() == pytest.approx(path, rel=1e-9, abs=1e-300)
 
 
-def test_plateaus_keep_their_first_sample():
+def test_plateaus_keep_their_first_sample_and_short_series_have_no_cycles():
     series = [0, 0, 5, 5, 5, 1, 1, 3, 3, 0, 0]
     cycles = rainflow(series)
     assert sorted(map(tuple, cycles[:, 2:])) == [(2, 9), (5, 7)]

@@ -73,7 +73,7 @@ def orders(errors):
     return np.log2(np.array(errors[:-1]) / errors[1:])
 
 
-def test_hertz_values_and_order_of_sampling_at_depth():
+def test_hertz_values_extremes_and_order_of_sampling_at_depth():
     """Order 1.5 at (0.3, 0.5): straight lines between samples cut a load of order h^1.5 off at the edges,
     where the pressure rises with infinite slope, and that is felt at depth.
     """
@@ -104,7 +104,7 @@ def test_surface_is_the_limit_from_inside():
     assert only_pressed[0] == pytest.approx(-p, abs=1e-14)
 
 
-def test_no_wrap_around():
+def test_shapes_and_no_wrap_around_of_lines():
     x = np.linspace(0, 10, 256)
     p = np.zeros(256)
     p[1] = 1.0
@@ -325,7 +325,7 @@ def test_period_equals_many_copies():
         assert field == pytest.approx(expected[:, 360:372], abs=1e-6)
 
 
-def test_free_load_is_not_felt_from_beyond_the_ends():
+def test_shapes_and_no_wrap_around_of_planes():
     x = np.arange(64.0)
     p = np.zeros((64, 64))
     p[1, 1] = 1.0

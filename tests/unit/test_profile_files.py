@@ -242,7 +242,7 @@ def with_spikes():
     return x, z, faulty
 
 
-def test_spikes_are_noted_and_bridged_on_request():
+def test_spikes_are_noted_and_bridged_and_none_is_beside_a_drop_out():
     x, z, faulty = with_spikes()
     _, same, (note,) = checked(x, faulty, Layout())
     np.testing.assert_array_equal(same, faulty)

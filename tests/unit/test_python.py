@@ -85,7 +85,7 @@ def test_result_in_memory_has_fields_scalars_and_attributes_as_that_on_disk(case
     np.testing.assert_array_equal(again.steps.p_max, result.steps.p_max)
 
 
-def test_iteration_over_states_can_be_resumed(case, result):
+def test_iteration_over_states_can_be_resumed_and_interleaved(case, result):
     simulation = ehlpetsc.Simulation(case)
     for state in simulation:
         if state.step == 2:
@@ -232,7 +232,7 @@ def test_threads_may_solve_in_memory_at_once():
     assert len({round(one.attrs["p0"]) for one in found}) == 4
 
 
-def test_a_time_step_is_a_number_within_the_time_left():
+def test_a_time_step_is_within_the_time_left_and_a_pass_follows_a_complete_one():
     case = ehlpetsc.load(CASES / "ridge.toml", COARSE)
     with pytest.raises(UsageError, match="^dt = 1e-07: .*steady start"):
         Simulation(case).advance(1e-7)

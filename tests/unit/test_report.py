@@ -54,7 +54,7 @@ def run(stream, clock, seconds_a_step, steps=100):
     return stream.getvalue()
 
 
-def test_progress_lines_are_few_with_fixed_columns(clock):
+def test_progress_lines_are_few_with_fixed_columns_and_count_from_a_restart(clock):
     lines = run(io.StringIO(), clock, seconds_a_step=1.0).splitlines()
     assert len(lines) == 1 + 20 + 1  # heading, one each five seconds, last
     assert len({len(line) for line in lines}) == 1
@@ -130,7 +130,7 @@ def written(stream, now):
     return stream.getvalue()
 
 
-def test_line_is_written_over_itself_with_the_time_remaining(now):
+def test_line_is_written_over_itself_with_the_time_remaining_but_not_in_a_file(now):
     text = written(Terminal(), now)
     shown = [entry.rstrip() for entry in text.split("\r")[1:3]]
     assert shown == ["post a.h5: 12 %, 3m30s remaining", "post a.h5: 25 %, 3m00s remaining"]

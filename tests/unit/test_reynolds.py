@@ -53,7 +53,7 @@ def with_history(inputs, reynolds, q, h):
     return replace(inputs, history=history)
 
 
-def test_a_face_has_the_flux_of_its_nodes_wherever_they_are():
+def test_a_face_has_the_flux_of_its_nodes_and_rounding_no_effect():
     reynolds, inputs, n = rows_of([])
     at = reynolds.properties(*state(n), inputs.oil)
     order = np.random.default_rng(1).permutation(n + 1)
@@ -149,7 +149,7 @@ def test_a_fraction_of_a_node_keeps_mass_and_sign(nodes):
     assert (moved >= 0.5 * near - 1e-15).all()
 
 
-def test_there_and_back_is_symmetric():
+def test_there_and_back_is_symmetric_and_temperatures_go_with_the_oil():
     rows = RNG.uniform(0.5, 1.0, (1, 60))
     np.testing.assert_allclose(carried(rows, 0.3)[:, ::-1], carried(rows[:, ::-1].copy(), -0.3), rtol=1e-14)
     mass = RNG.uniform(0.1, 1.0, (1, 50))

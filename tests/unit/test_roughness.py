@@ -90,7 +90,7 @@ def test_invalid_filter_input_is_refused():
         mean_line(np.arange(1, 6) * 1e-6, np.zeros(5), 1.9e-6, "short_cutoff")
 
 
-def test_surface_keys_are_applied_in_order():
+def test_surface_keys_are_applied_in_order_and_ground_heights_depend_on_the_seed():
     base, _ = rough("table1_rough.toml")
     flipped, _ = rough("table1_rough.toml", "surface.1.flip=true")
     np.testing.assert_array_equal(flipped.surface_1.given.z, base.surface_1.given.z[:, ::-1])
@@ -159,7 +159,7 @@ def test_profile_enters_with_its_first_point_at_the_inlet_or_moving_back_at_the_
     assert (p.height(np.linspace(-2.5, 1.5, 100) * A) == 0.0).all()
 
 
-def test_height_is_continuous_where_the_profile_begins():
+def test_height_is_continuous_where_the_profile_begins_and_is_mirrored():
     X = np.arange(4000) * 0.5e-6
     p = profile(X, np.full(X.size, 1e-6))
     s = -2.5 * A - np.linspace(-0.01, 0.11, 12001) * A
@@ -256,7 +256,7 @@ def test_invalid_self_affine_spectrum_is_refused(keys, message):
         rough("table1_smooth.toml", spec)
 
 
-def test_fraction_of_short_waves_is_that_of_the_variance():
+def test_fraction_of_short_waves_is_that_of_the_variance_and_noted():
     X = np.arange(8193) * 1e-6
     z = 3e-7 * np.cos(2 * np.pi * X / 128e-6) + 1e-7 * np.cos(2 * np.pi * X / 16e-6)
     p = profile(X, z).given
@@ -270,7 +270,7 @@ def test_fraction_of_short_waves_is_that_of_the_variance():
     assert "points_per_half_width = 162" in notes[0] or "points_per_half_width = 157" in notes[0]
 
 
-def test_constant_offset_is_removed_with_a_note(tmp_path):
+def test_constant_offset_is_removed_with_a_note_and_levelling_removes_a_line(tmp_path):
     X, z, _ = read_profile(ALICONA)
     np.savetxt(tmp_path / "p.csv", np.transpose([X, z + 1e-6]), delimiter=",")
     spec = values_of(PROFILE, {"file": "p.csv", "scale": 0.5})
@@ -285,7 +285,7 @@ def test_constant_offset_is_removed_with_a_note(tmp_path):
     np.testing.assert_allclose(without_form([X], z + 3e-3 * X, 1), levelled(X, z), atol=1e-18)
 
 
-def test_travel_to_entry_and_filling():
+def test_travel_to_entry_and_filling_and_entry_of_a_surface_at_rest():
     r, s = rough("table1_rough.toml")  # inlet -2.5 a, slide/roll ratio 0.25: 5.625 and 4.375 m/s
     assert entry_times(r.surface_1, s) == pytest.approx((1.5, 3.5 + RAMP_LENGTH))
     assert entry_times(r.surface_2, s) == pytest.approx((1.5 * 9 / 7, (3.5 + RAMP_LENGTH) * 9 / 7))

@@ -176,7 +176,7 @@ def test_user_without_root_gets_the_install_command(machine, system):
     assert typed == []
 
 
-def test_install_brings_what_pictures_and_reports_import(machine):
+def test_install_brings_what_pictures_import_and_root_waits_for_the_apt_lock(machine):
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     lists = re.findall(r'^(?:run_modules|drawing)="(.*?)"', (ROOT / "run_mpi.sh").read_text(), re.MULTILINE)
     assert {re.match(r"\w+", name)[0] for name in extras["post"]} <= set(" ".join(lists).split())

@@ -23,7 +23,7 @@ def scales(name, *overrides):
     return Scales.of(case.load(CASES / name, overrides))
 
 
-def test_moes_case_has_the_groups_of_its_title():
+def test_moes_case_has_the_groups_of_its_title_which_fix_the_barus_exponent():
     s = scales("moes.toml")
     assert (s.moes_m, s.moes_l) == pytest.approx((20, 10), rel=1e-9)
     s = scales("moes.toml", "contact.load=2.09915459e6", "fluid.viscosity=0.01014206817")

@@ -93,7 +93,7 @@ def test_complete_result_of_the_same_case_is_done(tmp_path):
     assert not is_done(path, text)
 
 
-def test_series_sums_and_extremes(tmp_path):
+def test_sums_and_extremes_of_series_and_steps(tmp_path):
     one = dict(step=3, newton=10, h_min=1e-7, p_max=1e9, contacts=2, load_error=1e-9, mass_error=0.1)
     two = dict(step=4, newton=20, h_min=0.0, p_max=2e9, contacts=5, load_error=1e-8, mass_error=0.0)
     whole = Totals.of_series([Totals(one), Totals(), Totals(two)])

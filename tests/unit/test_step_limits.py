@@ -28,7 +28,7 @@ def pairs(*values):
     return np.array(values, dtype=float)
 
 
-def test_pressure_change_is_limited_in_oil():
+def test_pressure_change_is_limited_in_oil_and_overlaps_clipped():
     now = pairs((0.5, 1.0), (-0.5, 1.0), (0.2, 0.0), (0.2, 0.0))
     step = pairs((0.2, 0.0), (-0.6, 0.0), (-5.0, 0.0), (-0.4, -1.0))
     # a cavity counts from zero on; contact that stays does not count, contact that opens does
@@ -69,7 +69,7 @@ def test_solids_that_touch_are_not_pulled(film):
     assert (now - step)[0, 1] == pytest.approx(1e-3, rel=1e-4)
 
 
-def test_rounding_at_the_yield_pressure_decides_nothing():
+def test_rounding_at_the_yield_pressure_decides_nothing_and_contact_comes_first():
     """A node that has yielded begins the next step at the yield pressure, give or take the last digit."""
     model, found = YieldingContact(0.01, 10.0, 1.5), []
     for q in (np.nextafter(1.5, 0.0), 1.5, np.nextafter(1.5, 2.0)):

@@ -88,7 +88,7 @@ def test_layouts_give_the_same_map(tmp_path, text, layout):
     assert (dx, dy) == pytest.approx((DX, DY), rel=1e-3)
 
 
-def test_positions_are_noted(tmp_path):
+def test_positions_are_noted_and_points_missing_in_a_list_counted(tmp_path):
     (tmp_path / "map.txt").write_text(matrix("0", MM * X, MM * Y))
     notes = read_map(tmp_path / "map.txt", Layout(unit="um", x_unit="mm")).notes
     expected = (
@@ -121,7 +121,7 @@ def test_heights_that_rise_are_no_positions(tmp_path, z, suffix):
     assert found.notes == ()
 
 
-def test_heights_of_few_random_columns_are_no_positions(tmp_path):
+def test_random_heights_are_no_positions_and_those_of_a_binary_matrix_are_read(tmp_path):
     random, path = np.random.default_rng(0), tmp_path / "map.npy"
     for shape in ((8, 5), (5, 8), (6, 6), (30, 40)):
         for _ in range(100):
@@ -195,7 +195,7 @@ def test_a_map_is_no_profile(tmp_path, text, layout):
         read_profile(tmp_path / "map.xyz", layout)
 
 
-def test_profiles_beside_each_other_are_no_map(tmp_path):
+def test_profiles_beside_each_other_are_no_map_and_two_blocks_refused(tmp_path):
     path = tmp_path / "p.txt"
     np.savetxt(path, np.column_stack([UM * X, UM * Z[:4].T]), header="x [um] 1 2 3 4")
     assert not is_map(path, Layout(unit="um"))

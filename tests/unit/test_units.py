@@ -49,7 +49,7 @@ def test_every_unit_of_the_keys_is_converted(unit):
     assert converted(12.0, unit) == 12.0 and converted("direct", unit) == "direct"
 
 
-def test_every_unit_of_a_key_is_in_the_table():
+def test_every_unit_of_a_key_is_in_the_table_without_rounding_error():
     tables = keys.tables().values()
     used = {key.unit for table in tables for key in table.keys.values() if key.kind is float}
     assert used == set(PLAUSIBLE) | WITHOUT
@@ -57,7 +57,7 @@ def test_every_unit_of_a_key_is_in_the_table():
     assert converted(["206 GPa", 207e9], "Pa") == [206e9, 207e9]
 
 
-def test_case_with_units_equals_the_case_in_si(tmp_path):
+def test_case_series_and_gears_with_units_equal_those_in_si(tmp_path):
     ridge = {"kind": "ridge", "amplitude": "0.2 um", "wavelength": "0.1 mm"}
     given = {"contact.radius": "19.1 mm", "contact.load": "500 N/mm", "fluid.viscosity": "6 mPa s"}
     plain = {"contact.radius": 0.0191, "contact.load": 500e3, "fluid.viscosity": 0.006}
