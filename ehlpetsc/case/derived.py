@@ -19,7 +19,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.case.values import is_allowed, is_number
 from ehlpetsc.physics.contact.hertz import hertz_load
 from ehlpetsc.physics.oil.law import STANDARD_TEMPERATURE
-from ehlpetsc.physics.oil.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY
+from ehlpetsc.physics.oil.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY, reference_temperature, viscosity
 from ehlpetsc.physics.oil.oils import OIL_SHEAR, OILS
 from ehlpetsc.physics.oil.rheology import SHEAR_LAWS
 from ehlpetsc.physics.oil.viscosity_laws import (
@@ -28,7 +28,7 @@ from ehlpetsc.physics.oil.viscosity_laws import (
     walther,
     walther_constants,
 )
-from ehlpetsc.physics.scales import reduced_modulus
+from ehlpetsc.physics.scales import Scales, reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -184,7 +184,6 @@ def with_layer_stiffness(case: Case) -> Case:
     if contact is None or contact.law != "compliant" or contact.asperity_stiffness is not None:
         return case
     from ehlpetsc.physics.contact.asperities import asperity_stiffness
-    from ehlpetsc.physics.scales import Scales
 
     surfaces = [case.surface.side(side) for side in ("1", "2")]
     tables = [table for surface in surfaces if surface for table in (surface, surface.synthetic)]
@@ -208,7 +207,6 @@ def rating_of(case: Values, folder: Path) -> Rating | None:
     from ehlpetsc.gears.path import path_of_contact
     from ehlpetsc.gears.standards import Rating
     from ehlpetsc.physics.flash_temperature import STEEL, Solid
-    from ehlpetsc.physics.oil.laws import reference_temperature, viscosity
     from ehlpetsc.surfaces.samples import measured_samples
 
     if case.gears is None or case.fluid is None:

@@ -9,16 +9,14 @@ array, shape (unknowns,), and call the methods below.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ehlpetsc.base.case import Case
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
 
 
 class Load:

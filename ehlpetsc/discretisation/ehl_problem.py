@@ -15,22 +15,20 @@ the unknowns of its window, see :mod:`.deflection`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ehlpetsc.base.case import Case, Fluid
 from ehlpetsc.discretisation.balance import balance_of
 from ehlpetsc.discretisation.contact import contact_model, face_gap, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
-from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs
+from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
 from ehlpetsc.discretisation.unknowns import Share, Unknowns, border_of, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case, Fluid
 
 
 @dataclass(frozen=True)
@@ -100,8 +98,6 @@ class EHLProblem:
         self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:
-            from ehlpetsc.discretisation.step_inputs import IsothermalOil
-
             self.oil = IsothermalOil(self.fluid, scales)
             if self.fluid.inlet_film is not None:
                 self.inlet_film = self.fluid.inlet_film / scales.h

@@ -6,10 +6,11 @@ from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
+from ehlpetsc.base.case import Fluid
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, extrapolated, fill_mass
@@ -19,9 +20,6 @@ from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, stress_pres
 from ehlpetsc.physics.oil.tabulated_flow import flow_table
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Fluid
 
 
 class Oil(Protocol):

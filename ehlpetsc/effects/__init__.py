@@ -7,16 +7,11 @@ one entry in `EFFECTS`.
 from __future__ import annotations
 
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from ehlpetsc.base.quantities import register
 from ehlpetsc.effects.depths import PlasticDeformation, Wear
-from ehlpetsc.effects.effect import RoughSurfaces
+from ehlpetsc.effects.effect import Effect, RoughSurfaces, Scene
 from ehlpetsc.effects.heat.effect import Heat
-
-if TYPE_CHECKING:
-    from ehlpetsc.effects.effect import Effect, Scene
-
 
 EFFECTS: list[type[Effect]] = [RoughSurfaces, PlasticDeformation, Wear, Heat]
 for effect in EFFECTS:

@@ -10,13 +10,12 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
 from ehlpetsc.base.quantities import AtEnd, Count
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
-    from ehlpetsc.effects.effect import Scene, Step
     from ehlpetsc.surfaces.motion.roughness import RoughSurface
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from petsc4py import PETSc
 
-from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.case import KINDS, Case
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
@@ -14,7 +14,6 @@ from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE
 from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
     from ehlpetsc.nonlinear.line.gauss_seidel import GaussSeidelSolver
 
 ALLOWED = ("newton", "sweep")

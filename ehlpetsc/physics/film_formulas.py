@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.physics.contact.geometry import rigid_factors
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case, Fluid
-    from ehlpetsc.physics.contact.geometry import Geometry
-    from ehlpetsc.physics.operation import Conditions
-    from ehlpetsc.physics.scales import Scales
-
+from ehlpetsc.base.case import Case, Fluid
+from ehlpetsc.physics.contact.geometry import Geometry, rigid_factors
+from ehlpetsc.physics.operation import Conditions
+from ehlpetsc.physics.scales import Scales
 
 MAX_FILM_ITERATIONS = 200
 FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half-widths in place of infinity in Grubin's integral; its points

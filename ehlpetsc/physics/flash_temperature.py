@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import Fluid
 from ehlpetsc.physics.oil.laws import viscosity
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import wall_shear
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Fluid
-    from ehlpetsc.physics.scales import Scales
 
 
 class Solid(NamedTuple):

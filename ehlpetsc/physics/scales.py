@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
 
-from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.case import KINDS, Case
 from ehlpetsc.physics.contact.geometry import Geometry
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.operation import Conditions
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
 
 NODE_TOLERANCE = 1e-9  # relative: half-widths, and x/a of nodes, nearer than this are equal
 

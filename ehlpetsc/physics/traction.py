@@ -7,17 +7,13 @@ equations are given beside them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ehlpetsc.base.case import Fluid
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, flow_stress, stress_pressure
 from ehlpetsc.physics.oil.tabulated_flow import flow_table, stress_spread
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Fluid
 
 
 def shear_stresses(

@@ -22,7 +22,7 @@ from ehlpetsc.base.toml_file import plain
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
-from ehlpetsc.physics.scales import NODE_TOLERANCE
+from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
 from ehlpetsc.results.hdf5_file import LIBVER, attributes, open_for_reading
 from ehlpetsc.results.index import flat_keys
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, atomic_write
@@ -30,7 +30,6 @@ from ehlpetsc.stepping.state import State, TimeLevel
 
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
-    from ehlpetsc.physics.scales import Scales
     from ehlpetsc.run.simulation import Simulation
 
 

@@ -16,7 +16,7 @@ from ehlpetsc.results.index import Index
 from ehlpetsc.results.means import RUN_IN, SHIFTED_IN_A_ROW, pass_summary, passes_to_run_in
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.checkpoint import is_restart_of, pass_of
-from ehlpetsc.run.ranks import on_root
+from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.run.solve import Run
 
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.run.ranks import StopRequest
 
 
 class Passes:

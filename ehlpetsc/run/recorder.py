@@ -24,7 +24,7 @@ from ehlpetsc.nonlinear.options import WRITING
 from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
-from ehlpetsc.run.checkpoint import restart_of_same
+from ehlpetsc.run import checkpoint
 from ehlpetsc.run.forecast.validity import limits
 from ehlpetsc.run.ranks import Deadline, on_root
 from ehlpetsc.stepping.time_stepping import on_level
@@ -158,13 +158,13 @@ class Recorder(Output):
         check_output_path(self.restart, inputs)
         self._lock = Lock(self.output)
         self._lock.acquire()
-        return restart if restart or overwrite else restart_of_same(self.output, self.restart, case)
+        return (
+            restart if restart or overwrite else checkpoint.restart_of_same(self.output, self.restart, case)
+        )
 
     def resume(self, path: Path) -> list[str]:
         """Set the simulation to the state of a restart file and continue its result; notes for the user."""
-        from ehlpetsc.run.checkpoint import load
-
-        stored, notes = load(path, self.simulation.case, self.simulation.scales)
+        stored, notes = checkpoint.load(path, self.simulation.case, self.simulation.scales)
         state = stored.state
         self.simulation.resume(state, stored.baseline)
         self.totals = Totals(stored.totals)
@@ -281,9 +281,7 @@ class Recorder(Output):
         self._save_state()
 
     def _save_state(self) -> None:
-        from ehlpetsc.run.checkpoint import save
-
-        save(self.restart, self.simulation, self._writer.contact_count, self.totals.values)
+        checkpoint.save(self.restart, self.simulation, self._writer.contact_count, self.totals.values)
 
 
 def libraries() -> dict[str, str]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from ehlpetsc.base.command_line import ERASE, ProgressLine, on_terminal
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, OutputLost, UsageError
-from ehlpetsc.base.toml_file import settings_of
+from ehlpetsc.base.toml_file import Settings, settings_of
 from ehlpetsc.case.loading import members
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.scales import Scales
@@ -27,18 +27,15 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.reader import is_done, read_result
 from ehlpetsc.run.forecast.cost import steps
 from ehlpetsc.run.forecast.validity import warnings
-from ehlpetsc.run.ranks import PollingStop, WorkQueue, on_root
+from ehlpetsc.run.ranks import PollingStop, StopRequest, WorkQueue, on_root
 from ehlpetsc.run.recorder import Output, summary_line
-from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.run.simulation import AcceptedState, Simulation
 from ehlpetsc.run.solve import Run
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from ehlpetsc.base.toml_file import Settings
     from ehlpetsc.case.tables import Case
-    from ehlpetsc.run.ranks import StopRequest
-    from ehlpetsc.run.simulation import AcceptedState
 
 MAX_VALUE_LENGTH = 60  # characters
 WAITING = "waiting"  # state of a member that is not computed yet

@@ -26,19 +26,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
+from ehlpetsc.base.case import Case
 from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
-from ehlpetsc.discretisation.step_inputs import StepInputs
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.physics.oil.rheology import SHEAR_LAWS, shear_law
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_checked
 from ehlpetsc.stepping.first_guess import SMOOTHING, bounded_start, hertz_start, starved_start
 from ehlpetsc.stepping.state import State
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
-    from ehlpetsc.discretisation.ehl_problem import EHLProblem
 
 MIN_VISCOSITY_FRACTION = 2.0**-8  # of alpha: with less an oil is practically isoviscous
 FIRST_LOAD_RATIO = 0.8  # of the load at which the Hertz pressure is the yield pressure
@@ -190,8 +187,6 @@ def easier(inputs: StepInputs, fraction: float, roughness: float) -> StepInputs:
         change = {"exponent_factor": fraction}
         stress = list(SHEAR_LAWS[shear_law(fluid)].keys)[:1]
         change |= {key: getattr(fluid, key) / fraction**4 for key in stress}
-        from ehlpetsc.discretisation.step_inputs import IsothermalOil
-
         oil = IsothermalOil(fluid.copy(update=change), oil.scales)
     return replace(inputs, oil=oil, phi=roughness * inputs.phi)
 

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from hashlib import file_digest
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from ehlpetsc.base.case import changed_files
+from ehlpetsc.base.case import Case, changed_files
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.base.errors import CaseError
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
 
 HEIGHT_UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  # of profile files
 SIDES = ("1", "2")

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
+from ehlpetsc.base.case import Case, Contact
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import FaceGap
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case, Contact
 
 
 def film_scale_of(case: Case, scales: Scales, expected_film: float) -> float:

@@ -13,10 +13,10 @@ the rise of an exponential.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.case import Contact
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.mixed import SeparatedContact
 from ehlpetsc.discretisation.contact.node_state import (
@@ -38,9 +38,6 @@ from ehlpetsc.physics.contact.asperities import (
     real_area_fraction,
 )
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Contact
 
 FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywhere
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes

@@ -7,10 +7,11 @@ those of the viscosity. Transport along the film: :mod:`.transport`.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import Fluid
 from ehlpetsc.base.compiled import compiled, inlined, unsigned
 from ehlpetsc.discretisation.finite_volumes import (
     FLUIDITY,
@@ -40,9 +41,6 @@ from ehlpetsc.physics.oil.laws import ln_viscosities, ln_viscosity
 from ehlpetsc.physics.oil.rheology import FlowLaw
 from ehlpetsc.physics.oil.tabulated_flow import MIN_RATE, stress_spread
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Fluid
 
 LINEAR_Y = 1e-6  # y whose sinh(y)/y is 1
 

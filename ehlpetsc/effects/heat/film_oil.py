@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import Fluid
 from ehlpetsc.base.compiled import inlined
+from ehlpetsc.base.declarations import Values
 from ehlpetsc.physics.oil.law import SLOTS
 from ehlpetsc.physics.oil.laws import (
     conductivity,
@@ -16,10 +18,6 @@ from ehlpetsc.physics.oil.laws import (
     viscosity_law,
 )
 from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Fluid
-    from ehlpetsc.base.declarations import Values
 
 MIN_CONDUCTING_FRACTION = 1e-6  # fraction of the gap: less conducts as this
 MIN_VISCOSITY_SLOPE = 1e-12  # 1/K

@@ -9,7 +9,7 @@ left; the coefficients of other ranks' groups are stored as those of a group bef
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -20,10 +20,6 @@ from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE
 from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, ROW_WIDTH, SIZE, STRIDE
 from ehlpetsc.nonlinear.line.jacobian import pivot_regularisation
 from ehlpetsc.nonlinear.line.node_pairs import BandEntries, same_deflection
-
-if TYPE_CHECKING:
-    from typing import Any
-
 
 GROUP = 4  # nodes; wider bands cost more than they save iterations, narrower ones need more exponentials
 TERMS = 3  # exponentials; a fourth would save iterations of GMRES, and cost more in the band

@@ -30,10 +30,9 @@ distributed: every rank computes all nodes.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ehlpetsc.base.case import Case
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.discretisation.contact.node_state import MIN_OIL_FRACTION, PRESSURE_AFTER_REFILL
@@ -43,10 +42,6 @@ from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, q_of, w_
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
-
 
 # half-widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
 STEP_SWEEPS_LENGTH, STEADY_SWEEPS_LENGTH = 0.6, 4.0

@@ -9,12 +9,11 @@ The error left to GMRES is that of three exponentials, the same on any number of
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from ehlpetsc.base.case import Case
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, problem_of
 from ehlpetsc.discretisation.line.deflection import Deflection
 from ehlpetsc.discretisation.unknowns import Share
@@ -26,9 +25,6 @@ from ehlpetsc.nonlinear.line.node_pairs import node_pairs
 from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Case
 
 
 class Factors:

@@ -56,14 +56,12 @@ to the shortest wave too, the real area hardly on the Hurst exponent (abstract o
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import Contact
 from ehlpetsc.base.compiled import compiled
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Contact
 
 MAX_DECAYS = 30.0  # separation over the decay length beyond which the law is an exponential in all digits
 MAX_RATIO = 1e10  # of prefactor to pressure up to which the law differs from it

@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.declarations import Values
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.declarations import Values
 
 MIN_OVER_CENTRAL_FILM = 0.75  # of an incompressible oil
 POINT_WIDTH = 4.0  # half-widths b: of the mesh of a point contact across, unless given

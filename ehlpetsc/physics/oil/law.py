@@ -12,15 +12,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from ehlpetsc.base.compiled import inlined
-from ehlpetsc.base.declarations import Key
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.declarations import Values
+from ehlpetsc.base.declarations import Key, Values
 
 SLOTS = 10  # constants that compiled loops get of any law
 STANDARD_TEMPERATURE = 313.15  # K, where a case has no temperature

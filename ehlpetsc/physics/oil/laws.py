@@ -10,12 +10,12 @@ import math
 from collections.abc import Mapping
 from functools import cache
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ehlpetsc.base.compiled import address_of, call_at, inlined
-from ehlpetsc.base.declarations import Key, Refused
+from ehlpetsc.base.declarations import Key, Refused, Values
 from ehlpetsc.physics.oil.law import (
     STANDARD_TEMPERATURE,
     Derivatives,
@@ -44,9 +44,6 @@ from ehlpetsc.physics.oil.viscosity_laws import (
     walther_constants,
     yasutomi,
 )
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.declarations import Values
 
 BETA = 0.04  # 1/K, where a case gives no thermal viscosity: mineral oils have 0.03 to 0.05
 ROELANDS_S0 = 1.1  # where a case with his law of pressure gives none: mineral oils have 1 to 1.5

@@ -7,16 +7,14 @@ Eyring's law has a closed form; that of any other is a table, see :mod:`ehlpetsc
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import Fluid
 from ehlpetsc.base.compiled import address_of, call_at, compiled, inlined
 from ehlpetsc.base.declarations import Key, Refused
 from ehlpetsc.physics.oil.law import Derivatives, FluidValues, Law, n_constants, switched
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.case import Fluid
 
 MAX_SERIES_STRESS = 0.1  # |Sigma| below which the series of the Eyring factors are exact to 1e-14
 NEWTON, EYRING, CARREAU = range(3)  # positions in `SHEAR_LAWS`

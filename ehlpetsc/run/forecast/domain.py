@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.declarations import Values
+from ehlpetsc.case.tables import Case
 from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.physics.film_formulas import (
     expected_film,
@@ -18,12 +19,8 @@ from ehlpetsc.physics.film_formulas import (
     rolling_left_by_inlet,
     rolling_outside,
 )
-
-if TYPE_CHECKING:
-    from ehlpetsc.base.declarations import Values
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.physics.operation import Conditions
-    from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.operation import Conditions
+from ehlpetsc.physics.scales import Scales
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
 MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling

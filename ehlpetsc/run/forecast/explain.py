@@ -6,7 +6,6 @@ import argparse
 import math
 import sys
 import tomllib
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +14,8 @@ from ehlpetsc.base.command_line import CommandParser, ProgressLine, duration, ex
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.toml_file import combinations, keys_of
 from ehlpetsc.case.loading import load, members
+from ehlpetsc.case.tables import Case
+from ehlpetsc.case.tables.contact import Contact
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.contact.asperities import CONTACT_PRESSURE, asperity_separation, layer_law
 from ehlpetsc.physics.film_formulas import smooth_films
@@ -32,10 +33,6 @@ from ehlpetsc.run.forecast.cost import (
 from ehlpetsc.run.forecast.domain import refusals
 from ehlpetsc.run.forecast.validity import load_unit, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
-
-if TYPE_CHECKING:
-    from ehlpetsc.case.tables import Case
-    from ehlpetsc.case.tables.contact import Contact
 
 RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
