@@ -200,11 +200,7 @@ def combined(
 def mixed_record(pairs: Sequence[tuple[HeatRecord, HeatRecord]], cold: float) -> HeatRecord:
     """Record for the next solve, from those before and after the last ones; `cold` is unheated oil [K]."""
     after = pairs[-1][1]
-    near = [
-        (before, found)
-        for before, found in pairs
-        if before.levels and np.abs(found.film - before.film).max() < FAR * np.abs(found.film - cold).max()
-    ]
+    near = [pair for pair in pairs if pair[0].levels and _is_near(*pair, cold)]
     if not near or near[-1] is not pairs[-1]:
         return after
     before, found = (np.array([_lagged(pair[k]) for pair in near[-DEPTH:]]) for k in (0, 1))
@@ -218,3 +214,7 @@ def mixed_record(pairs: Sequence[tuple[HeatRecord, HeatRecord]], cold: float) ->
 
 def _lagged(record: HeatRecord) -> np.ndarray:
     return np.concatenate([getattr(record, name) for name in LAGGED])
+
+
+def _is_near(before: HeatRecord, after: HeatRecord, cold: float) -> bool:
+    return np.abs(after.film - before.film).max() < FAR * np.abs(after.film - cold).max()
