@@ -293,3 +293,14 @@ def test_interrupt_and_write_error_leave_nothing(result, tmp_path, monkeypatch, 
     message = refused(capsys, main, result, "--depths", "0.5")
     assert "run.post.h5: not written, No space left" in message
     assert [path.name for path in tmp_path.iterdir()] == ["run.h5"]
+
+
+@pytest.mark.parametrize("setting", ["post.residual=half", "post.mean_stress=goodman"])
+def test_counting_keys_change_damage_and_are_recorded(setting, scene, tmp_path):
+    path, key, value = write(tmp_path / "run.h5", scene), *setting.removeprefix("post.").split("=")
+    damages = []
+    for settings in ((), (setting,)):
+        run(Job(str(path), str(tmp_path / "o.h5"), ("2",), settings=("post.depths=[0.05]", *settings)))
+        damages.append(np.nanmax(PostResult(tmp_path / "o.h5").damage["2"]))
+    assert PostResult(tmp_path / "o.h5").attrs[key] == value
+    assert 0.01 * damages[0] < damages[1] < 0.9 * damages[0]
