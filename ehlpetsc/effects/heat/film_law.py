@@ -180,7 +180,8 @@ def _unsheared(balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperat
 @inlined
 def _sheared(t: float, y: float, balance: tuple, oil: NodeOil, exchange: Exchange) -> FilmTemperature:
     """Film with heat of shear, by Newton's method for both equations."""
-    energy, low, high, is_heated, change, change_y = t, ROELANDS_ZERO + 1.0, 1e5, False, 0.0, 0.0
+    energy, low, high, change, change_y = t, ROELANDS_ZERO + 1.0, 1e5, 0.0, 0.0
+    is_heated = np.bool_(False)  # numba would compile `_shear_equation` again for a literal
     for k in range(NEWTON_ITERATIONS + BISECTIONS):
         d, x = split(energy, oil.beta, exchange), oil.ln_rate + oil.ln_eta - oil.beta * (t - oil.reference)
         if k >= NEWTON_ITERATIONS:  # the stress by itself, and the temperature between bounds

@@ -197,7 +197,7 @@ def smallest_ball(points: np.ndarray) -> tuple[np.ndarray, float]:
     radius increases in every round, so that no subset occurs twice.
     """
     axes = points.shape[0]
-    centre, radius, count = points[:, 0].copy(), 0.0, 1
+    centre, radius, count = points[:, 0].copy(), 0.0, np.int64(1)  # compiled again for a literal 1
     support = np.empty((axes + 2, axes))
     corners, new_centre = support.copy(), centre.copy()
     support[0] = centre
