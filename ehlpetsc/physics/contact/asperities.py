@@ -160,32 +160,28 @@ def asperity_separation(
 
 def asperity_pressures(h: np.ndarray, law: tuple) -> tuple[np.ndarray, np.ndarray]:
     """Arrays of :func:`asperity_pressure`, of the shape of h."""
-    pressure, derivative = _pressures(np.ravel(h), *law)
+    pressure, derivative = _pressures(np.ravel(h), tuple(law))
     return pressure.reshape(np.shape(h)), derivative.reshape(np.shape(h))
 
 
 @compiled
-def _pressures(
-    h: np.ndarray, decay: float, prefactor: float, closed: float, full_contact: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _pressures(h: np.ndarray, law: tuple) -> tuple[np.ndarray, np.ndarray]:
     pressure, derivative = np.empty(len(h)), np.empty(len(h))
     for i in range(len(h)):
-        pressure[i], derivative[i] = asperity_pressure(h[i], decay, prefactor, closed, full_contact)
+        pressure[i], derivative[i] = asperity_pressure(h[i], *law)
     return pressure, derivative
 
 
 def asperity_separations(pressure: np.ndarray, law: tuple) -> np.ndarray:
     """Array of :func:`asperity_separation`, of the shape of the pressure."""
-    return _separations(np.ravel(pressure), *law).reshape(np.shape(pressure))
+    return _separations(np.ravel(pressure), tuple(law)).reshape(np.shape(pressure))
 
 
 @compiled
-def _separations(
-    pressure: np.ndarray, decay: float, prefactor: float, closed: float, full_contact: float
-) -> np.ndarray:
+def _separations(pressure: np.ndarray, law: tuple) -> np.ndarray:
     h = np.empty(len(pressure))
     for i in range(len(h)):
-        h[i] = asperity_separation(pressure[i], decay, prefactor, closed, full_contact)
+        h[i] = asperity_separation(pressure[i], *law)
     return h
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.case.tables import Case
-from ehlpetsc.discretisation.contact import smallest_film
+from ehlpetsc.discretisation.contact import film_scale_of
 from ehlpetsc.physics.film_formulas import (
     expected_film,
     film_left_by_inlet,
@@ -42,7 +42,7 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
         return []
     near = _near_edges if KINDS[case.kind].is_whole else _near_inlet
     notes = [] if case.fluid.inlet_film is not None else near(case, scales)
-    film = _smallest_expected_film(case, scales)
+    film = film_scale_of(case, scales, expected_film(case, scales))
     opening = inlet_opening(film, case.mesh.points_per_half_width)
     if MESH_MARGIN * MAX_FILM_SLOPE < opening:
         notes.append(_coarse(case, film, opening, ": the film comes out too thin"))
@@ -58,7 +58,8 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
         return [f'{case.path}: time.ramp = "coarse": allowed: in steps {allowed}']
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
-    film, points = _smallest_expected_film(case, scales), case.mesh.points_per_half_width
+    film = film_scale_of(case, scales, expected_film(case, scales))
+    points = case.mesh.points_per_half_width
     opening = inlet_opening(film, points)
     if opening <= MAX_OPENING:
         return []
@@ -83,11 +84,6 @@ def ramps_coarsely(case: Case) -> bool:
 def has_passes(case: Case) -> bool:
     """Whether a case has more than one pass."""
     return case.time is not None and case.time.passes > 1
-
-
-def _smallest_expected_film(case: Case, scales: Scales) -> float:
-    """Expected film or, if larger, the smallest film of the contact model [a^2/R]."""
-    return max(expected_film(case, scales), smallest_film(case.contact, scales))
 
 
 def _coarse(case: Case, film: float, opening: float, consequence: str) -> str:
