@@ -210,7 +210,7 @@ def by_columns(rows):
 
 
 def solved(lu, b, first=0):
-    """Solution for `b` (groups, SIZE); what stands in the room behind them must not matter."""
+    """Solution for `b` (groups, SIZE), independent of the padding between groups."""
     room = np.full((len(b), STRIDE), 7.0)
     room[:first], room[:, :SIZE] = 0.0, b
     lu.solve(room.ravel(), first)
