@@ -204,7 +204,7 @@ def plane_solver(wanted: dict) -> dict:
     inner = {name: value for name, value in wanted.items() if name.startswith(OF_PRECONDITIONERS)}
     if any(name.startswith("sub_") for name in inner):  # on one rank else of no effect
         inner = {"pc_type": "asm"} | inner
-    inner = {INNER_PREFIX + name: value for name, value in (INNER | inner).items()}
+    inner = {INNER_PREFIX + name: value for name, value in (INNER | inner).items() if inner}
     return PLANE | inner | wanted | {name: PLANE[name] for name in ("pc_type", "pc_python_type")}
 
 

@@ -33,7 +33,8 @@ def global_sum(ranks: MPI.Comm, number: float | tuple) -> Any:
 def _reduced(ranks: MPI.Comm, number: float | tuple, operation: MPI.Op) -> Any:
     if ranks.size == 1:
         return number
-    received = np.array([number], dtype=float)
+    kind = getattr(number, "dtype", None)
+    received = np.array([number], dtype=np.float32 if kind == np.float32 else float)
     ranks.Allreduce(MPI.IN_PLACE, received, operation)
     return received[0]
 

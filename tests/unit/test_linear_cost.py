@@ -128,10 +128,10 @@ def test_reduction_of_all_kinds_of_nodes():
         found = [back[0] * first + back[1] * second, back[2] * first + back[3] * second]
         assert found == pytest.approx([dq, dw], rel=1e-12, abs=1e-12), name
         if kind in (PRESSURE, BOUND):
-            assert reduced.r_p[i] * dp + reduced.r_s[i] * ds == pytest.approx(dr, abs=1e-12), name
+            assert reduced.r_v[i] * dp + reduced.r_s[i] * ds == pytest.approx(dr, abs=1e-12), name
         if kind == PRESSURE:
-            assert reduced.h_p[i] * dp + reduced.h_s[i] * ds == pytest.approx(dh, abs=1e-12), name
+            assert reduced.h_v[i] * dp + reduced.h_s[i] * ds == pytest.approx(dh, abs=1e-12), name
         if kind in (VOID, STIFF):
-            assert reduced.h_p[i] * dr + reduced.h_s[i] * ds == pytest.approx(dh, abs=1e-12), name
+            assert reduced.h_v[i] * dr + reduced.h_s[i] * ds == pytest.approx(dh, abs=1e-12), name
         expected = by[0, 1, i] / by[3, 1, i] if kind == STIFF else 0.0
         assert reduced.p_s[i] == pytest.approx(expected, rel=1e-12), name

@@ -123,6 +123,18 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name):
     assert (residual - b).norm() < 1.01e-6 * b.norm()
 
 
+def prepared(system, state, inputs, given):
+    """Elimination with the factors of a state, with some options."""
+    options = RunOptions(given=given, kind="point")
+    with options:
+        NewtonSolver(system, options)
+        system.set_initial_guess(state, inputs)
+        system.linearise(system.x)
+        elimination = system.matrices.elimination
+        elimination.prepare(system.jacobian)
+    return elimination
+
+
 def test_coarse_functions_around_an_isolated_node_are_independent():
     space = CoarseSpace(free_kernel(9, 9, 0.1, 0.1), False)
     assert space.spacing == 2
@@ -144,27 +156,33 @@ def test_options_of_a_run_inside_of_another_one_are_its_own():
     assert not table.getAll()
 
 
-@pytest.mark.parametrize(("name", "block"), [("layer", 2), ("strip", 3)])
-def test_blocks_filled_in_place_are_those_of_the_matrix(name, block):
+@pytest.mark.parametrize("name", ("layer", "strip", "direct"))
+def test_blocks_filled_in_place_are_those_of_the_matrix(name):
     system, state, inputs = scene(name)
-    options = RunOptions(kind="point")
-    with options:
-        NewtonSolver(system, options)
-        system.set_initial_guess(state, inputs)
-        system.linearise(system.x)
-        elimination = system.matrices.elimination
-        elimination.prepare(system.jacobian)
+    elimination = prepared(system, state, inputs, {"pc_type": "jacobi"})
     form, p = elimination.factors.sparse, system.problem
-    assert form.block == block
-    blocks = np.zeros((len(form.columns), block, block))
-    whole = tuple(np.ascontiguousarray(part[p.owned]) for part in elimination.reduction[:6])
-    scales, rows = (p.deflection.row_scale, *p.grid.increments), (0, 0, p.n, form.pointers, form.places)
-    derivatives = system.jacobian.reynolds_derivatives
-    fill(whole, derivatives, form.term, scales, form.mesh, rows, blocks, form.by)
-    expected = bsr_matrix((blocks.transpose(0, 2, 1), form.columns, form.pointers))
-    form.b.array[:] = np.random.default_rng(4).standard_normal(p.n * block)
-    form.matrix.mult(form.b, form.u)
-    np.testing.assert_allclose(form.u.array, expected @ form.b.array, rtol=1e-12, atol=1e-12)
+    factors = form.factors
+    blocks = np.zeros_like(factors.blocks)
+    whole = form._at_hand([part[p.owned] for part in elimination.reduction[:6]])
+    scales = p.deflection.row_scale, *p.grid.increments
+    rows = form.rows.start, form.rows.stop, factors.pointers, factors.places
+    derivatives = system.exchange.window(system.jacobian.reynolds_derivatives)
+    fill(tuple(whole), derivatives, form.term, scales, form.n_x, rows, blocks, form.of_rows)
+    expected = bsr_matrix((blocks.transpose(0, 2, 1), factors.columns, factors.pointers))
+    factors.b[:] = np.random.default_rng(4).standard_normal(factors.b.shape)
+    factors.matrix.mult(factors.right, factors.left)
+    np.testing.assert_allclose(factors.left.array, expected @ factors.right.array, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ("layer", "direct"))
+def test_own_incomplete_factors_are_those_of_petsc(name):
+    """ILU(1) of the same order of nodes."""
+    system, state, inputs = scene(name)
+    rows = np.random.default_rng(9).standard_normal((2, system.n))
+    of_petsc = prepared(system, state, inputs, {"pc_type": "ilu"}).factors.sparse.solve(*rows)
+    own = prepared(system, state, inputs, {}).factors.sparse.solve(*rows)
+    for values, expected in zip(own, of_petsc, strict=True):
+        np.testing.assert_allclose(values, expected, atol=1e-4 * abs(expected).max())
 
 
 @pytest.mark.parametrize(("nodes", "functions"), [(65, 22), (129, 22), (257, 33), (513, 47)])

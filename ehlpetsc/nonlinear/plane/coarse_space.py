@@ -19,6 +19,7 @@ from mpi4py import MPI
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csr_matrix, kron
 
+from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.ranks import global_sum
 
@@ -53,8 +54,9 @@ class CoarseSpace:
             linear_functions(n_y, self.spacing, periodic),
             linear_functions(n_x, self.spacing, False),
         )
-        self.functions, self.counts = kron(across, along).tocsr(), (across.shape[1], along.shape[1])
-        self.deflections = self._deflections(kernel)
+        self.functions = kron(across, along).tocsr().astype(np.float32)
+        self.counts = across.shape[1], along.shape[1]
+        self.deflections = self._deflections(kernel).astype(np.float32)
 
     def reaches(self, mask: np.ndarray) -> bool:
         """Whether a coarse node is in a mask of nodes."""
@@ -81,12 +83,41 @@ class CoarseSpace:
 
         Those whose own coarse node is in the mask: cut off more, several may be the same but for a factor.
         """
-        cut = self.functions.copy()
-        cut.data *= np.repeat(mask, np.diff(cut.indptr))
-        kept = np.flatnonzero(mask.reshape(self.shape)[:: self.spacing, :: self.spacing])
+        of_coarse = mask.reshape(self.shape)[:: self.spacing, :: self.spacing].ravel()
+        kept, f = np.flatnonzero(of_coarse), self.functions
+        column = np.where(of_coarse, np.cumsum(of_coarse) - 1, -1).astype(np.int32)
+        parts = np.empty_like(f.data), np.empty_like(f.indices), np.zeros_like(f.indptr)
+        count = cut_off(f.data, f.indices, f.indptr, mask, column, parts)
+        data, columns, pointers = parts
+        cut = csr_matrix((data[:count], columns[:count], pointers), (len(mask), len(kept)))
         k_y, k_x = np.divmod(kept, self.counts[1])
         distance = np.abs(k_y[:, None] - k_y), np.abs(k_x[:, None] - k_x)
-        return cut[:, kept], self.deflections[distance]
+        return cut, self.deflections[distance]
+
+
+@compiled
+def cut_off(
+    values: np.ndarray,
+    indices: np.ndarray,
+    pointers: np.ndarray,
+    mask: np.ndarray,
+    column: np.ndarray,
+    parts: tuple,
+) -> int:
+    """Entries of the rows in a mask whose new `column` is not negative, in compressed rows; their number.
+
+    `parts`: filled in: entries, columns, pointers (zeros).
+    """
+    new_values, new_columns, new_pointers = parts
+    count = 0
+    for row in range(len(mask)):
+        if mask[row]:
+            for k in range(pointers[row], pointers[row + 1]):
+                if column[indices[k]] >= 0:
+                    new_values[count], new_columns[count] = values[k], column[indices[k]]
+                    count += 1
+        new_pointers[row + 1] = count
+    return count
 
 
 class CoarseCorrection:
@@ -105,16 +136,16 @@ class CoarseCorrection:
         functions, deflections = space.chosen(mask)
         self.ranks, self.restriction = ranks, functions[share.local].T.tocsr()
         self.functions = functions[share.window]
-        stencils = derivatives.view(complex)  # by pressure and separation: as fast as one of both
+        self.deflections = deflections
+        stencils = derivatives.view(np.complex64)  # by pressure and separation: as fast as one of both
         both = (self.restriction @ space.matrix(stencils, share.local) @ functions).tocsr()
         matrix = global_sum(ranks, both.real.toarray() + both.imag @ deflections)
-        self.deflections = deflections.astype(np.float32)
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved
             warnings.simplefilter("ignore", LinAlgWarning)
-            self.lu = lu_factor(matrix.astype(np.float32), overwrite_a=True, check_finite=False)
+            self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def __call__(self, rows: np.ndarray) -> np.ndarray:
         """Pressures that reduce local Reynolds rows, and the separations by them, shape (window, 2)."""
-        restricted = global_sum(self.ranks, self.restriction @ rows).astype(np.float32)
+        restricted = global_sum(self.ranks, self.restriction @ rows)
         coarse = lu_solve(self.lu, restricted, check_finite=False)
         return self.functions @ np.stack([coarse, self.deflections @ coarse], axis=1)

@@ -103,27 +103,36 @@ class PlaneExchange:
         if self.below < 0:
             self.below = MPI.PROC_NULL
 
-    def window(self, local: np.ndarray) -> np.ndarray:
-        """Values of the window, (window, ...), from those of the local nodes; these if it has no more."""
+    def slab(self, rows: int) -> slice:
+        """Own nodes in an array with some rows of the neighbours on either side."""
         p = self.problem
-        if p.share.window_size == p.local:
+        start = rows * self.n_x if p.owned.start else 0
+        return slice(start, start + p.local)
+
+    def window(self, local: np.ndarray, rows: int = 1) -> np.ndarray:
+        """Values of the local nodes with some rows of the neighbours on either side, by default the window.
+
+        The values themselves where there is no neighbour.
+        """
+        p, own, count = self.problem, self.slab(rows), rows * self.n_x
+        behind = count if p.share.window_size > p.owned.stop else 0
+        if not (own.start or behind):
             return local
-        window = np.empty((p.share.window_size, *local.shape[1:]))
-        window[p.owned] = local
-        before, behind = window[: p.owned.start], window[p.owned.stop :]
-        row = self.n_x
+        window = np.empty((own.stop + behind, *local.shape[1:]), dtype=local.dtype)
+        window[own] = local
+        below, above = window[: own.start], window[own.stop :]
         if self.ranks.size == 1:
-            if len(before):
-                before[:], behind[:] = local[-row:], local[:row]
+            if len(below):
+                below[:], above[:] = local[-count:], local[:count]
             return window
-        lowest, highest = np.ascontiguousarray(local[:row]), np.ascontiguousarray(local[-row:])
+        lowest, highest = np.ascontiguousarray(local[:count]), np.ascontiguousarray(local[-count:])
         received = np.empty_like(lowest)
         self.ranks.Sendrecv(lowest, self.below, 0, received, self.above, 0)
-        if len(behind):
-            behind[:] = received
+        if len(above):
+            above[:] = received
         self.ranks.Sendrecv(highest, self.above, 1, received, self.below, 1)
-        if len(before):
-            before[:] = received
+        if len(below):
+            below[:] = received
         return window
 
     def border(self, vector: np.ndarray) -> np.ndarray:

@@ -17,7 +17,6 @@ than `MAX_KEPT` iterations, the sparse one also where a node changes its kind.
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -29,19 +28,12 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
+from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
+from ehlpetsc.nonlinear.plane.factors import OVERLAP, IncompleteLU, PETScFactors, uses_petsc
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import (
-    BOUND,
-    CONTACT,
-    PRESSURE,
-    Reduction,
-    reduction_of,
-    unknowns_of,
-)
-from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, R, fill, fitted_term, pattern, put, taken
-from ehlpetsc.nonlinear.two_fields import owned
+from ehlpetsc.nonlinear.plane.reduction import BOUND, PRESSURE, Reduction, reduction_of, unknowns_of
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fitted_term, put, taken
 
-PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
 MIN_SINGLE = 1e-5  # relative tolerance of GMRES from which on its deflections are of single precision, 1e-7
 MAX_KEPT = 16  # iterations of GMRES up to which factors are kept
 
@@ -68,9 +60,8 @@ class EliminatedFilm:
 
 
 class SparseForm:
-    """Assembled sparse form with PETSc's preconditioner; its pattern is that of the mesh.
+    """Sparse form with its factors.
 
-    `block`: unknowns of a node.
     `term`: of the deflection, see :func:`.screened_poisson.fitted_term`.
     `is_complete`: whether the factors are complete, whatever the options; for oil so viscous that the
         pivots of incomplete ones vanish.
@@ -82,71 +73,45 @@ class SparseForm:
     """
 
     def __init__(
-        self, problem: EHLProblem, block: int, term: tuple, comm: PETSc.Comm, is_complete: bool = False
+        self, problem: EHLProblem, exchange: PlaneExchange, term: tuple, comm: PETSc.Comm, is_complete: bool
     ):
-        self.problem, self.block, self.term, local = problem, block, term, problem.local
+        self.problem, self.exchange, self.term = problem, exchange, term
         self.is_complete = is_complete
-        self.mesh = problem.grid.shape[-1], problem.n, problem.grid.periodic
-        self.pointers = np.empty(local + 1, dtype=np.int32)
-        self.places = np.empty((local, STENCIL), dtype=np.int8)
-        columns = np.empty(local * STENCIL, dtype=np.int32)
-        count = pattern(self.mesh, problem.first, problem.last, self.pointers, columns, self.places)
-        self.columns = columns[:count]
-        sizes = block * local, block * problem.n
-        self.matrix = PETSc.Mat().createBAIJ(
-            (sizes, sizes), block, csr=(self.pointers, self.columns), comm=comm
+        n_y, self.n_x = problem.grid.shape
+        self.has_petsc = is_complete or uses_petsc()
+        self.overlap = 1 if self.has_petsc else min(OVERLAP, n_y)
+        self.own, nodes = exchange.slab(self.overlap), len(self._at_hand(np.empty((1, problem.local)))[0])
+        self.rows = self.own if self.has_petsc else slice(0, nodes)  # that are factored, of those at hand
+        self.factors: PETScFactors | IncompleteLU
+        self.factors = (
+            PETScFactors(problem, comm, is_complete) if self.has_petsc else IncompleteLU(self.n_x, nodes)
         )
-        self.pc = PETSc.PC().create(comm)
-        self.pc.setOperators(self.matrix)
-        if is_complete:
-            self.pc.setType("lu")
-            self.pc.setFactorSolverType("petsc" if comm.size == 1 else "mumps")
-        else:
-            self.pc.setOptionsPrefix(PREFIX)
-            self.pc.setType("ilu" if comm.size == 1 else "asm")
-            self.pc.setFromOptions()
-        self.b, self.u = self.matrix.createVecs()
-        self._petsc_objects = owned(self, self.matrix, self.pc, self.b, self.u)
-        self.by = np.empty((local, 2 * STENCIL))
-        self.parts = self._parts()
+        self.of_rows = np.empty((self.rows.stop - self.rows.start, 2 * STENCIL), dtype=np.float32)
 
-    def set_up(self, whole: list[np.ndarray], derivatives: np.ndarray) -> None:
-        """Assemble and factor for a state; arguments as of :func:`.screened_poisson.fill`."""
-        p, scales = self.problem, (self.problem.deflection.row_scale, *self.problem.grid.increments)
-        is_split = len(self.parts) > 1
-        blocks = np.empty((len(self.columns), self.block, self.block)) if is_split else self.parts[0]
-        blocks[:] = 0.0
-        rows = p.first, p.first, p.last, self.pointers, self.places
-        fill(tuple(whole), derivatives, self.term, scales, self.mesh, rows, blocks, self.by)
-        if is_split:
-            for part, places in zip(self.parts, self.split, strict=True):
-                np.take(blocks, places, axis=0, out=part, mode="clip")  # else into a copy of `part`
-        self.matrix.stateIncrease()
-        self.pc.setUp()
-        self.kind, self.p_s = whole[0][p.first : p.last], whole[5][p.first : p.last]
-        self.no_pressure, self.no_reynolds = whole[0][p.window] != PRESSURE, self.kind == BOUND
+    def _at_hand(self, local: Sequence[np.ndarray]) -> Sequence[np.ndarray]:
+        """Arrays of the local nodes with the rows of neighbours that the factors need."""
+        if self.problem.share.window_size == self.problem.local:
+            return local
+        return np.ascontiguousarray(self.exchange.window(np.stack(local, axis=1), self.overlap).T)
 
-    def _parts(self) -> list[np.ndarray]:
-        """PETSc's own arrays of the blocks, in the order of the columns: on one rank all; else own, others.
-
-        `setValuesBlocked` looks up the place of each block and copies it, which takes longer than filling it
-        in. By MatMPIBAIJGetSeqBAIJ and MatSeqBAIJGetArray, which petsc4py lacks.
-        """
-        library, whole = ctypes.CDLL(PETSc.__file__), ctypes.c_void_p(self.matrix.handle)
-        parts, counts = [whole], [len(self.columns)]
-        if self.matrix.comm.size > 1:
-            own, others, unused = (ctypes.c_void_p() for _ in range(3))
-            library.MatMPIBAIJGetSeqBAIJ(whole, *map(ctypes.byref, (own, others, unused)))
-            is_own = (self.columns >= self.problem.first) & (self.columns < self.problem.last)
-            self.split = np.flatnonzero(is_own), np.flatnonzero(~is_own)
-            parts, counts = [own, others], [len(places) for places in self.split]
-        found = []
-        for part, count in zip(parts, counts, strict=True):
-            values = ctypes.POINTER(ctypes.c_double)()
-            library.MatSeqBAIJGetArray(part, ctypes.byref(values))
-            found.append(np.ctypeslib.as_array(values, (int(count), self.block, self.block)))
-            library.MatSeqBAIJRestoreArray(part, ctypes.byref(values))
-        return found
+    def set_up(self, reduction: Reduction, derivatives: np.ndarray) -> None:
+        """Factor for a state: reduction of the window, derivatives of the local Reynolds rows."""
+        p, factors, rows = self.problem, self.factors, self.rows
+        kind, *changes = self._at_hand([part[p.owned] for part in reduction[:6]])
+        whole, scales = (kind.astype(np.uint8), *changes), (p.deflection.row_scale, *p.grid.increments)
+        of_rows = rows.start, rows.stop, factors.pointers, factors.places
+        derivatives = self.exchange.window(derivatives, self.overlap)
+        fill(whole, derivatives, self.term, scales, self.n_x, of_rows, factors.blocks, self.of_rows)
+        factors.factor()
+        self.of_factors, self.kind, self.p_s = (
+            (whole[0][rows], whole[5][rows]),
+            whole[0][self.own],
+            whole[5][self.own],
+        )
+        first = self.own.start - rows.start
+        self.by = self.of_rows[first : first + p.local]
+        self.no_pressure = reduction.kind != PRESSURE
+        self.no_reynolds = self.kind == BOUND
 
     def solve(self, reynolds: np.ndarray, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes.
@@ -158,11 +123,14 @@ class SparseForm:
         separation
             Change of the separation besides the deflection.
         """
-        deflection, nodes = self.problem.deflection, (self.problem.local, self.block)
+        deflection, factors = self.problem.deflection, self.factors
         scales, rows = (deflection.cell, deflection.row_scale), (reynolds, separation)
-        put(self.kind, self.p_s, scales, rows, self.b.array.reshape(nodes))
-        self.pc.apply(self.b, self.u)
-        return taken(self.kind, self.p_s, self.term[0], separation, self.u.array_r.reshape(nodes))
+        if not self.has_petsc:
+            rows = tuple(self._at_hand(rows))
+        put(*self.of_factors, scales, rows, factors.b)
+        u = self.exchange.window(factors.solve()) if self.has_petsc else factors.solve()
+        of_nodes, own = (self.kind, self.p_s, self.term), (self.n_x, self.own.start)
+        return taken(*of_nodes, self.problem.grid.increments, separation, u, own)
 
 
 class Factors(NamedTuple):
@@ -231,16 +199,13 @@ class Elimination:
         """Factor for the state of an operator; completely where incomplete factors break down."""
         p, self.builds = self.problem, self.builds + 1
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
-        parts: Reduction = self.reduction._replace(back=None)
-        whole = [self._gathered(np.ascontiguousarray(part[p.owned])) for part in parts[:6]]
-        block = R + int((whole[0] == CONTACT).any())
         is_complete |= self.form is not None and self.form.is_complete
-        if self.form is None or (self.form.block, self.form.is_complete) != (block, is_complete):
+        if self.form is None or self.form.is_complete != is_complete:
             self.form = self.factors = None  # freed before the next one
-            self.form = SparseForm(p, block, self.term, self.comm, is_complete)
+            self.form = SparseForm(p, operator.exchange, self.term, self.comm, is_complete)
         sparse = self.form
-        sparse.set_up(whole, operator.reynolds_derivatives)
-        mask = whole[0] == PRESSURE
+        sparse.set_up(self.reduction, operator.reynolds_derivatives)
+        mask = self._gathered(sparse.kind == PRESSURE)
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
             coarse = CoarseCorrection(self.coarse_space, sparse.by, mask, p.share, self.ranks)
@@ -249,7 +214,7 @@ class Elimination:
         of_border = [self._pressures(operator, np.zeros(p.local), gap) for gap in gaps]
         self.factors = Factors(sparse, coarse, of_border)
         is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
-        if is_broken and not (is_complete or PETSc.Options().hasName(f"{PREFIX}pc_type")):
+        if is_broken and not (is_complete or sparse.has_petsc):
             self._build(operator, with_coarse, is_complete=True)
 
     def _pressures(
@@ -257,7 +222,7 @@ class Elimination:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes, and forces; see :meth:`SparseForm.solve`."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        changes = np.zeros((p.local, 2))
+        changes = np.zeros((p.local, 2), dtype=np.float32)
         changes[:, 1] = separation
         given = operator.exchange.window(changes)
         reynolds = reynolds - p.reynolds.product(sparse.by, given, p.owned.start)
@@ -274,7 +239,7 @@ class Elimination:
         """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
         p, (sparse, coarse, _) = self.problem, self.factors
         reynolds[sparse.no_reynolds] = 0.0
-        changes = coarse(reynolds)
+        changes = coarse(reynolds.astype(np.float32))
         changes[sparse.no_pressure, 0] = 0.0
         left = reynolds - p.reynolds.product(sparse.by, changes, p.owned.start)
         return changes[p.owned, 0], changes[p.owned, 1], left

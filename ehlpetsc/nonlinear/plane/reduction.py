@@ -1,15 +1,15 @@
 r"""Elimination of the film from the linear system of a contact in the plane, node by node.
 
 The row of the deflection, :math:`\delta s-\delta h_{00}-D\,\delta p=b`, gives the change of the separation s
-by those of all pressures. What is left are one or two unknowns a node, by which of its quantities depend on
-both of its unknowns (q, w):
+by those of all pressures. What is left is one unknown v a node, by which of its quantities depend on both of
+its unknowns (q, w):
 
-* `PRESSURE`: pressure and separation are independent; unknown: the pressure, row: Reynolds.
-* `VOID`: the pressure is constant (a cavity, yielding solids); unknown: that of the Reynolds equation.
+* `PRESSURE`: pressure and separation are independent; v: the pressure, row: Reynolds.
+* `VOID`: the pressure is constant (a cavity, yielding solids); v: the unknown r of the Reynolds equation.
 * `STIFF`: as `VOID`, but the pressure follows from the separation (asperities in a cavity).
-* `CONTACT`: the separation is constant (solids that touch); unknowns: pressure with the row of the
-  deflection, and that of the Reynolds equation.
-* `BOUND`: as `CONTACT`, without a Reynolds row (a film at its bound).
+* `CONTACT`: the separation is constant (solids that touch); v: r, and the pressure follows from the row of
+  the deflection.
+* `BOUND`: as `CONTACT`, without a Reynolds row (a film at its bound); v: the pressure.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ MIN_SLOPE = 1e-8
 
 
 class Reduction(NamedTuple):
-    """Changes of the quantities of each node by those of the unknowns left; arrays of shape (nodes,).
+    """Changes of the quantities of each node by v and the separation; arrays of shape (nodes,).
 
     `kind`: as in the module.
-    `r_p`, `r_s`, `h_p`, `h_s`: of Reynolds unknown r and film h by pressure p and separation s.
+    `r_v`, `r_s`, `h_v`, `h_s`: of r and the film h by v and the separation s.
     `p_s`: of the pressure by the separation, at `STIFF`.
     `back`: of q and w by the first (p; at `VOID` r) and the second quantity (s; at `STIFF` and `CONTACT` r),
         shape (4, nodes).
     """
 
     kind: np.ndarray
-    r_p: np.ndarray
+    r_v: np.ndarray
     r_s: np.ndarray
-    h_p: np.ndarray
+    h_v: np.ndarray
     h_s: np.ndarray
     p_s: np.ndarray
     back: np.ndarray
@@ -61,7 +61,7 @@ def reduction_of(derivatives: np.ndarray, inactive: np.ndarray) -> Reduction:
 def reduce_nodes(
     by: np.ndarray, inactive: np.ndarray, kind: np.ndarray, changes: np.ndarray, back: np.ndarray
 ) -> None:
-    """Fill in the fields of a :class:`Reduction`; `changes`: r_p .. p_s, zeros, and `back`, zeros."""
+    """Fill in the fields of a :class:`Reduction`; `changes`: r_v .. p_s, zeros, and `back`, zeros."""
     for i in range(len(kind)):
         (p_q, p_w), (r_q, r_w) = (by[0, 0, i], by[0, 1, i]), (by[1, 0, i], by[1, 1, i])
         h_w, s_q, s_w = by[2, 1, i], by[3, 0, i], by[3, 1, i]
@@ -73,6 +73,7 @@ def reduce_nodes(
             of = inverse(p_q, p_w, s_q, s_w)
             changes[0, i], changes[1, i] = r_q * of[0] + r_w * of[2], r_q * of[1] + r_w * of[3]
         elif kind[i] == CONTACT:
+            changes[0, i] = 1.0
             of = inverse(p_q, p_w, r_q, r_w)
             back[0, i], back[1, i], back[2, i], back[3, i] = of
             continue
@@ -81,6 +82,8 @@ def reduce_nodes(
                 r_w = min(r_w, -MIN_SLOPE)
             of = inverse(r_q, r_w, s_q, s_w)
         changes[2, i], changes[3, i] = h_w * of[2], h_w * of[3]
+        if kind[i] != PRESSURE:
+            changes[0, i] = 1.0
         if kind[i] == STIFF:
             changes[4, i], of = p_w / s_w, inverse(p_q, p_w, r_q, r_w)
         back[0, i], back[1, i], back[2, i], back[3, i] = of

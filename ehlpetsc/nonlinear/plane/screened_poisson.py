@@ -1,4 +1,4 @@
-r"""Sparse form of a contact in the plane for PETSc's preconditioners (compiled).
+r"""Sparse form of a contact in the plane, of which a preconditioner has factors (compiled).
 
 The deflection, :math:`2\pi C/|k|` over the wave numbers k, is a full matrix; the screened Poisson term
 
@@ -7,9 +7,9 @@ The deflection, :math:`2\pi C/|k|` over the wave numbers k, is a full matrix; th
 is a sparse one, of another unknown a node with a five-point stencil, zero beyond the mesh. Longer waves than
 1/s are those of the coarse correction, beside which a second term saves no iteration.
 
-Unknowns of a node, in this order: u, v, and r where solids touch anywhere. v is the pressure, in
-a cavity the unknown of the Reynolds equation; the pressure of asperities in it, :math:`p=p_s\,\delta s`,
-follows from u.
+Unknowns of a node: u and v, the pressure; in a cavity, and where solids touch, v is the unknown of the
+Reynolds equation. The pressure of asperities in a cavity, :math:`p=p_s\,\delta s`, and that of solids that
+touch, whose row of the deflection sets u, follow from u.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ehlpetsc.base.compiled import compiled
-from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, STIFF, VOID
+from ehlpetsc.base.compiled import compiled, unsigned
+from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, STIFF, VOID
 
 SCREENED, SHORTEST_COARSE = 0.2, 0.15  # s and the smallest fitted k, in the largest wave number of the mesh
-V, R = 1, 2  # places of v and r among the unknowns of a node, behind u
+UNKNOWNS, V = 2, 1  # of a node; place of v among them, behind u
+ONE = unsigned(1)
 STENCIL, OWN = 6, 2  # nodes i-2 .. i+1, below, above of a row; index of i
 
 
@@ -40,30 +41,54 @@ def fitted_term(stiffness: float, spacings: Sequence[float]) -> tuple[float, flo
 def put(
     kind: np.ndarray, p_s: np.ndarray, scales: tuple, rows: tuple[np.ndarray, np.ndarray], b: np.ndarray
 ) -> None:
-    """Fill in the right-hand side, shape (nodes, unknowns of a node).
+    """Fill in the right-hand side, shape (nodes, 2).
 
     `scales`: dx dy; of the deflection rows. `rows`: Reynolds rows, separation besides the deflection.
     """
     (cell, row_scale), (reynolds, separation) = scales, rows
     for i in range(len(kind)):
-        b[i, :] = 0.0
-        b[i, 0] = cell * p_s[i] * separation[i]
-        b[i, V] = row_scale * separation[i] if kind[i] == CONTACT or kind[i] == BOUND else reynolds[i]
-        if kind[i] == CONTACT:
-            b[i, R] = reynolds[i]
+        of_deflection = row_scale * separation[i]
+        b[i, 0] = of_deflection if kind[i] == CONTACT else cell * p_s[i] * separation[i]
+        b[i, V] = of_deflection if kind[i] == BOUND else reynolds[i]
 
 
 @compiled
 def taken(
-    kind: np.ndarray, p_s: np.ndarray, c: float, separation: np.ndarray, u: np.ndarray
+    kind: np.ndarray,
+    p_s: np.ndarray,
+    term: tuple,
+    spacings: tuple,
+    separation: np.ndarray,
+    u: np.ndarray,
+    own: tuple,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pressures and Reynolds unknowns of a solution of the right-hand side by :func:`put`."""
-    pressure, r = np.empty(len(kind)), np.empty(len(kind))
+    """Pressures and Reynolds unknowns of a solution of the right-hand side by :func:`put`.
+
+    `term`: c, square of s. `spacings`: dy, dx.
+    `u`: of all nodes at hand. `own`: nodes in a row; the first of the others' nodes among them.
+    """
+    (c, s_2), (dy, dx), (n_x, first) = term, spacings, own
+    pressure, r, mesh = np.empty(len(kind)), np.empty(len(kind)), (n_x, len(u), False)
     for i in range(len(kind)):
-        is_void = kind[i] == VOID or kind[i] == STIFF
-        pressure[i] = p_s[i] * (separation[i] + c * u[i, 0]) if is_void else u[i, V]
-        r[i] = u[i, R] if kind[i] == CONTACT else u[i, V]
+        node = first + i
+        pressure[i] = r[i] = u[node, V]
+        if kind[i] == VOID or kind[i] == STIFF:
+            pressure[i] = p_s[i] * (separation[i] + c * u[node, 0])
+        elif kind[i] == CONTACT:
+            pressure[i] = 0.0
+            for k in range(1, STENCIL):
+                near = neighbour(node, k, mesh)
+                if near >= 0:
+                    pressure[i] += poisson(k, dy, dx, s_2) * u[near, 0] / (dx * dy)
     return pressure, r
+
+
+@compiled
+def poisson(k: int, dy: float, dx: float, s_2: float) -> float:
+    """Coefficient of node k of the stencil in the screened Poisson equation, times dx dy."""
+    if k == OWN:
+        return 2.0 * dy / dx + 2.0 * dx / dy + s_2 * dx * dy
+    return 0.0 if k == 0 else -dx / dy if k > OWN + 1 else -dy / dx
 
 
 @compiled
@@ -114,55 +139,50 @@ def fill(
     derivatives: np.ndarray,
     term: tuple,
     scales: tuple,
-    mesh: tuple,
+    n_x: int,
     rows: tuple,
     blocks: np.ndarray,
     by: np.ndarray,
 ) -> None:
-    """Fill in the blocks of some rows.
+    """Fill in the blocks of the rows of some of the nodes at hand.
 
-    `reduction`: kind, r_p, r_s, h_p, h_s, p_s of all nodes.
-    `derivatives`: of the local Reynolds rows, (local nodes, 12).
+    `reduction`: kind, r_v, r_s, h_v, h_s, p_s of the nodes.
+    `derivatives`: of the Reynolds rows of the nodes, (nodes, 12).
     `term`: c, square of s.
     `scales`: of the deflection rows; dy; dx.
-    `mesh`: as of :func:`neighbour`.
-    `rows`: first local node; first and last node of the rows; pointers and places of the :func:`pattern`.
-    `blocks`: of these rows, each by columns as PETSc stores it; zeros.
-    `by`: derivatives of the local Reynolds rows by v and separation at the nodes of their stencil, (local
-        nodes, 12).
+    `n_x`: nodes in a row.
+    `rows`: first and last node of the rows; pointers to their blocks; places of the stencil among them.
+    `blocks`: of these rows, each by columns as PETSc stores it.
+    `by`: derivatives of these Reynolds rows by v and separation at the nodes of their stencil, (rows, 12).
     """
-    (kind, r_p, r_s, h_p, h_s, p_s), (c, s_2), (row_scale, dy, dx) = reduction, term, scales
-    first, begin, end, pointers, places = rows
-    unknowns = blocks.shape[1]
-    for i in range(begin, end):
-        row = i - first
-        touches = kind[i] == CONTACT or kind[i] == BOUND
-        r = V + int(touches)
+    (kind, r_v, r_s, h_v, h_s, p_s), (c, s_2), (row_scale, dy, dx) = reduction, term, scales
+    begin, end, pointers, places = rows
+    along, across = dy / dx, dx / dy
+    laplacian = 0.0, -along, 2.0 * (along + across) + s_2 * dx * dy, -along, -across, -across
+    offsets = -2, -1, 0, 1, -n_x, n_x
+    for row in range(unsigned(end - begin)):
+        i, first = row + unsigned(begin), unsigned(pointers[row])
+        has_poisson, has_reynolds = 0.0 if kind[i] == CONTACT else 1.0, 0.0 if kind[i] == BOUND else 1.0
+        for b in range(first, unsigned(pointers[row + ONE])):
+            blocks[b, 0, 0] = blocks[b, 0, V] = blocks[b, V, 0] = blocks[b, V, V] = 0.0
         for k in range(STENCIL):
-            by[row, 2 * k], by[row, 2 * k + 1] = 0.0, 0.0
-            if places[row, k] < 0:
-                continue
-            near = neighbour(i, k, mesh)
-            b = pointers[row] - pointers[begin - first] + places[row, k]  # a view of the block takes longer
-            poisson = 0.0 if k == 0 else -dx / dy if k >= 4 else -dy / dx
-            if k == OWN:
-                blocks[b, 0, 0] += 2.0 * dy / dx + 2.0 * dx / dy + (s_2 - p_s[i] * c) * dx * dy
-                blocks[b, V, 0] -= 0.0 if kind[i] == VOID or kind[i] == STIFF else dx * dy
-                if touches:  # the row of the deflection is that of v
-                    blocks[b, 0, V] -= row_scale * c
-                if kind[i] != CONTACT and unknowns > R:
-                    blocks[b, R, R] += 1.0
-            else:
-                blocks[b, 0, 0] += poisson
-            if kind[i] == BOUND:
-                continue
-            by_r, by_h, by_v, gamma = derivatives[row, 2 * k], derivatives[row, 2 * k + 1], 0.0, 0.0
-            if kind[near] == CONTACT:
-                blocks[b, R, r] += by_r
-            elif kind[near] == VOID or kind[near] == STIFF:
-                by_v, gamma = by_r + by_h * h_p[near], by_h * h_s[near]
-            else:
-                by_v, gamma = by_r * r_p[near] + by_h * h_p[near], by_r * r_s[near] + by_h * h_s[near]
-            blocks[b, V, r] += by_v
-            blocks[b, 0, r] += gamma * c
+            by_v = gamma = 0.0
+            if places[row, k] >= 0:
+                b, near = first + unsigned(places[row, k]), i + unsigned(offsets[k])
+                by_r, by_h = derivatives[i, 2 * k], derivatives[i, 2 * k + 1]
+                by_v = has_reynolds * (by_r * r_v[near] + by_h * h_v[near])
+                gamma = has_reynolds * (by_r * r_s[near] + by_h * h_s[near])
+                blocks[b, V, V] += by_v
+                blocks[b, 0, V] += gamma * c
+                blocks[b, 0, 0] += has_poisson * laplacian[k]
             by[row, 2 * k], by[row, 2 * k + 1] = by_v, gamma
+        b = first + unsigned(places[row, OWN])
+        if kind[i] == PRESSURE:
+            blocks[b, V, 0] -= dx * dy
+        elif kind[i] == CONTACT:  # its row of the deflection is that of u
+            blocks[b, 0, 0] -= row_scale * c
+        elif kind[i] == BOUND:  # and here that of v
+            blocks[b, V, 0] -= dx * dy
+            blocks[b, 0, V] -= row_scale * c
+        else:
+            blocks[b, 0, 0] -= p_s[i] * c * dx * dy
