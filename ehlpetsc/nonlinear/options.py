@@ -43,7 +43,9 @@ PLANE = {
 # of a dry one: an error of a stiff layer's separation is one of its pressure a thousand times as large
 DRY_PLANE = {"ksp_rtol": "1e-6"}
 INNER_PREFIX = "pressure_"
-INNER = {  # of incomplete LU, on several ranks in slabs of rows with a few of their neighbours'
+# of PETSc's preconditioner of the pressures where the user has one, incomplete LU if nothing else: on several
+# ranks in slabs of rows with a few of their neighbours'
+INNER = {
     "pc_factor_levels": "1",
     "pc_asm_overlap": "4",
     "sub_pc_type": "ilu",

@@ -5,8 +5,8 @@ For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equati
 1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta g_b+b_g/s_g`, is put
    into the Reynolds rows (:mod:`.reduction`).
 2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and from the sparse form
-   (:mod:`.screened_poisson`) by PETSc's preconditioner of the user's options, ``-pc_type``, by default
-   incomplete LU. The border adds rows and columns.
+   (:mod:`.screened_poisson`) by its incomplete LU or by PETSc's preconditioner of the user's options,
+   ``-pc_type`` (:mod:`.factors`). The border adds rows and columns.
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
    exact but where pressure and separation depend on each other.
 
@@ -81,11 +81,11 @@ class SparseForm:
         self.has_petsc = is_complete or uses_petsc()
         self.overlap = 1 if self.has_petsc else min(OVERLAP, n_y)
         self.own, nodes = exchange.slab(self.overlap), len(self._at_hand(np.empty((1, problem.local)))[0])
-        self.rows = self.own if self.has_petsc else slice(0, nodes)  # that are factored, of those at hand
         self.factors: PETScFactors | IncompleteLU
-        self.factors = (
-            PETScFactors(problem, comm, is_complete) if self.has_petsc else IncompleteLU(self.n_x, nodes)
-        )
+        if self.has_petsc:
+            self.rows, self.factors = self.own, PETScFactors(problem, comm, is_complete)
+        else:
+            self.rows, self.factors = slice(0, nodes), IncompleteLU(self.n_x, nodes)
         self.of_rows = np.empty((self.rows.stop - self.rows.start, 2 * STENCIL), dtype=np.float32)
 
     def _at_hand(self, local: Sequence[np.ndarray]) -> Sequence[np.ndarray]:
@@ -103,11 +103,8 @@ class SparseForm:
         derivatives = self.exchange.window(derivatives, self.overlap)
         fill(whole, derivatives, self.term, scales, self.n_x, of_rows, factors.blocks, self.of_rows)
         factors.factor()
-        self.of_factors, self.kind, self.p_s = (
-            (whole[0][rows], whole[5][rows]),
-            whole[0][self.own],
-            whole[5][self.own],
-        )
+        self.of_factors = whole[0][rows], whole[5][rows]
+        self.kind, self.p_s = whole[0][self.own], whole[5][self.own]
         first = self.own.start - rows.start
         self.by = self.of_rows[first : first + p.local]
         self.no_pressure = reduction.kind != PRESSURE
