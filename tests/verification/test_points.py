@@ -38,7 +38,7 @@ def dry(changes, ellipticity, points, load_error=1e-10):
     tables = {key: tables[key] for key in ("title", "contact")}
     tables["mesh"] = DRY_MESH | {"points_per_half_width": points}
     tables["contact"]["radius"] = [R, R * radius_ratio(ellipticity)]
-    simulation = Simulation(load(tables), options={"snes_atol": 1e-9})
+    simulation = Simulation(load(tables), options={"snes_atol": 1e-10})
     state, s = simulation.advance(), simulation.scales
     assert s.b / s.a == pytest.approx(ellipticity, rel=1e-9)
     exact = np.sqrt(np.maximum(1.0 - s.grid.distance**2, 0.0))

@@ -137,7 +137,8 @@ class CoarseCorrection:
         self.ranks, self.restriction = ranks, functions[share.local].T.tocsr()
         self.functions = functions[share.window]
         self.deflections = deflections
-        stencils = derivatives.view(np.complex64)  # by pressure and separation: as fast as one of both
+        # by pressure and separation: as fast as one of both
+        stencils = derivatives.astype(np.float32, copy=False).view(np.complex64)
         both = (self.restriction @ space.matrix(stencils, share.local) @ functions).tocsr()
         matrix = global_sum(ranks, both.real.toarray() + both.imag @ deflections)
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved

@@ -2,8 +2,8 @@ r"""Factors of the sparse form of a contact in the plane: incomplete LU of this 
 
 A row of the sparse form has blocks of two unknowns at the nodes i-2 .. i+1, below and above. The incomplete
 LU keeps those that two of them bring, ILU(1), and no others: four to the left of the diagonal, four to the
-right. As places and order are known, no index is looked up: with single precision it takes an eighth of
-the time of PETSc's, and its solution half.
+right. As places and order are known, no index is looked up: in single precision it takes an eighth of the
+time of PETSc's, and its solution half.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ def uses_petsc() -> bool:
 
 
 class IncompleteLU:
-    """ILU(1) in single precision, of a rank's rows of nodes and `OVERLAP` on either side.
+    """ILU(1) of a rank's rows of nodes and `OVERLAP` on either side.
 
-    `n_x`, `nodes`: in a row; in all.
+    `n_x`, `nodes`: in a row; in all. `precision`: of the factors.
 
     `blocks`, `pointers`, `places`: to be filled in, see :func:`.screened_poisson.fill`.
     """
 
-    def __init__(self, n_x: int, nodes: int):
+    def __init__(self, n_x: int, nodes: int, precision: type):
         self.n_x = n_x
-        self.padded = np.zeros((n_x + nodes, BLOCKS, UNKNOWNS, UNKNOWNS), dtype=np.float32)
+        self.padded = np.zeros((n_x + nodes, BLOCKS, UNKNOWNS, UNKNOWNS), dtype=precision)
         self.blocks = self.padded[n_x:].reshape(-1, UNKNOWNS, UNKNOWNS)
         self.pointers = BLOCKS * np.arange(nodes + 1, dtype=np.int32)
         self.places = np.tile(np.array(OF_STENCIL, dtype=np.int8), (nodes, 1))
@@ -50,7 +50,7 @@ class IncompleteLU:
         for k in range(STENCIL):
             x, y = i % n_x + (k - OWN if k < OWN + 2 else 0), i // n_x + (2 * k - 9 if k > OWN + 1 else 0)
             self.places[(x < 0) | (x >= n_x) | (y < 0) | (y >= n_y), k] = -1
-        self.unknowns = np.zeros((nodes + 2 * n_x, UNKNOWNS), dtype=np.float32)
+        self.unknowns = np.zeros((nodes + 2 * n_x, UNKNOWNS), dtype=precision)
         self.b = self.unknowns[n_x:-n_x]
 
     def factor(self) -> None:

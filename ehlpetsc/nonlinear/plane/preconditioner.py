@@ -34,8 +34,15 @@ from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, PRESSURE, Reduction, reduction_of, unknowns_of
 from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fitted_term, put, taken
 
-MIN_SINGLE = 1e-5  # relative tolerance of GMRES from which on its deflections are of single precision, 1e-7
+# relative tolerance of GMRES from which on its deflections and factors are of single precision, 1e-7; a stiff
+# dry layer needs a lower one, and double precision
+MIN_SINGLE = 1e-5
 MAX_KEPT = 16  # iterations of GMRES up to which factors are kept
+
+
+def precision_of(operator: PlaneJacobian) -> type:
+    """Precision of the deflections and factors for the linear tolerance of an operator."""
+    return np.float32 if operator.linear_rtol >= MIN_SINGLE else np.float64
 
 
 class EliminatedFilm:
@@ -63,6 +70,7 @@ class SparseForm:
     """Sparse form with its factors.
 
     `term`: of the deflection, see :func:`.screened_poisson.fitted_term`.
+    `precision`: of incomplete factors.
     `is_complete`: whether the factors are complete, whatever the options; for oil so viscous that the
         pivots of incomplete ones vanish.
 
@@ -73,10 +81,16 @@ class SparseForm:
     """
 
     def __init__(
-        self, problem: EHLProblem, exchange: PlaneExchange, term: tuple, comm: PETSc.Comm, is_complete: bool
+        self,
+        problem: EHLProblem,
+        exchange: PlaneExchange,
+        term: tuple,
+        comm: PETSc.Comm,
+        precision: type,
+        is_complete: bool,
     ):
         self.problem, self.exchange, self.term = problem, exchange, term
-        self.is_complete = is_complete
+        self.precision, self.is_complete = precision, is_complete
         n_y, self.n_x = problem.grid.shape
         self.has_petsc = is_complete or uses_petsc()
         self.overlap = 1 if self.has_petsc else min(OVERLAP, n_y)
@@ -85,8 +99,8 @@ class SparseForm:
         if self.has_petsc:
             self.rows, self.factors = self.own, PETScFactors(problem, comm, is_complete)
         else:
-            self.rows, self.factors = slice(0, nodes), IncompleteLU(self.n_x, nodes)
-        self.of_rows = np.empty((self.rows.stop - self.rows.start, 2 * STENCIL), dtype=np.float32)
+            self.rows, self.factors = slice(0, nodes), IncompleteLU(self.n_x, nodes, precision)
+        self.of_rows = np.empty((self.rows.stop - self.rows.start, 2 * STENCIL), dtype=precision)
 
     def _at_hand(self, local: Sequence[np.ndarray]) -> Sequence[np.ndarray]:
         """Arrays of the local nodes with the rows of neighbours that the factors need."""
@@ -199,7 +213,9 @@ class Elimination:
         is_complete |= self.form is not None and self.form.is_complete
         if self.form is None or self.form.is_complete != is_complete:
             self.form = self.factors = None  # freed before the next one
-            self.form = SparseForm(p, operator.exchange, self.term, self.comm, is_complete)
+            self.form = SparseForm(
+                p, operator.exchange, self.term, self.comm, precision_of(operator), is_complete
+            )
         sparse = self.form
         sparse.set_up(self.reduction, operator.reynolds_derivatives)
         mask = self._gathered(sparse.kind == PRESSURE)
@@ -219,7 +235,7 @@ class Elimination:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes, and forces; see :meth:`SparseForm.solve`."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        changes = np.zeros((p.local, 2), dtype=np.float32)
+        changes = np.zeros((p.local, 2), dtype=sparse.precision)
         changes[:, 1] = separation
         given = operator.exchange.window(changes)
         reynolds = reynolds - p.reynolds.product(sparse.by, given, p.owned.start)
@@ -252,7 +268,7 @@ class Elimination:
         border = p.balance.change(exchange.border(full), forces, by_unit)
         for change, (by_pressure, by_r, _) in zip(border, of_border, strict=True):
             pressure, r = pressure + change * by_pressure, r + change * by_r
-        sums = exchange.sums(pressure, np.float32 if operator.linear_rtol >= MIN_SINGLE else np.float64)
+        sums = exchange.sums(pressure, precision_of(operator))
         separation = sums.deflection + p.balance.gap(border, p.share.local) + b_g
         out, back = np.empty(operator.size), np.ascontiguousarray(self.reduction.back[:, p.owned])
         out[:local] = unknowns_of(sparse.kind, back, pressure, r, separation).ravel()
