@@ -8,8 +8,6 @@ time of PETSc's, and its solution half.
 
 from __future__ import annotations
 
-import ctypes
-
 import numpy as np
 from petsc4py import PETSc
 
@@ -175,7 +173,7 @@ class PETScFactors:
     """
 
     def __init__(self, problem: EHLProblem, comm: PETSc.Comm, is_complete: bool):
-        self.problem, local, block = problem, problem.local, UNKNOWNS
+        local, block = problem.local, UNKNOWNS
         self.pointers = np.empty(local + 1, dtype=np.int32)
         self.places = np.empty((local, STENCIL), dtype=np.int8)
         columns = np.empty(local * STENCIL, dtype=np.int32)
@@ -186,6 +184,7 @@ class PETScFactors:
         self.matrix = PETSc.Mat().createBAIJ(
             (sizes, sizes), block, csr=(self.pointers, self.columns), comm=comm
         )
+        self.matrix.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
         if is_complete:
@@ -198,41 +197,15 @@ class PETScFactors:
         self.right, self.left = self.matrix.createVecs()
         self._petsc_objects = owned(self, self.matrix, self.pc, self.right, self.left)
         self.b = self.right.array.reshape(local, block)
-        self.parts = self._parts()
-        self.is_split = len(self.parts) > 1
-        self.blocks = np.empty((count, block, block)) if self.is_split else self.parts[0]
+        self.blocks = np.empty((count, block, block))
 
     def factor(self) -> None:
         """Factor the blocks."""
-        if self.is_split:
-            for part, places in zip(self.parts, self.split, strict=True):
-                np.take(self.blocks, places, axis=0, out=part, mode="clip")  # else into a copy of `part`
-        self.matrix.stateIncrease()
+        self.matrix.setValuesBlockedCSR(self.pointers, self.columns, self.blocks)
+        self.matrix.assemble()
         self.pc.setUp()
 
     def solve(self) -> np.ndarray:
         """Unknowns of the local nodes, (nodes, 2), for the right-hand side `b`."""
         self.pc.apply(self.right, self.left)
         return self.left.array_r.reshape(-1, UNKNOWNS)
-
-    def _parts(self) -> list[np.ndarray]:
-        """PETSc's own arrays of the blocks, in the order of the columns: on one rank all; else own, others.
-
-        `setValuesBlocked` looks up the place of each block and copies it, which takes longer than filling it
-        in. By MatMPIBAIJGetSeqBAIJ and MatSeqBAIJGetArray, which petsc4py lacks.
-        """
-        library, whole = ctypes.CDLL(PETSc.__file__), ctypes.c_void_p(self.matrix.handle)
-        parts, counts = [whole], [len(self.columns)]
-        if self.matrix.comm.size > 1:
-            own, others, unused = (ctypes.c_void_p() for _ in range(3))
-            library.MatMPIBAIJGetSeqBAIJ(whole, *map(ctypes.byref, (own, others, unused)))
-            is_own = (self.columns >= self.problem.first) & (self.columns < self.problem.last)
-            self.split = np.flatnonzero(is_own), np.flatnonzero(~is_own)
-            parts, counts = [own, others], [len(places) for places in self.split]
-        found = []
-        for part, count in zip(parts, counts, strict=True):
-            values = ctypes.POINTER(ctypes.c_double)()
-            library.MatSeqBAIJGetArray(part, ctypes.byref(values))
-            found.append(np.ctypeslib.as_array(values, (int(count), UNKNOWNS, UNKNOWNS)))
-            library.MatSeqBAIJRestoreArray(part, ctypes.byref(values))
-        return found
