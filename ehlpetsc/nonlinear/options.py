@@ -163,7 +163,7 @@ class RunOptions:
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
         defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PLANE, *PETSC_FACTORISATION, "snes_atol"}
-        defaults |= {INNER_PREFIX + name for name in INNER}
+        defaults |= {INNER_PREFIX + name for name in {*INNER, *self.given}}
         of_run = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
@@ -185,6 +185,8 @@ class RunOptions:
 
     def _leave(self, table: PETSc.Options) -> None:
         self.unused = {name for name in self.unused if not was_read(name)} - set(self.deferred_views)
+        for name in filter(was_read, self.given):
+            table.hasName(name)  # marks it as read, which so far may be its copy with the prefix alone
         for name in self._entered:
             table.delValue(name)
         for name, value in self._saved.items():

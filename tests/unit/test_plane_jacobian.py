@@ -123,9 +123,21 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name):
     assert (residual - b).norm() < 1.01e-6 * b.norm()
 
 
-def prepared(system, state, inputs, given):
+def test_read_options_of_the_pressures_are_not_called_unused():
+    table, options = PETSc.Options(), RunOptions(kind="point")
+    for name in ("pc_factor_levels", "pc_factor_levls"):
+        table[name] = "2"
+    try:
+        prepared(*scene("layer"), {}, options)
+        assert options.unused_so_far() == {"pc_factor_levls"}
+    finally:
+        for name in ("pc_factor_levels", "pc_factor_levls"):
+            table.delValue(name)
+
+
+def prepared(system, state, inputs, given, options=None):
     """Elimination with the factors of a state, with some options."""
-    options = RunOptions(given=given, kind="point")
+    options = options or RunOptions(given=given, kind="point")
     with options:
         NewtonSolver(system, options)
         system.set_initial_guess(state, inputs)
