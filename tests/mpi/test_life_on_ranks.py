@@ -20,10 +20,30 @@ SHORT = {
     "surface.2.scale": 1.0,
     "wear.coefficient": 1e-17,
 }
+WAVES = {
+    "kind": "self-affine",
+    "sq": 1e-6,
+    "hurst": 0.8,
+    "roll_off": 250e-6,
+    "short_cutoff": 120e-6,
+    "seed": 1,
+}
 LIVES = {
     "line": {"mesh.points_per_half_width": 20},
     "positions": {"time.pass_shift": 50e-6, "life.partners": 3},
-    "strip": {"mesh.width": 1.5},  # with rows for three ranks
+    # With rows for three ranks, which differ. To the last digits: damage is a high power of the stress,
+    # and jumps where another plane, or another loop of it, becomes the worst
+    "strip": {
+        "mesh.width": 1.5,
+        "mesh.inlet": -1.6,
+        "mesh.outlet": 1.6,
+        "time.travel": 5.0,
+        "surface.1.file": None,
+        "surface.1.scale": None,
+        "surface.1.synthetic": WAVES,
+        "petsc.snes_atol": "1e-11",
+        "petsc.ksp_rtol": "1e-9",
+    },
 }
 
 
