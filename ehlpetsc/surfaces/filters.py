@@ -122,8 +122,8 @@ def no_data_value(z: np.ndarray) -> float | None:
     """Placeholder for missing heights, far from all its neighbours, as 9999 or 0; None if there is none.
 
     Candidates are the minimum, the maximum, 0 and the most frequent value, if they occur at least
-    `MIN_REPEATS` times. A value at more than half of the points is a plateau, not a placeholder. Other
-    values are compared with the neighbours of their runs; nan in `z` does not count as a neighbour.
+    `MIN_REPEATS` times. A value that more than half of the points have is a plateau. All others are compared
+    with the neighbours of their runs; nan in `z` does not count as a neighbour.
     """
     finite = z[np.isfinite(z)]
     values, counts = np.unique(finite, return_counts=True)

@@ -65,7 +65,7 @@ def taken(
     """Pressures and Reynolds unknowns of a solution of the right-hand side by :func:`put`.
 
     `term`: c, square of s. `spacings`: dy, dx.
-    `u`: of all nodes at hand. `own`: nodes in a row; the first of the others' nodes among them.
+    `u`: solution at the nodes of the rank and in rows beyond. `own`: nodes in a row; first node of the rank.
     """
     (c, s_2), (dy, dx), (n_x, first) = term, spacings, own
     pressure, r, mesh = np.empty(len(kind)), np.empty(len(kind)), (n_x, len(u), False)
@@ -144,7 +144,7 @@ def fill(
     blocks: np.ndarray,
     by: np.ndarray,
 ) -> None:
-    """Fill in the blocks of the rows of some of the nodes at hand.
+    """Fill in the blocks of consecutive rows.
 
     `reduction`: kind, r_v, r_s, h_v, h_s, p_s of the nodes.
     `derivatives`: of the Reynolds rows of the nodes, (nodes, 12).
