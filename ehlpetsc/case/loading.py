@@ -185,7 +185,8 @@ def _checked(
         faults.append(Fault("motion", NO_SPEEDS, bool(unsound) or "gears" in data or "operation" in data))
     case, found = check(in_kind(CASE, kind), data, known=known, is_sound=not unsound and not faults)
     if case:
-        case = with_layer_stiffness(case.copy({"_kind": kind, "_conditions": conditions}))
+        case = case.copy({"_kind": kind, "_conditions": conditions})
+        case = case if faults else with_layer_stiffness(case)  # which needs speeds
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
         faults += [Fault("mesh", line) for line in reversed_flow]
         faults += contact_faults(cast(Case, case), data) if case.contact and case.mesh else []

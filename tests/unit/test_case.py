@@ -151,6 +151,9 @@ def test_missing_tables_and_keys_of_another_kind_are_named(write, tmp_path):
     assert [line.split(": ")[1].split()[0] for line in found] == ["title", "contact", "mesh"]
     line = fault(write("[motion]\nentrainment_speed = 5.0          # m/s, mean\nslide_roll_ratio = 0.25\n"))
     assert line.split(": ")[1].startswith("motion ") and "missing" in line
+    layer = {name: table for name, table in tomllib.loads(POINT).items() if name not in ("motion", "wear")}
+    layer |= {"contact": layer["contact"] | {"asperity_height": 1e-8}}
+    assert "motion is missing" in one_fault(load, layer)
     wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
     named = [line.partition(": surface.2.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)]
     assert named == ["wavelength", "ra"]
