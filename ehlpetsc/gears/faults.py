@@ -7,12 +7,14 @@ import math
 import numpy as np
 
 from ehlpetsc.gears.geometry import GearPair, involute
+from ehlpetsc.gears.load_sharing import single_stiffness
 
 SHIFT_TOLERANCE = 0.02  # of the module: centre distance, tip diameters against those of the profile shift
 MAX_CONTACT_RATIO = 3  # above it four pairs would share the load
 MIN_TIP_THICKNESS = 0.2  # of the module: thinner tips chip
 LOAD_RATIO = 2 / 3, 3 / 2  # of given loads to that of the torque: room for dynamic and face load factors
 FITTING_LOAD_RATIO = 0.9, 1.1  # without a note
+MAX_BENDING = 0.1  # of the module: teeth break far below it
 FLANK_NAMES = "pinion", "wheel"
 
 
@@ -122,7 +124,14 @@ def _faults_of_the_tips(pair: GearPair) -> list[str]:
 
 
 def _faults_of_the_load(pair: GearPair) -> list[str]:
-    """Given loads at positions off the line of action, or that do not fit the torque."""
+    """A torque that breaks teeth, given loads at positions off the line of action or unlike the torque."""
+    bending = pair.normal_load / single_stiffness(pair)
+    if not bending <= MAX_BENDING * pair.module:
+        of = f"module = {pair.module:g} and face_width = {pair.face_width:g} m"
+        return [
+            f"torque = {pair.torque:g}: a tooth pair of {of} bends by {1e3 * bending:.3g} mm; allowed: at "
+            f"most {MAX_BENDING:g} modules; are all in SI units?"
+        ]
     if pair.load is None:
         return []
     longest = abs(pair.line_of_action) + (pair.points["E"] if pair.internal else 0.0)

@@ -430,6 +430,7 @@ def test_values_that_follow_from_gears_are_refused(case, key):
         ({"tip_diameter": [60e-3, 118.4e-3]}, ["tip_diameter = 0.06 of the pinion: ", " 0.067658 m"]),
         ({"tip_diameter": [82.5e-3, 130e-3]}, ["tip_diameter: ", "(interference)", " wheel: below 0.1232 m"]),
         ({"centre_distance": 80e-3}, ["centre_distance = 0.08: ", " 0.084572 m"]),
+        ({"torque": 302e3}, ["torque = 302000: ", "module = 0.0045", " bends by 51.8 mm", "0.1 modules"]),
         ({"load_sharing": "tip-relief"}, ["tip_relief ", "missing"]),
         ({"load_sharing": "thirds", "helix_angle": 10.0}, ['"thirds"', '"stiffness"']),
         ({"centre_distance": None}, ["centre_distance missing", "profile_shift"]),
