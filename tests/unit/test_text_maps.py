@@ -62,6 +62,11 @@ MAPS = {
     "list, units": ("X[mm] Y[mm] Z[um]\n" + points(MM * X, MM * Y, form="{:.6f} {:.6f} {:.5f}\n"), {}),
     "list, empty lines": ("\n".join(points().splitlines()[k] for k in range(384)), {"unit": "um"}),
     "list of numbers": (points(np.arange(24), np.arange(16)), BOTH),
+    "list named y x z": ("Y X Z\n" + points(form="{1:.4f} {0:.4f} {2:.5f}\n"), {"unit": "um"}),
+    "list with other columns": ("n x y z I\n" + points(form="7 {:.4f} {:.4f} {:.5f} 255\n"), {"unit": "um"}),
+    "header of sizes along and across": ("Scan size: 60 um x 64 um\nZ unit: um\n" + matrix(), {}),
+    "header of steps along and across": ("Pixel size: 2500 nm x 4 um\n" + matrix(), {"unit": "um"}),
+    "header of steps in one line": ("dx = 2.5 um, dy = 4 um\n" + matrix(), {"unit": "um"}),
     "header of Gwyddion": (
         f"# Channel: Height\n# Width: {24 * 2.5} µm\n# Height: {16 * 4.0} µm\n# Value units: um\n" + matrix(),
         {},
@@ -135,7 +140,19 @@ def test_random_heights_are_no_positions_and_those_of_a_binary_matrix_are_read(t
 TWO, POSITIONED = matrix() + "\n" + matrix(), matrix("y", MM * X, MM * Y)
 UM_UNIT = {"unit": "um"}
 UNEQUAL = "^its first line rises or falls as positions do, but at unequal steps; "
+MISPLACED = "^the {} of its heights holds positions or numbers; "
 REFUSED = {
+    "positions in the last column": (
+        "".join(f"{line}\t{y:.6g}\n" for line, y in zip(matrix().splitlines(), UM * Y, strict=True)),
+        BOTH,
+        MISPLACED.format("last column"),
+    ),
+    "positions in the last line": (matrix() + "\t".join(words(UM * X)), BOTH, MISPLACED.format("last line")),
+    "numbers above positions": (
+        "\t".join(words(NUMBERS_X)) + "\n" + matrix(x=UM * X),
+        BOTH,
+        MISPLACED.format("first line"),
+    ),
     "second block": (TWO, BOTH, "^line 18: a second block behind an empty line; .* header_lines = 17 "),
     "second block with a heading": (matrix() + "\nIntensity\n" + matrix(), BOTH, "^line 18: a second block "),
     "narrower second block": (matrix() + "\n\n" + matrix(z=Z[:, :9]), BOTH, "^line 19: a second block "),

@@ -51,7 +51,7 @@ def is_map(path: str | PathLike, layout: Layout) -> bool:
     if not path.is_file():
         return False
     columns, header = _columns_of(path, layout)
-    return listed(columns) is not None or is_matrix(columns, header, layout)
+    return listed(columns, header) is not None or is_matrix(columns, header, layout)
 
 
 @read_once
@@ -73,7 +73,7 @@ def read_map(path: Path, layout: Layout) -> Map:
 def _matrix(path: Path, layout: Layout) -> Map:
     if path.suffix.lower() != ".npy":
         columns, header = _columns_of(path, layout)
-        return Map(*in_metres(listed(columns) or with_axes(columns.T, header), header, layout))
+        return Map(*in_metres(listed(columns, header) or with_axes(columns.T, header), header, layout))
     z = by_package("numpy", _by_numpy, path, "")
     if z.dtype.kind not in "fiu":
         raise ProfileError(f"numbers of type {z.dtype}; allowed: real numbers")

@@ -135,7 +135,7 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
 def _check_map(columns: np.ndarray, header: str, chosen: tuple[int, ...]) -> None:
     """Refuse a map of heights as a profile: none of its columns is x, a trace across is short."""
     count, lines = columns.shape
-    if found := listed(columns):
+    if found := listed(columns, header):
         size = "x y z of {1} x {0} points".format(*found.z.shape)
     elif count >= MIN_MATRIX_COLUMNS and (
         lines < min(count, MIN_MEASURED_POINTS) if len(chosen) == 1 else has_no_x(columns, chosen[0] - 1)

@@ -15,6 +15,7 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.files.text import NUMBER, UNIT_OF_NAME, UNITS, Layout, units_in
 
 MIN_POINTS = 4  # along either side
+MAX_LISTED = 6  # columns of a list of x y z with others
 MIN_MATRIX_COLUMNS = 8  # of heights alike, where no spacing is stated
 LONG = 8  # points of a line that rises by chance in one of 20,000
 MIN_PRESENT = 0.5  # of the heights of a map, of the points of a grid in a list
@@ -38,15 +39,17 @@ UNIT_OF_X = re.compile(
     rf"|(?<![a-z])(?:x|y)\s*[\[(/]\s*({NAME})\s*(?:[\])]|$)",
     re.IGNORECASE | re.MULTILINE,
 )
+LENGTH = rf"(\d+(?:[.,]\d+|\.)?(?:e[+-]?\d+)?)\s*\"?\s*(?:[\[(]?({NAME})\b)?"
 ENTRY = re.compile(
-    rf"^[^\w\n]*([a-z][a-z _.-]*?)\s*(?:[\[(/]\s*({NAME})\s*[\])]?)?\s*[:=,;\t ]\s*\"?"
-    rf"(\d+(?:[.,]\d*)?(?:e[+-]?\d+)?)\s*\"?\s*(?:[\[(]?({NAME})\b)?",
+    rf"(?:^|,)[^\w\n]*([a-z][a-z _.-]*?)\s*(?:[\[(/]\s*({NAME})\s*[\])]?)?\s*[:=,;\t ]\s*\"?"
+    rf"{LENGTH}(?:\s*[x*\u00d7]\s*{LENGTH})?",
     re.IGNORECASE | re.MULTILINE,
-)  # name [unit] = number unit
+)  # name [unit] = number unit, or number unit x number unit
 STEP_NAMES = set(
     """step stepsize stepwidth spacing pointspacing pixelsize pixelwidth pixelspacing cellsize
 increment pitch d delta lateralresolution resolution sampling samplinginterval interval""".split()
 )
+SIZES = {"size", "scansize", "area", "scanarea"}  # along x times along y
 EXTENTS = {"": {"width": "x", "scanwidth": "x", "scansize": "x", "height": "y", "scanheight": "y"}}
 EXTENTS |= {axis: dict.fromkeys(("length", "range", "extent", "size", "width"), axis) for axis in "xy"}
 
@@ -57,17 +60,35 @@ class TextMap(NamedTuple):
     `z`: heights, shape (ny, nx).
     `x`, `y`: positions of the columns and of the rows; None: not in the file.
     `is_list`: whether they are a list of x y z.
+    `note`: on columns that are left out.
     """
 
     z: np.ndarray
     x: np.ndarray | None
     y: np.ndarray | None
     is_list: bool = False
+    note: str = ""
 
 
-def listed(columns: np.ndarray) -> TextMap | None:
-    """Map of a list of x y z, in any order, nan where a point of the grid is missing; None: no such list."""
-    if len(columns) != 3 or np.isnan(columns[:2]).any():
+def listed(columns: np.ndarray, header: str = "") -> TextMap | None:
+    """Map of a list of x y z, in any order, nan where a point of the grid is missing; None: no such list.
+
+    The columns are in the order of their names in the last line of the header. A few columns beside them,
+    numbers of the points or intensities, are left out.
+    """
+    order = re.findall(r"(?<![a-z])[xyz](?![a-z])", header.rstrip().rpartition("\n")[2].lower())
+    places = list(map(order.index, "xyz")) if sorted(order) == list("xyz") else [0, 1, 2]
+    for first in range(len(columns) - 2 if len(columns) <= MAX_LISTED else 0):
+        chosen = columns[first : first + 3]
+        if found := _grid_of(chosen[places], are_all=len(columns) == 3):
+            used = f"x y z: columns {first + 1} to {first + 3}, the others are left out"
+            return found if len(columns) == 3 else found._replace(note=used)
+    return None
+
+
+def _grid_of(columns: np.ndarray, are_all: bool) -> TextMap | None:
+    """Map of columns x, y and z; `are_all`: the list has no other ones, and a point twice is a fault."""
+    if np.isnan(columns[:2]).any():
         return None
     axes, places = [], []
     for values in columns[:2]:
@@ -81,6 +102,8 @@ def listed(columns: np.ndarray) -> TextMap | None:
     z = np.full((len(y), len(x)), np.nan)
     z[places[1], places[0]] = columns[2]
     if len(np.unique(places[1] * len(x) + places[0])) < count:
+        if not are_all:
+            return None
         raise ProfileError("x y z: a point is in it twice; allowed: every point of the grid once")
     return TextMap(z, x, y, True)
 
@@ -96,7 +119,7 @@ def is_matrix(columns: np.ndarray, header: str, layout: Layout) -> bool:
 
 def has_positions(columns: np.ndarray, header: str) -> bool:
     """Whether positions are above the columns; numbers alone may be those of profiles beside each other."""
-    _, x, y, _ = with_axes(columns.T, header)
+    _, x, y, *_ = with_axes(columns.T, header)
     return x is not None and not (_are_numbers(x) and (y is None or not _are_numbers(y)))
 
 
@@ -115,9 +138,9 @@ def with_axes(z: np.ndarray, header: str) -> TextMap:
     """
     x, y = _axis_in(header, z.shape[1]), None
     is_named = bool(np.isnan(z[:, 0]).all())  # rows with words in front
-    if x is None and _is_axis(z[0, 1:], z[1:, 1:], "line"):
+    if x is None and _is_axis(z[0, 1:], z[1:, 1:], "first line"):
         x, z = z[0], z[1:]
-    if is_named or _is_axis(z[:, 0], z[:, 1:].T, "column") or x is not None and len(x) < z.shape[1]:
+    if is_named or _is_axis(z[:, 0], z[:, 1:].T, "first column") or x is not None and len(x) < z.shape[1]:
         y, z = None if is_named else z[:, 0], z[:, 1:]
         x = x if x is None else x[-z.shape[1] :]
     for axis, place in ((x, "first line"), (y, "first column")):
@@ -127,6 +150,17 @@ def with_axes(z: np.ndarray, header: str) -> TextMap:
                 "heights alone, with header_lines = lines above them"
             )
     return TextMap(z, x, y)
+
+
+def _check_borders(z: np.ndarray) -> None:
+    """Refuse a matrix with positions in a line or column that is not the first, or in a second one."""
+    borders = {"first line": z, "last line": z[::-1], "first column": z.T, "last column": z.T[::-1]}
+    for place, heights in borders.items():
+        if _is_axis(heights[0], heights[1:], place):
+            raise ProfileError(
+                f"the {place} of its heights holds positions or numbers; allowed: one line of them above the "
+                "heights and one column before them; delete the others"
+            )
 
 
 def _axis_in(header: str, width: int) -> np.ndarray | None:
@@ -166,7 +200,7 @@ def _is_axis(line: np.ndarray, others: np.ndarray, place: str) -> bool:
         return bool(is_uneven) and not (is_inclined or is_next)
     if is_long and np.isinf(unevenness).mean() > 0.5 and jumps[0] > JUMP_RATIO * usual:
         raise ProfileError(
-            f"its first {place} rises or falls as positions do, but at unequal steps; allowed: equally "
+            f"its {place} rises or falls as positions do, but at unequal steps; allowed: equally "
             "spaced positions, or heights alone"
         )
     return False
@@ -194,15 +228,21 @@ def spacings_in(header: str, shape: tuple[int, ...], x_unit: str | None) -> dict
     `x_unit`: of steps without a unit; None: they are not read.
     """
     found: dict[str, float] = {}
-    for name, unit_before, number, unit_behind in ENTRY.findall(header):
+    for name, unit_before, number, unit_behind, number_y, unit_y in ENTRY.findall(header):
         words = re.findall("[a-z]+", re.sub("d([xy])", r"d \1", name.lower()))
         axes = [word for word in words if word in ("x", "y")]
         rest = "".join(word for word in words if word not in ("x", "y", "of", "in"))
-        unit = UNIT_OF_NAME.get((unit_before or unit_behind).lower(), x_unit if rest in STEP_NAMES else None)
-        if unit is None or len(axes) > 1:
+        name_of_unit = (unit_before or unit_behind or unit_y).lower()
+        unit = UNIT_OF_NAME.get(name_of_unit, x_unit if rest in STEP_NAMES else None)
+        if unit is None or len(axes) > 1 and not number_y:
             continue
         value = UNITS[unit] * float(number.replace(",", "."))
-        if rest in STEP_NAMES:
+        if number_y:
+            both = value, UNITS[UNIT_OF_NAME.get(unit_y.lower(), unit)] * float(number_y.replace(",", "."))
+            cells = (1, 1) if rest in STEP_NAMES else shape[::-1]
+            if rest in STEP_NAMES | SIZES:
+                found |= {axis: size / n for axis, size, n in zip("xy", both, cells, strict=True)}
+        elif rest in STEP_NAMES:
             found |= dict.fromkeys(axes or ("x", "y"), value)
         elif axis := EXTENTS["".join(axes)].get(rest):
             found.setdefault(axis, value / shape[axis == "x"])
@@ -213,7 +253,9 @@ def in_metres(
     found: TextMap, header: str, layout: Layout
 ) -> tuple[np.ndarray, float, float, tuple[str, ...]]:
     """Heights [m], distances of columns and rows [m], and notes, of a map in a text file."""
-    z, x, y, is_list = found
+    z, x, y, is_list, note = found
+    if not is_list:
+        _check_borders(z)
     unit, x_unit = (
         stated or next((UNIT_OF_NAME[(a or b).lower()] for a, b in pattern.findall(header)), None)
         for stated, pattern in ((layout.unit, UNIT_OF_HEIGHTS), (layout.x_unit, UNIT_OF_X))
@@ -236,7 +278,7 @@ def in_metres(
             "positions; spacing is in m)"
         )
     metres = UNITS[x_unit] if x_unit else None
-    distances, notes = [], []
+    distances, notes = [], [note] if note else []
     for axis, is_number, stated, key, place in (
         (x, numbered[0], layout.spacing, "spacing", "first line: {} of the columns"),
         (y, numbered[1], layout.spacing_across, "spacing_across", "first column: {} of the rows"),
