@@ -92,7 +92,7 @@ def contact_films(
     groups = fluid.viscosity, speed, fluid.pressure_viscosity, load, radius, modulus
     incompressible, lowest, p0 = geometry.smooth_films(*groups, radius_ratio)
     ratio = 1.0 / float(density(np.array([p0]), fluid)[0][0])
-    return incompressible * ratio, lowest * incompressible * ratio**0.25
+    return incompressible * ratio, incompressible * min(ratio, lowest * ratio**0.25)
 
 
 def inlet_opening(film: float, points: float) -> float:

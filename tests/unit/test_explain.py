@@ -156,6 +156,10 @@ def test_predicted_iterations_within_a_factor_of_one_and_a_half(name, overrides,
         (["contact.radius=12"], r"p0 = 0\.0399 GPa: .* 0\.1 to 10 GPa; radius = 12"),
         (["fluid.viscosity=15"], r"film, 49\.5 um, .* 336 um: viscosity = 15 Pa s"),
         (["fluid.law='barus'"], r'^fluid\.reference_viscosity, fluid\.roelands_pressure: .* law = "barus"'),
+        (
+            ["fluid={oil='fva3', pressure_viscosity=1e-8}"],
+            r'^fluid\.pressure_viscosity = 1e-08: not used by law = "modulus", whose constants give 2\.2',
+        ),
         (["fluid.density='incompressible'"], r'^fluid\.gamma, fluid\.lambda: .* density = "incompressible"$'),
     ],
 )

@@ -252,6 +252,22 @@ def test_conductivity_about_doubles_in_a_gigapascal():
 
 GRADE = {"fluid.grade": {"v40": 220e-6, "v100": 19e-6, "density": 880.0}}
 LEFT_OUT = {"fluid.viscosity": None, "fluid.pressure_viscosity": None}
+
+
+def test_films_by_formulas_have_the_coefficient_of_the_law():
+    coefficients = []
+    for given in ({}, {"pressure_viscosity": 1e-8}):
+        coefficients.append(load(CASE, {"fluid": {"oil": "fva3"} | given}).fluid.pressure_viscosity)
+    assert coefficients[0] == pytest.approx(22.36e-9, rel=1e-3) == coefficients[1]
+
+
+@pytest.mark.parametrize("missing", ["gamma", "lambda"])
+def test_one_constant_of_the_density_law_alone_is_refused(missing):
+    given = {"fluid.oil": "fva3", "fluid.gamma": 2e-9, "fluid.lambda": 1e-9} | {f"fluid.{missing}": None}
+    oil = {"fluid": {"oil": "fva3"}}
+    assert f"fluid.{missing} is missing" in one_fault(load, CASE, oil | given)
+
+
 BARUS = {"fluid.law": "barus", "fluid.reference_viscosity": None, "fluid.roelands_pressure": None}
 ROELANDS = {"fluid.law": "roelands", "fluid.reference_viscosity": None}
 

@@ -144,13 +144,16 @@ def _complete_modulus(fluid: FluidValues) -> dict[str, float]:
 
 
 def _complete_with_slope(fluid: FluidValues) -> dict[str, float]:
-    """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure."""
+    """Pressure-viscosity coefficient of a law that needs all its keys, its slope at ambient pressure.
+
+    It takes the place of one that is given, which films of formulas would have and the run would not.
+    """
     law = LAWS[fluid.law]
     for name in law.keys:
         if getattr(fluid, name) is None:
             raise Refused("", name)
     slope = law(0.0, reference_temperature(fluid), law.constants(fluid, None))[1]
-    return {"pressure_viscosity": fluid.pressure_viscosity or float(slope)}
+    return {"pressure_viscosity": float(slope)}
 
 
 LAWS = {
@@ -277,10 +280,11 @@ DENSITY_CONSTANTS = {"gamma": 2.3e-9, "lambda_": 1.7e-9}  # 1/Pa
 
 
 def _complete_density(fluid: FluidValues) -> dict[str, float]:
-    values = {
-        name: default if getattr(fluid, name) is None else getattr(fluid, name)
-        for name, default in DENSITY_CONSTANTS.items()
-    }
+    values = {name: getattr(fluid, name) for name in DENSITY_CONSTANTS}
+    missing = [name for name, value in values.items() if value is None]
+    if len(missing) == 1:  # the default of one is no companion of another value
+        raise Refused("", missing[0].rstrip("_"))
+    values = DENSITY_CONSTANTS if missing else values
     if values["lambda_"] > values["gamma"]:  # the density would fall with pressure
         raise Refused("", "lambda")
     return values

@@ -31,6 +31,7 @@ MIN_YIELD_PRESSURE = 0.25  # of p0: softer solids yield as a whole
 ASPERITY_YIELD_PRESSURE = 5e9  # Pa: asperities of hardened steel flow at 5 to 8 GPa
 MAX_MEASURED_VISCOSITY = 1e7  # Pa s: about the highest measured viscosity of oils
 MAX_MASS_ERROR = 0.05  # of the oil in the contact
+SAME_COEFFICIENT = 1e-3  # relative, of pressure-viscosity coefficients
 MAX_OIL_FRICTION = 0.15  # shear stress of oils over their pressure: up to about 0.1
 # temperatures [K] above which: round numbers without a source; a flash does less than a furnace
 MAX_STEEL = 800.0, "hardened steel softens"
@@ -116,6 +117,12 @@ def _oil_warnings(case: Case) -> Iterator[str]:
     given = {name for name, key in of_laws.items() if getattr(fluid, attribute(name)) != key.default}
     in_use = [laws[name] for laws, name in zip(LAW_TABLES, names_in_use(fluid), strict=True)]
     unused = sorted(f"fluid.{name}" for name in given.difference(*(law.keys for law in in_use)))
+    coefficient = case._tables["fluid"].get("pressure_viscosity")
+    if coefficient is not None and abs(fluid.pressure_viscosity / coefficient - 1.0) > SAME_COEFFICIENT:
+        yield (
+            f'fluid.pressure_viscosity = {coefficient:g}: not used by law = "{fluid.law}", whose constants '
+            f"give {fluid.pressure_viscosity:.3g} 1/Pa"
+        )
     if unused:
         yield f'{", ".join(unused)}: not used by law = "{fluid.law}", density = "{fluid.density}"'
 
