@@ -84,11 +84,11 @@ SMOOTHED = {  # waves down to 100 um and a layer of 60 nm: what a/25 resolves
 
 @pytest.mark.slow
 def test_share_friction_and_lengths_converge():
-    """Second order on a/40, a/80 and a/160, a node a step; the limit by Richardson's extrapolation.
+    """Second order on a/25, a/50 and a/100, a node a step; the limit by Richardson's extrapolation.
 
-    On a/50 and a/100, half a node a step, the limits for order 1.98 are .3141, .03526 and .0866.
+    At half a node a step on a/50 and a/100 the limits for order 1.98 are .3141, .03526 and .0866.
     """
-    meshes = [SMOOTHED | NODE_A_STEP | {"mesh.points_per_half_width": points} for points in (40, 80, 160)]
+    meshes = [SMOOTHED | NODE_A_STEP | {"mesh.points_per_half_width": points} for points in (25, 50, 100)]
     runs = [run(RESOLVED | mesh, {"snes_atol": 1e-9}, sigma=60e-9) for mesh in meshes]
     for found in runs:
         assert found["retries"].sum() == 0 and found["newton"][1:].mean() < 7.0
@@ -106,9 +106,9 @@ def test_share_friction_and_lengths_converge():
 
 @pytest.mark.slow
 def test_stribeck_case_converges_with_its_default_layer():
-    """Measured height, default stiffness, 0.05 m/s, on a/40 to a/160; limits by extrapolation."""
+    """Measured height, default stiffness, 0.05 m/s, on a/20 to a/80; limits by extrapolation."""
     scene, errors = NODE_A_STEP | {"motion.entrainment_speed": 0.05, "series": None}, []
-    for points in (40, 80, 160):
+    for points in (20, 40, 80):
         mesh = {"mesh.points_per_half_width": points}
         found = run(None, given=load(CASES / "stribeck.toml", scene | mesh))
         assert found["retries"].sum() == 0 and found["mass_error"].max() < 1e-6

@@ -82,7 +82,7 @@ def test_dry_ball_under_a_harmonic_load_is_steady_at_every_instant():
 def test_slow_harmonic_conditions_approach_the_steady_film():
     """The lag behind the steady film is proportional to the rate of change, zero at the beginning."""
     lags = []
-    for travel in (16, 32, 64):
+    for travel in (16, 32):
         # a node a step, at a constant speed: the balance of a step is then that of a steady film
         speeds = dict.fromkeys(("operation.speed_1", "operation.speed_2"), [S.u] * 65)
         state, now = state_in_time(harmonic(travel, begin=0.5) | speeds, 4 * travel, 0.5)
@@ -93,7 +93,7 @@ def test_slow_harmonic_conditions_approach_the_steady_film():
 
 def test_second_order_in_time():
     table = harmonic(8.0, begin=0.5)
-    states = [state_in_time(table, steps, 0.5)[0] for steps in (128, 256, 512)]
+    states = [state_in_time(table, steps, 0.5)[0] for steps in (96, 192, 384)]
     inside = S.grid.inside(0.8)
     for field in ("film_thickness", "pressure"):
         values = [getattr(state, field).ravel()[inside] for state in states]
