@@ -15,6 +15,7 @@ from ehlpetsc.base.errors import OutputError, not_written
 if TYPE_CHECKING:
     from ehlpetsc.case.loading import Case
 
+TEMPORARY = ".tmp.{}"  # name of the file that replaces one of this name
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 PAGES = (".html", ".htm")
@@ -30,11 +31,16 @@ def file_path(text: str | os.PathLike) -> Path:
 
 def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") -> None:
     """Refuse an output path, that of `option`, that is an input or not a regular file: OutputError."""
-    if path.exists() and not path.is_file():
+    try:
+        exists = path.exists()
+        path.with_name(TEMPORARY.format(path.name)).exists()  # may be too long a name
+    except OSError as error:  # or in a folder that this user may not search
+        raise OutputError(not_written(error, path)) from error
+    if exists and not path.is_file():
         kind = "a folder" if path.is_dir() else "a device or pipe"
         raise OutputError(f"{path}: {kind}, not a file to write a result to; give another {option}")
     for read in inputs:
-        if path.exists() and read.exists() and path.samefile(read):
+        if exists and read.exists() and path.samefile(read):
             raise OutputError(f"{path}: is read by this run ({read}); give another {option}")
 
 
@@ -92,8 +98,10 @@ def inputs_of(case: Case) -> list[Path]:
     """Files from which a case is read."""
     sides = (case.surface.body_1, case.surface.body_2)
     folder = Path(case.path).parent
-    files = [*sides, case.operation]
-    return [Path(case.path), *(folder / table.file for table in files if table and table.file)]
+    files = [table.file for table in (*sides, case.operation) if table]
+    files += [case.gears.load_file] if case.gears else []
+    masks = [(folder / table.file).parent / table.mask for table in sides if table and table.mask]
+    return [Path(case.path), *(folder / name for name in files if name), *masks]
 
 
 @contextlib.contextmanager
@@ -104,7 +112,7 @@ def replacing(path: Path) -> Iterator[Path]:
     error of the system becomes an OutputError. What a killed process left is overwritten.
     """
     target = Path(os.path.realpath(path))
-    temporary = target.with_name(f".tmp.{target.name}")
+    temporary = target.with_name(TEMPORARY.format(target.name))
     try:
         temporary.touch()
         temporary.unlink()

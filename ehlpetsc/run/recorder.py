@@ -156,6 +156,8 @@ class Recorder(Output):
         case, inputs = self.simulation.case, inputs_of(self.simulation.case)
         check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
         check_output_path(self.restart, inputs)
+        if case.output.xdmf and self.output.suffix == ".xdmf":
+            raise OutputError(f"{self.output}: output.xdmf = true writes this file too; give another -o")
         self._lock = Lock(self.output)
         self._lock.acquire()
         return (

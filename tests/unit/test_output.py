@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
 from types import SimpleNamespace
 
 import h5py
@@ -19,6 +20,7 @@ from ehlpetsc.base import quantities
 from ehlpetsc.base.declarations import Field, StepScalar
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.quantities import FIELDS, of_every_case
+from ehlpetsc.results.output_guard import inputs_of
 from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run.checkpoint import load_restart, save_restart
@@ -192,6 +194,21 @@ def killed(path, flushed, lost):
     script = textwrap.dedent(KILLED).format(paths=paths, path=str(path), flushed=flushed, lost=lost)
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -signal.SIGKILL
     return path
+
+
+@pytest.mark.parametrize("length", [300, 254, 245])
+def test_name_too_long_for_the_result_or_the_files_beside_it_is_refused(tmp_path, length):
+    case = ehlpetsc.load(CASES / "table1_smooth.toml", {"mesh.points_per_half_width": 10})
+    with pytest.raises(OutputError, match=": not written, File name too long$"):
+        ehlpetsc.solve(case, output=tmp_path / f"{'a' * (length - 3)}.h5")
+
+
+def test_masks_and_load_files_are_inputs():
+    gears = SimpleNamespace(load_file="load.csv")
+    sides = SimpleNamespace(body_1=SimpleNamespace(file="maps/z.npy", mask="mask.npy"), body_2=None)
+    case = SimpleNamespace(surface=sides, operation=None, gears=gears, path=Path("cases/c.toml"))
+    names = "cases/c.toml", "cases/maps/z.npy", "cases/load.csv", "cases/maps/mask.npy"
+    assert inputs_of(case) == list(map(Path, names))
 
 
 @pytest.mark.parametrize("lost", [3, 900])

@@ -167,6 +167,12 @@ def test_xdmf_of_any_name_is_xml(path, tmp_path, name):
     assert f"{name}:/pressure" in items and all(item.startswith(f"{name}:/") for item in items)
 
 
+def test_result_with_the_name_of_its_xdmf_is_refused(tmp_path):
+    with pytest.raises(OutputError, match=r"r\.xdmf: output\.xdmf = true writes this file too; "):
+        ehlpetsc.solve(BALL | {"output": {"xdmf": True}}, output=tmp_path / "r.xdmf")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_xdmf_opens_in_vtk(path):
     xdmf = optional("vtkmodules.vtkIOXdmf2")
     convert = optional("vtkmodules.util.numpy_support")
