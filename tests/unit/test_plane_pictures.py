@@ -20,7 +20,6 @@ from support.made_results import P0, A, change_case, make_plane, make_result
 from ehlpetsc import read_result
 from ehlpetsc.pictures import command as plot
 from ehlpetsc.pictures import report, style
-from ehlpetsc.pictures.case_surfaces import draw_case
 from ehlpetsc.pictures.frames import choice as frames
 from ehlpetsc.pictures.frames import line, plane
 
@@ -217,12 +216,12 @@ def test_slider_of_the_page_changes_the_maps(point):
     assert found["edge"] == pytest.approx(2.0)
 
 
-def test_case_picture_shows_rows_of_the_mesh(tmp_path, capsys):
+def test_case_picture_shows_rows_of_the_mesh(tmp_path, capsys, drawn):
     path = tmp_path / "ball.toml"
     path.write_text(CASE, encoding="utf-8")
     assert draw(path, "-o", tmp_path / "ball.png") == 0
     assert capsys.readouterr().out == f"{tmp_path / 'ball.png'}\n"
-    axes = draw_case(path).axes[0]
+    axes = drawn[0].axes[0]
     heights = axes.images[0].get_array()
     assert heights.shape[0] == 49 and heights.std() == pytest.approx(0.1, rel=0.2)
     assert "travel 1.00 a of 7 a; pale: does not pass the whole contact" in axes.get_title(loc="left")
