@@ -1,7 +1,7 @@
 """Order of accuracy in time and space of film and temperatures: a ridge passes through a full film at 25 m/s.
 
 The scene of test_order.py with a slide/roll ratio of 0.5 and heat; norm: root mean square within
--1 <= x/a <= 0.5. In time successive steps are halved on a/64, of four, two nodes and one, in space
+-1 <= x/a <= 0.5. In time successive steps are halved on a/32, of two nodes, one and a half, in space
 successive meshes with 40 steps.
 """
 
@@ -12,7 +12,7 @@ from support.driving import Scene
 
 TRAVEL = 2.5  # half-widths, of the mean speed
 STEPS = (40, 80, 160)
-MESHES = (32, 64, 128, 256)  # points per half-width
+MESHES = (32, 64, 128)  # points per half-width
 SCENE = (
     "contact.load=130e3",
     "motion.entrainment_speed=25",
@@ -38,7 +38,7 @@ def solution(points, steps):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "setups",
-    [[(64, steps) for steps in STEPS], [(points, STEPS[0]) for points in MESHES]],
+    [[(MESHES[0], steps) for steps in STEPS], [(points, STEPS[0]) for points in MESHES]],
     ids=["time", "space"],
 )
 def test_second_order(setups):
