@@ -55,6 +55,7 @@ def coarse_pictures():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "DPI", 20)
+        patch.setitem(style.save.__kwdefaults__, "dpi", 20)
         patch.setattr(gallery, "FORMATS", ("png",))
         yield
 

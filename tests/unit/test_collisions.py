@@ -12,12 +12,9 @@ from ehlpetsc.results.reader import read_result
 from ehlpetsc.results.writer import Layout, ResultWriter
 
 sys.path.append(str(ROOT / "cases" / "paper"))
-import sys
-
 import collisions
 import entrapment
 import micropits
-from support import ROOT
 
 from ehlpetsc.life.history import read_life
 
@@ -106,12 +103,13 @@ def test_entrapment_between_two_contacts_is_found_and_drawn(tmp_path):
         np.testing.assert_allclose(above - below, 1e6 * result.frame("film_thickness", frame), atol=1e-9)
 
 
-def test_short_form_computes_once_prints_shares_and_draws(tmp_path, capsys):
+def test_short_form_computes_once_prints_shares_and_draws(tmp_path, capsys, monkeypatch):
     words = [str(tmp_path / "lives"), "first", "--short", "-o", str(tmp_path / "signs.png")]
     micropits.main(words)
     first = capsys.readouterr().out
     files = sorted((tmp_path / "lives").glob("*.life.h5"))
     stamps = [file.stat().st_mtime_ns for file in files]
+    monkeypatch.setattr(micropits.style, "save", lambda *_: None)  # drawn by now
     micropits.main(words)
     assert capsys.readouterr().out == first and "first, ten seeds, 2 seeds: surface 1 " in first
     assert [file.stat().st_mtime_ns for file in files] == stamps and len(files) == 2
