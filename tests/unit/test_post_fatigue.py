@@ -89,6 +89,22 @@ def test_component_of_most_damage_counts_not_that_of_the_largest_range(first):
     assert both.peak_range == pytest.approx(1.5e9 * np.sqrt(0.79))
 
 
+def test_rounding_errors_of_a_component_without_stress_change_nothing():
+    """Neither of one that is zero nor of one that rests while another changes, and time may run backwards."""
+    errors = 1e-3 * np.random.default_rng(1).standard_normal((2, 81))
+    wave, part = 8e8 * np.sin(np.linspace(0, 6 * np.pi, 81)), slice(20, 50)
+    rests = np.where(np.arange(81) < 40, 0.0, -1e9 * np.sin(np.linspace(0, 2 * np.pi, 81)) ** 2)
+    moves = 9e8 * np.sin(np.linspace(0, 3 * np.pi, 81) + 0.5)
+    exact, rounded = (damage(wave, 0 * wave, error, STEEL) for error in (0 * wave, errors[0]))
+    assert rounded.damage == pytest.approx(exact.damage, rel=1e-9, abs=0) and rounded.cycles == exact.cycles
+    parts = moves[part], rests[part], 0 * moves[part]
+    exact = damage(*parts, STEEL).damage
+    assert damage(parts[0], parts[1] + errors[1][part], parts[2], STEEL).damage == pytest.approx(
+        exact, rel=1e-9
+    )
+    assert damage(*(row[::-1] for row in parts), STEEL).damage == pytest.approx(exact, rel=1e-12)
+
+
 def test_morrow_lengthens_life_under_compression_to_a_floor_and_residual_stress_enters():
     result = damage(*pulse(1e9), STEEL, mean_stress="morrow")
     dsv = 1e9 * np.sqrt(0.79)

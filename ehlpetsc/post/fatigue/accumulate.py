@@ -44,6 +44,7 @@ from ehlpetsc.post.fatigue.strain_life import (
 from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
 CORRECTIONS = MEAN_STRESSES[2:]  # by a fully reversed range
+ROUNDING = 1e-8  # of the widest range of a component: differences that are none
 
 
 @compiled(error_model="python", nogil=True)
@@ -102,17 +103,52 @@ def _range_and_sum(stress: np.ndarray, i: int, j: int, nu: float) -> tuple[float
 
 
 @compiled(error_model="python", nogil=True)
+def _flank(counted: tuple, i: int, j: int, step: int, repeats: bool) -> tuple[int, int]:
+    """Last sample of the value of reversal j and first of that of i on the way from j by steps of one sample
+    back or forth; j twice if the way leaves the range of the cycle, or the history that occurs once.
+    """
+    series, tolerance = counted
+    low, high = min(series[i], series[j]) - tolerance, max(series[i], series[j]) + tolerance
+    left, at = j, j
+    for _ in range(series.size):
+        at += step
+        if not 0 <= at < series.size:
+            if not repeats:
+                break
+            at %= series.size
+        if abs(series[at] - series[i]) <= tolerance:
+            return left, at
+        if not low <= series[at] <= high:
+            break
+        if abs(series[at] - series[j]) <= tolerance:
+            left = at
+    return j, j
+
+
+@compiled(error_model="python", nogil=True)
 def _sum_cycles(
-    stress: np.ndarray, nu: float, cycles: np.ndarray, full: int, law: tuple
+    stress: np.ndarray, counted: tuple, nu: float, cycles: np.ndarray, full: int, law: tuple
 ) -> tuple[float, float, float]:
     """Damage, number and maximum squared range of the cycles of one history (components, samples).
 
-    Those from number `full` on are half cycles.
+    Those from number `full` on are half cycles. `counted`: the counted component, and its differences that
+    are none. Reversals by less, as of a component that is zero, are no cycles, whatever the others do between
+    them. Both ways between its values are tried, from the last sample of one to the first of the other: which
+    sample of a plateau is the reversal, as on a surface without pressure, rounding decides.
     """
     (correction, rule, residual, limits), constants, table = law
+    series, tolerance = counted
     total = number = largest = 0.0
     for k in range(len(cycles)):
-        squared, normal = _range_and_sum(stress, cycles[k, 0], cycles[k, 1], nu)
+        i, j = cycles[k, 0], cycles[k, 1]
+        if abs(series[i] - series[j]) <= tolerance:
+            continue
+        squared = normal = 0.0
+        for step in (-1, 1):
+            first, last = _flank(counted, i, j, step, full == len(cycles))
+            candidate, its_normal = _range_and_sum(stress, first, last, nu)
+            if candidate > squared:
+                squared, normal = candidate, its_normal
         if squared <= 0:
             continue
         if correction == 0:
@@ -144,13 +180,17 @@ def damage_of_points(
     stack, cycles, scalar = work
     for point in range(stress.shape[0]):
         history = stress[point, :, : lengths[point]]
-        worst = -1.0
+        worst, widest = -1.0, 0.0
+        for component in history:
+            widest = max(widest, float(component.max()) - float(component.min()))
         for channel in range(stress.shape[1]):
             if channel == 3:
                 continue
-            scalar[: lengths[point]] = history[channel]  # copied: counting is compiled once for all kinds
-            count, full = find_cycles(scalar[: lengths[point]], stack, cycles, half)
-            total, number, largest = _sum_cycles(history, nu, cycles[:count], full, law)
+            series = scalar[: lengths[point]]
+            series[:] = history[channel]  # copied: counting is compiled once for all kinds
+            count, full = find_cycles(series, stack, cycles, half)
+            counted = series, ROUNDING * widest
+            total, number, largest = _sum_cycles(history, counted, nu, cycles[:count], full, law)
             if total > worst or total == worst and largest > out[point, 2] ** 2:
                 worst = total
                 out[point, 0], out[point, 1], out[point, 2] = total, number, sqrt(largest)
@@ -193,7 +233,8 @@ def damage(
 
     sx, sz and txz are counted separately, and the maximum damage is used, which Holmes et al. do not specify:
     no single component has every cycle (under a ripple sx and sz change together, under a passing asperity
-    txz reverses while sz peaks).
+    txz reverses while sz peaks). Where the counted component stays at a reversal for several samples, as sz
+    of a surface without pressure, the last sample before it leaves counts, or the first after it returns.
 
     `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
     `mean_stress`: "none" or a correction (:mod:`ehlpetsc.post.fatigue.cycles`) by the mean of
