@@ -117,7 +117,7 @@ def _with_oil(tables: Tables) -> Tables:
     oil, temperature = OILS[fluid["oil"]], _oil_temperature(fluid, heat) or STANDARD_TEMPERATURE
     if not 200.0 < temperature < 700.0:
         return tables
-    of_fluid = oil.at(temperature)
+    of_fluid = oil.at(temperature) | {"temperature": temperature}  # of the slope of its law
     of_shear = SHEAR_LAWS[OIL_SHEAR].keys
     stresses = {next(iter(law.keys)) for law in SHEAR_LAWS.values() if law.keys}  # the one given chooses
     if stresses & fluid.keys() - of_shear.keys():
