@@ -292,8 +292,9 @@ def _misfit(file: h5py.File, old: Result, step: int) -> str | None:
     y = file["y"][:] if "y" in file else None
     if not np.array_equal(old.x, file["x"][:]) or not np.array_equal(old.y, y):
         return "it was computed on another mesh, or for another half-width"
-    if {*old.fields, *old.scalars} != {name for name in FIELDS if name in file} | set(file["steps"]):
-        return f"it stores other quantities ({', '.join([*old.fields, *old.scalars])})"
+    now = {name for name in FIELDS if name in file} | set(file["steps"])
+    if others := now.symmetric_difference([*old.fields, *old.scalars]):
+        return f"it stores other quantities ({', '.join(sorted(others))})"
     if last < step:
         return f"it ends at step {last}, before step {step} of the restart file"
     return None

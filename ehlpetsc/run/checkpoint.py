@@ -196,6 +196,20 @@ def _is_of_same(path: Path, values: dict[str, Any], case: Case) -> bool:
     return True
 
 
+def is_earlier_part(path: Path, restart: Path) -> bool:
+    """Whether the result at a path holds the steps before those of a restart file, by the case of its run."""
+    values = load_restart(restart)
+    try:
+        with open_for_reading(path) as file:
+            attrs = attributes(file)
+        runs = [*json.loads(attrs["history"]), {"case": attrs["case"], "up_to_step": np.inf}]
+    except (OutputError, OSError, KeyError):
+        return False
+    ends = [run["up_to_step"] for run in runs]
+    of_step = [begin <= values["step"] <= end for begin, end in zip([0, *ends], ends, strict=False)]
+    return any(here and run["case"] == values["case"] for here, run in zip(of_step, runs, strict=True))
+
+
 def check_surfaces(path: Path, values: dict[str, Any], digests: dict[str, str]) -> None:
     """Refuse values of a restart file of surface files with another content: OutputError."""
     if changed := changed_files(json.loads(values.get("digests", "{}")), digests):

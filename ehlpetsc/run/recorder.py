@@ -22,7 +22,7 @@ from ehlpetsc.base.errors import ExitStatus, OutputError, OutputLost
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear.options import WRITING
 from ehlpetsc.results.means import Totals
-from ehlpetsc.results.output_guard import Lock, check_output_path, file_path, inputs_of
+from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run import checkpoint
 from ehlpetsc.run.forecast.validity import limits
@@ -131,6 +131,7 @@ class Recorder(Output):
         self._boundary_friction = 0.0  # maximum so far, which effects may change
         self._lock: Lock | None = None
         self._writer: Any = None  # a ResultWriter, on rank 0
+        self._continues = True  # a file at the path of the result, if any, after a restart
         self._is_open, self._next_save = False, Deadline(simulation.case.output.checkpoint)
 
     def __enter__(self) -> Recorder:
@@ -156,6 +157,10 @@ class Recorder(Output):
         case, inputs = self.simulation.case, inputs_of(self.simulation.case)
         check_output_path(self.output, [*inputs, Path(restart)] if restart else inputs)
         check_output_path(self.restart, inputs)
+        if restart and self.output.exists():
+            self._continues = checkpoint.is_earlier_part(self.output, restart)
+        if not (self._continues or overwrite):
+            raise OutputError(f"{self.output}: no earlier part of the run of {restart}; {OVERWRITE_ADVICE}")
         if case.output.xdmf and self.output.suffix == ".xdmf":
             raise OutputError(f"{self.output}: output.xdmf = true writes this file too; give another -o")
         self._lock = Lock(self.output)
@@ -238,7 +243,8 @@ class Recorder(Output):
             y=scales.grid.axes[0] * scales.a if len(scales.grid.axes) > 1 else None,
             kind=case.kind,
         )
-        self._writer = ResultWriter(self.output, layout, attributes, resume_step=step, contact_count=count)
+        before = step if self._continues else None
+        self._writer = ResultWriter(self.output, layout, attributes, resume_step=before, contact_count=count)
 
     def _append(self, state: AcceptedState) -> None:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None

@@ -172,6 +172,20 @@ def test_stopped_run_is_not_continued_with_another_profile(path, tmp_path):
     assert ehlpetsc.solve(read(path), output).attrs["restarts"] == 1
 
 
+def test_restart_does_not_continue_the_result_of_another_run(path, tmp_path):
+    restart, output = stopped(read(path), tmp_path / "r.h5"), tmp_path / "other.h5"
+    stopped(read(path, **{"fluid.viscosity": 0.004}), output).unlink()
+    kept = output.read_bytes()
+    with pytest.raises(OutputError, match=r"other\.h5: no earlier part of the run of .*r\.restart\.h5; "):
+        ehlpetsc.solve(read(path), output, restart=restart)
+    assert output.read_bytes() == kept
+    steps = ehlpetsc.solve(read(path), output, restart=restart, overwrite=True).steps.step
+    assert steps[0] == 4 and (np.diff(steps) == 1).all()
+    changed = read(path, **{"fluid.viscosity": 0.004})
+    steps = ehlpetsc.solve(changed, tmp_path / "r.h5", restart=restart).steps.step
+    assert list(steps) == list(range(len(steps)))
+
+
 def test_restart_reports_the_name_of_another_file_and_a_changed_one_is_refused(path, tmp_path):
     restart = stopped(read(path), tmp_path / "r.h5")
     shutil.copy(tmp_path / FILE, tmp_path / "copy.csv")
