@@ -4,14 +4,14 @@ A ridge of 0.1 um, 0.8 half-widths wide, on the slower surface enters a film of 
 it fills the contact. Compared are successive refinements by two, at the nodes of the coarsest mesh within
 -1 <= x/a <= 0.5, which leaves out the rupture of the film near x = 1.15 a; norm: root mean square.
 
-Found, fitted over three refinements:
+Found, fitted over three refinements, of both over two:
 
 =====  =====  ========
 over   film   pressure
 =====  =====  ========
 space  1.992  2.043
 time   1.899  1.826
-both   1.986  2.096
+both   1.985  2.111
 =====  =====  ========
 """
 
@@ -70,7 +70,7 @@ def orders(solutions):
     [
         pytest.param([(n, 40) for n in (16, 32, 64, 128)], id="space"),
         pytest.param([(16, n) for n in (80, 160, 320, 640)], id="time"),
-        pytest.param([(n, 5 * n) for n in (16, 32, 64, 128)], id="both"),
+        pytest.param([(n, 5 * n) for n in (16, 32, 64)], id="both"),
     ],
 )
 def test_second_order(refinements):
