@@ -6,7 +6,7 @@ of a circular contact, M = 200 and L = 10, each in a process of its own; every t
 - smooth: steady start, counted as one step.
 - wave: cos kx cos ky of a half-width, a hundredth of the film (2 nm), pure rolling.
 - rigid, layer: self-affine roughness in mixed contact, slide/roll ratio 0.3, with a boundary film or a
-  compliant layer.
+  compliant layer; heavy, slow: more of the load on solids, 2 and, at 0.02 m/s, 20 %.
 
 Waves and roughness fill the contact from the first step on (`time.start = "rough"`).
 
@@ -58,11 +58,15 @@ WAVE = {"kind": "sine", "amplitude": 2e-9, "wavelength": HALF_WIDTH, "wavelength
 ROUGH = {"kind": "self-affine", "sq": 0.15e-6, "hurst": 0.8, "seed": 1}
 ROUGH |= {"roll_off": 0.5 * HALF_WIDTH, "short_cutoff": 0.25 * HALF_WIDTH}
 SLIDING = {"surface.1": {"synthetic": ROUGH}, "motion.slide_roll_ratio": 0.3}
+LAYER = SLIDING | {"contact.boundary_film": None}
+HEAVY = LAYER | {"surface.1": {"synthetic": ROUGH | {"sq": 0.5e-6}}, "contact.asperity_height": 30e-9}
 SCENES = {
     "smooth": {},
     "wave": {"surface.1": {"synthetic": WAVE}},
     "rigid": SLIDING | {"contact.boundary_film": 10e-9},
-    "layer": SLIDING | {"contact.boundary_film": None, "contact.asperity_height": 20e-9},
+    "layer": LAYER | {"contact.asperity_height": 20e-9},
+    "heavy": HEAVY,
+    "slow": HEAVY | {"motion.entrainment_speed": 0.02},
 }
 CONVOLUTIONS = 21  # timed
 COLUMNS = {
