@@ -18,6 +18,7 @@ SCENES = {
     "table1_smooth.toml": ["contact.model='mixed'"],
     "table1_rough.toml": ["time.travel=0.14", "fluid.viscosity=0.003"],
     "dry_hertz.toml": [],
+    "ball.toml": ["mesh.inlet=-1.6", "mesh.points_per_half_width=4", "time.travel=0.6"],
 }
 NUMBERS = (*"0 1 -1 2 7 100 1e-3 1e-9 1e300 nan -inf abc 1e-400".split(), "")
 NUMERIC = """snes_atol snes_rtol snes_stol snes_max_it snes_max_funcs snes_lag_jacobian
