@@ -84,6 +84,15 @@ def test_a_missing_package_is_named(tmp_path, monkeypatch, suffix, package):
         read_map(path)
 
 
+@pytest.mark.parametrize("suffix", [".npz", ".mat", ".xlsx", ".tif"])
+def test_a_format_without_a_reader_is_refused_whatever_is_stated(tmp_path, suffix):
+    path = tmp_path / f"map{suffix}"
+    path.touch()
+    for layout in (Layout(), SPACED):
+        with pytest.raises(ProfileError, match=rf"^format '\{suffix}' is not read; allowed: \.npy or text, "):
+            read_map(path, layout)
+
+
 @pytest.mark.parametrize("suffix", [".x3p", ".sdf"])
 def test_a_damaged_file_is_refused(tmp_path, suffix):
     package = optional(PACKAGES[suffix]).__name__

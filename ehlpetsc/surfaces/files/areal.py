@@ -27,6 +27,20 @@ from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
 
 OF_PROFILES = {".smd"}  # besides text
 WRITTEN_ONLY = {".gsf", ".vti"}
+NO_HEIGHTS = {
+    ".npz",
+    ".mat",
+    ".xls",
+    ".xlsx",
+    ".h5",
+    ".json",
+    ".png",
+    ".jpg",
+    ".jpeg",
+    ".bmp",
+    ".tif",
+    ".tiff",
+}
 
 
 class Map(NamedTuple):
@@ -111,10 +125,12 @@ def _columns_of(path: Path, layout: Layout) -> tuple[np.ndarray, str]:
 
 def _instrument_file(path: Path, layout: Layout) -> Map:
     """Map in a file that includes its units and spacings."""
+    ending, otherwise = path.suffix.lower(), ".npy or text, a matrix of heights in m, with spacing"
+    if ending in NO_HEIGHTS:
+        raise ProfileError(f"format {ending!r} is not read; allowed: {otherwise}, or a format of instruments")
     stated = [key for key in KEYS_OF_TEXT if getattr(layout, key) is not None]
     if stated:
         raise ProfileError(f"{stated[0]}: {path.suffix!r} includes it; leave it out")
-    ending, otherwise = path.suffix.lower(), ".npy or text, a matrix of heights in m, with spacing"
     if ending in WRITTEN_ONLY:
         raise ProfileError(f"format {ending!r} is written, not read; allowed: {otherwise}, or .x3p")
     package, read = READERS.get(ending, ("surfalize", _by_surfalize))
