@@ -25,6 +25,8 @@ def faults(pair: GearPair) -> list[str]:
     missing = [name for name in ("centre_distance", "tip_diameter") if getattr(pair, name) is None]
     if missing:
         return [f"gears.{' and '.join(missing)} missing; allowed: a length, or profile_shift for both"]
+    if pair.internal and not pair.teeth[0] < -pair.teeth[1]:
+        return ["gears.teeth: allowed with internal: more of the wheel than of the pinion"]
     if math.isnan(pair.centre_distance):  # of no working pressure angle
         tangent, side = math.tan(math.radians(pair.pressure_angle)), "below" if pair.internal else "above"
         limit = -0.5 * involute(pair.transverse_angle) * sum(pair.teeth) / tangent
@@ -36,8 +38,6 @@ def faults(pair: GearPair) -> list[str]:
     if pair.load_sharing == "thirds" and pair.helix_angle:
         found.append('load_sharing = "thirds": of spur gears; allowed with helix_angle: "stiffness"')
     r_b = pair.base_radii
-    if pair.internal and not pair.teeth[0] < -pair.teeth[1]:
-        return ["gears.teeth: allowed with internal: more of the wheel than of the pinion"]
     if not abs(pair.centre_distance) > abs(sum(r_b)):
         between = "difference" if pair.internal else "sum"
         found.append(

@@ -85,6 +85,8 @@ class GearPair:
     def play_free_centre_distance(self) -> float:
         r"""Of the profile shift [m]: :math:`inv\,\alpha_w=inv\,\alpha_t+2\tan\alpha_n(x_1+x_2)/(z_1+z_2)`."""
         tangent = math.tan(math.radians(self.pressure_angle))
+        if sum(self.teeth) == 0:  # a ring with the teeth of its pinion
+            return math.nan
         value = involute(self.transverse_angle) + 2.0 * tangent * sum(self.profile_shift) / sum(self.teeth)
         return sum(self.base_radii) / math.cos(angle_of(value)) if value > 0.0 else math.nan
 

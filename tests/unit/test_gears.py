@@ -74,6 +74,7 @@ TIPS = ("centre_distance", "tip_diameter")
 TEETH, TEETH_BACK = ((16, 24), (82.5e-3, 118.4e-3)), ((24, 16), (118.4e-3, 82.5e-3))
 RING = FZG | {"teeth": [20, 60], "centre_distance": 0.09, "tip_diameter": [99e-3, 261.75e-3]}
 RING["internal"] = True
+EQUAL = {"teeth": [20, 20], "profile_shift": [0.5, 0.1], "centre_distance": None, "tip_diameter": None}
 
 
 def test_geometry_of_racks_driving_wheels_and_rings():
@@ -114,6 +115,7 @@ def test_geometry_of_racks_driving_wheels_and_rings():
     ("changes", "words"),
     [
         ({"teeth": [20, 20]}, ["gears.teeth", "more of the wheel"]),
+        (EQUAL, ["gears.teeth", "more of the wheel"]),
         ({"tip_diameter": [99e-3, 0.261]}, ["tips of the wheel reach below", "above 0.26"]),
         ({"teeth": [20, 23], "centre_distance": 7.2e-3, "tip_diameter": [97e-3, 99e-3]}, ["cut into those"]),
     ],
