@@ -22,7 +22,7 @@ SHORT = {
 }
 WAVES = {
     "kind": "self-affine",
-    "sq": 1e-6,
+    "sq": 0.1e-6,
     "hurst": 0.8,
     "roll_off": 250e-6,
     "short_cutoff": 120e-6,
@@ -33,9 +33,9 @@ LIVES = {
     "positions": {"time.pass_shift": 50e-6, "life.partners": 3},
     "strip": {  # with rows for three ranks, which differ; damage is a high power of the pressure
         "mesh.width": 1.5,
-        "mesh.inlet": -1.6,
-        "mesh.outlet": 1.6,
-        "time.travel": 4.6,
+        "mesh.inlet": -1.4,
+        "mesh.outlet": 1.4,
+        "time.travel": 4.0,
         "surface.1.file": None,
         "surface.1.scale": None,
         "surface.1.synthetic": WAVES,
