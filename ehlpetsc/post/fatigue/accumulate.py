@@ -103,6 +103,14 @@ def _range_and_sum(stress: np.ndarray, i: int, j: int, nu: float) -> tuple[float
 
 
 @compiled(error_model="python", nogil=True)
+def _rests(counted: tuple, k: int) -> bool:
+    """Whether a component stays at a reversal: at the sample before or after it, or without stress."""
+    series, tolerance = counted
+    value, after = series[k], series[k + 1 if k + 1 < series.size else 0]
+    return min(abs(value), abs(value - series[k - 1]), abs(value - after)) <= tolerance
+
+
+@compiled(error_model="python", nogil=True)
 def _flank(counted: tuple, i: int, j: int, step: int, repeats: bool) -> tuple[int, int]:
     """Last sample of the value of reversal j and first of that of i on the way from j by steps of one sample
     back or forth; j twice if the way leaves the range of the cycle, or the history that occurs once.
@@ -133,8 +141,8 @@ def _sum_cycles(
 
     Those from number `full` on are half cycles. `counted`: the counted component, and its differences that
     are none. Reversals by less, as of a component that is zero, are no cycles, whatever the others do between
-    them. Both ways between its values are tried, from the last sample of one to the first of the other: which
-    sample of a plateau is the reversal, as on a surface without pressure, rounding decides.
+    them. Where it stays at a reversal, as on a surface without pressure, rounding decides which sample that
+    is: both ways between the two values are tried, from the last sample of one to the first of the other.
     """
     (correction, rule, residual, limits), constants, table = law
     series, tolerance = counted
@@ -143,12 +151,14 @@ def _sum_cycles(
         i, j = cycles[k, 0], cycles[k, 1]
         if abs(series[i] - series[j]) <= tolerance:
             continue
-        squared = normal = 0.0
-        for step in (-1, 1):
-            first, last = _flank(counted, i, j, step, full == len(cycles))
-            candidate, its_normal = _range_and_sum(stress, first, last, nu)
-            if candidate > squared:
-                squared, normal = candidate, its_normal
+        squared, normal = _range_and_sum(stress, i, j, nu)
+        if _rests(counted, i) or _rests(counted, j):
+            squared = 0.0
+            for step in (-1, 1):
+                first, last = _flank(counted, i, j, step, full == len(cycles))
+                candidate, its_normal = _range_and_sum(stress, first, last, nu)
+                if candidate > squared:
+                    squared, normal = candidate, its_normal
         if squared <= 0:
             continue
         if correction == 0:
