@@ -121,9 +121,9 @@ SIGMA_OF_MAD = 1.4826  # standard deviation of Gaussian heights over their media
 def no_data_value(z: np.ndarray) -> float | None:
     """Placeholder for missing heights, far from all its neighbours, as 9999 or 0; None if there is none.
 
-    Candidates are the minimum, the maximum, 0 and the most frequent value, if they occur at least
-    `MIN_REPEATS` times. A value that more than half of the points have is a plateau. All others are compared
-    with the neighbours of their runs; nan in `z` does not count as a neighbour.
+    Candidates are the minimum, the maximum, 0 and the most frequent value, where they occur at least
+    `MIN_REPEATS` times and at no more than half of the points. The median jump to their neighbours must
+    exceed `NO_DATA_JUMP` times the median step between other heights; nan in `z` is no neighbour.
     """
     finite = z[np.isfinite(z)]
     values, counts = np.unique(finite, return_counts=True)

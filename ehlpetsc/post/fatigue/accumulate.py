@@ -44,7 +44,7 @@ from ehlpetsc.post.fatigue.strain_life import (
 from ehlpetsc.post.stresses.half_plane import von_mises_squared
 
 CORRECTIONS = MEAN_STRESSES[2:]  # by a fully reversed range
-ROUNDING = 1e-8  # of the widest range of a component: differences that are none
+ROUNDING = 1e-8  # of the widest range of a component: smaller differences count as zero
 
 
 @compiled(error_model="python", nogil=True)
@@ -103,8 +103,8 @@ def _range_and_sum(stress: np.ndarray, i: int, j: int, nu: float) -> tuple[float
 
 
 @compiled(error_model="python", nogil=True)
-def _rests(counted: tuple, k: int) -> bool:
-    """Whether a component stays at a reversal: at the sample before or after it, or without stress."""
+def _is_plateau(counted: tuple, k: int) -> bool:
+    """Whether a neighbouring sample has the value of reversal k, or that value is zero."""
     series, tolerance = counted
     value, after = series[k], series[k + 1 if k + 1 < series.size else 0]
     return min(abs(value), abs(value - series[k - 1]), abs(value - after)) <= tolerance
@@ -112,8 +112,10 @@ def _rests(counted: tuple, k: int) -> bool:
 
 @compiled(error_model="python", nogil=True)
 def _flank(counted: tuple, i: int, j: int, step: int, repeats: bool) -> tuple[int, int]:
-    """Last sample of the value of reversal j and first of that of i on the way from j by steps of one sample
-    back or forth; j twice if the way leaves the range of the cycle, or the history that occurs once.
+    """Ends of the flank beside reversal j, before it for a `step` of -1, after it for 1.
+
+    They are the last sample with the value of j and the first with that of i; j twice if the component leaves
+    the range of the cycle in between, or a history that occurs once ends.
     """
     series, tolerance = counted
     low, high = min(series[i], series[j]) - tolerance, max(series[i], series[j]) + tolerance
@@ -139,10 +141,10 @@ def _sum_cycles(
 ) -> tuple[float, float, float]:
     """Damage, number and maximum squared range of the cycles of one history (components, samples).
 
-    Those from number `full` on are half cycles. `counted`: the counted component, and its differences that
-    are none. Reversals by less, as of a component that is zero, are no cycles, whatever the others do between
-    them. Where it stays at a reversal, as on a surface without pressure, rounding decides which sample that
-    is: both ways between the two values are tried, from the last sample of one to the first of the other.
+    Those from number `full` on are half cycles. `counted`: the counted component, and the difference up to
+    which two of its values are equal. Reversals of less, as of a component that is zero, are no cycles. On a
+    plateau, as of sz where there is no pressure, rounding would choose the sample of the reversal: of the
+    flanks on both sides, the one with the larger range counts.
     """
     (correction, rule, residual, limits), constants, table = law
     series, tolerance = counted
@@ -152,7 +154,7 @@ def _sum_cycles(
         if abs(series[i] - series[j]) <= tolerance:
             continue
         squared, normal = _range_and_sum(stress, i, j, nu)
-        if _rests(counted, i) or _rests(counted, j):
+        if _is_plateau(counted, i) or _is_plateau(counted, j):
             squared = 0.0
             for step in (-1, 1):
                 first, last = _flank(counted, i, j, step, full == len(cycles))
@@ -243,8 +245,8 @@ def damage(
 
     sx, sz and txz are counted separately, and the maximum damage is used, which Holmes et al. do not specify:
     no single component has every cycle (under a ripple sx and sz change together, under a passing asperity
-    txz reverses while sz peaks). Where the counted component stays at a reversal for several samples, as sz
-    of a surface without pressure, the last sample before it leaves counts, or the first after it returns.
+    txz reverses while sz peaks). On a plateau of the counted component, as of sz where there is no
+    pressure, the sample next to the flank counts; of the flanks on both sides, that with the larger range.
 
     `sx`, `sz`, `txz`: stress histories [Pa], shape (..., samples); sigma_y follows by plane strain.
     `mean_stress`: "none" or a correction (:mod:`ehlpetsc.post.fatigue.cycles`) by the mean of
