@@ -20,9 +20,9 @@ from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.plane import system as plane
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
-from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle
+from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import SparseForm
-from ehlpetsc.nonlinear.plane.screened_poisson import fill
+from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, fill, neighbour
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -215,6 +215,36 @@ def test_balance_of_single_cells_is_that_of_the_mesh(name):
     np.testing.assert_allclose(rows / scale, residual[nodes], rtol=1e-11, atol=1e-11 * abs(residual).max())
     expected = derivatives[nodes, ::2]
     np.testing.assert_allclose(by[expected != 0.0] / scale, expected[expected != 0.0], rtol=1e-10)
+
+
+@pytest.mark.parametrize("share", (0.15, 0.9))  # of the nodes: many islands; one
+def test_islands_of_cells_are_solved_as_by_a_sparse_solver(share):
+    (n_y, n_x), rng = (12, 17), np.random.default_rng(3)
+    nodes = rng.permutation(np.flatnonzero(rng.random(n_y * n_x) < share))
+    place = np.full(n_y * n_x, -1, dtype=np.int32)
+    place[nodes] = np.arange(len(nodes))
+    by, rows, mesh = (
+        rng.normal(size=(len(nodes), STENCIL)),
+        rng.normal(size=len(nodes)),
+        (n_x, n_y * n_x, False),
+    )
+    by[:, OWN] += 12.0
+    matrix = np.zeros((len(nodes), len(nodes)))
+    for row, node in enumerate(nodes):
+        for k in range(STENCIL):
+            near = neighbour(node, k, mesh)
+            if near >= 0 and place[near] >= 0:
+                matrix[row, place[near]] += by[row, k]
+    found = solution(nodes, by, mesh, place, rows)
+    np.testing.assert_allclose(matrix @ found, rows, atol=1e-13)
+
+
+def test_island_that_is_too_large_is_left():
+    side = 100
+    nodes = np.arange(side * side)
+    by = np.tile(np.array([0.0, -1.0, 5.0, -1.0, -1.0, -1.0]), (side * side, 1))
+    mesh, place = (side, side * side, False), nodes.astype(np.int32)
+    assert not solution(nodes, by, mesh, place, np.ones(side * side)).any()
 
 
 def test_settled_pressures_balance_thin_oil():

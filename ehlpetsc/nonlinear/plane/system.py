@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 # largest change of pressure, in p0 or where that is more of the highest pressure: with oil 0.3 p0 costs
 # asperities half as many iterations again; a dry layer of 0.1 nm needs shorter steps, others take hardly more
 STEP_LIMITS, DRY_STEP_LIMITS = (1.0, 0.3), (0.1, 0.1)
-MANY_CHANGED = 0.1  # of the nodes: too many to settle their pressures after an iteration
 SETTLED_STEPS = 8  # of a solve; most take six
 
 # options of glibc's mallopt, and values: M_MMAP_THRESHOLD, M_MMAP_MAX, M_TRIM_THRESHOLD
@@ -88,13 +87,13 @@ class PlaneFields(TwoFields):
         of_oil = np.maximum(now[:, 0] - step[:, 0], 0.0) - np.maximum(now[:, 0], 0.0)
         self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
         pressure, new = self.contact.pressure(*now.T), self.contact.pressure(*(now - step).T)
-        highest = global_max(self.ranks, pressure.max())
+        largest = np.array([pressure.max(), np.abs(new - pressure).max(), np.abs(of_oil).max()])
+        highest, change, of_oil = global_max(self.ranks, largest)
         is_dry = self.problem.fluid is None
         limit, of_highest = DRY_STEP_LIMITS if is_dry else STEP_LIMITS
-        excess = np.abs(new - pressure).max() / max(limit, of_highest * highest)
+        excess = change / max(limit, of_highest * highest)
         if self.inputs.history is None and not is_dry:
-            excess = max(excess, np.abs(of_oil).max() / limit)
-        excess = global_max(self.ranks, excess)
+            excess = max(excess, of_oil / limit)
         given = pairs(y.array, self.local)
         if excess > 1.0:
             y.scale(1.0 / excess)
@@ -117,8 +116,6 @@ class PlaneFields(TwoFields):
         new, before = now - step, now[:, 0]
         is_changed = (np.abs(step[:, 0]) > MOVED) & (new[:, 0] < HIGHEST)
         changed = np.flatnonzero(is_changed | (full_of_oil(new[:, 0]) != full_of_oil(before)))
-        if len(changed) > MANY_CHANGED * self.local:  # far from a solution
-            changed = changed[:0]
         if all_ranks(self.ranks, not len(changed)):
             return
         q, w = np.ascontiguousarray(self.exchange.window(new).T)
