@@ -90,9 +90,7 @@ class CoarseSpace:
         count = cut_off(f.data, f.indices, f.indptr, mask, column, parts)
         data, columns, pointers = parts
         cut = csr_matrix((data[:count], columns[:count], pointers), (len(mask), len(kept)))
-        k_y, k_x = np.divmod(kept, self.counts[1])
-        distance = np.abs(k_y[:, None] - k_y), np.abs(k_x[:, None] - k_x)
-        return cut, self.deflections[distance]
+        return cut, between(kept, self.counts[1], self.deflections)
 
 
 @compiled
@@ -118,6 +116,16 @@ def cut_off(
                     count += 1
         new_pointers[row + 1] = count
     return count
+
+
+@compiled
+def between(nodes: np.ndarray, n_x: int, deflections: np.ndarray) -> np.ndarray:
+    """Deflections of coarse nodes by one another; `n_x`: coarse nodes in a row."""
+    y, x, out = nodes // n_x, nodes % n_x, np.empty((len(nodes), len(nodes)), dtype=deflections.dtype)
+    for j in range(len(nodes)):
+        for i in range(len(nodes)):
+            out[j, i] = deflections[abs(y[j] - y[i]), abs(x[j] - x[i])]
+    return out
 
 
 class CoarseCorrection:
