@@ -135,19 +135,36 @@ class PlaneExchange:
             below[:] = received
         return window
 
-    def border(self, vector: np.ndarray) -> np.ndarray:
-        """Unknowns, or rows, of the border, which the last rank has behind its nodes."""
-        border = border_of(vector, self.problem.local)
-        return border if self.ranks.size == 1 else self.ranks.bcast(border, root=self.ranks.size - 1)
+    def with_border(self, numbers: np.ndarray, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Sums of numbers over all ranks, and the border's unknowns, or rows, of a vector, by one message.
 
-    def sums(self, pressure: np.ndarray, precision: type = np.float64) -> PressureSums:
-        """`PressureSums` of the pressures of all ranks; the deflection in a lower precision, if given."""
-        deflection = self.problem.deflection.convolution(pressure.astype(precision, copy=False))
-        return PressureSums(deflection.astype(np.float64, copy=False), self.forces(pressure))
+        The last rank has them behind its nodes.
+        """
+        border = border_of(vector, self.problem.local)
+        if self.ranks.size == 1:
+            return numbers, border
+        sent = np.zeros(len(numbers) + self.problem.balance.unknowns)
+        sent[: len(numbers)] = numbers
+        if self.problem.owns_border:
+            sent[len(numbers) :] = border
+        return tuple(np.split(global_sum(self.ranks, sent), [len(numbers)]))
+
+    def deflection(self, pressure: np.ndarray, precision: type) -> np.ndarray:
+        """Deflection of the local nodes, computed in a precision, by the pressures of all ranks."""
+        convolution = self.problem.deflection.convolution
+        return convolution(pressure.astype(precision, copy=False)).astype(np.float64, copy=False)
+
+    def sums(self, pressure: np.ndarray) -> PressureSums:
+        """`PressureSums` of the pressures of all ranks."""
+        return PressureSums(self.deflection(pressure, np.float64), self.forces(pressure))
 
     def forces(self, pressure: np.ndarray) -> np.ndarray:
         """Forces of the border by the pressures of all ranks."""
-        return global_sum(self.ranks, self.problem.balance.forces(pressure, self.problem.share.local))
+        return global_sum(self.ranks, self.local_forces(pressure))
+
+    def local_forces(self, pressure: np.ndarray) -> np.ndarray:
+        """Forces of the border by the local pressures."""
+        return self.problem.balance.forces(pressure, self.problem.share.local)
 
     def unknowns(
         self, vector: np.ndarray, pressure: np.ndarray, flag: bool
@@ -155,5 +172,5 @@ class PlaneExchange:
         """See :class:`ehlpetsc.nonlinear.ranks.Exchange`."""
         pairs = vector[: n_dofs(self.problem.local)].reshape(-1, 2)
         q, w = np.ascontiguousarray(self.window(pairs).T)
-        is_set = flag if self.ranks.size == 1 else bool(self.ranks.allreduce(int(flag), op=MPI.MAX))
-        return Unknowns(q, w, self.border(vector)), self.sums(pressure), is_set
+        flags, border = self.with_border(np.array([float(flag)]), vector)
+        return Unknowns(q, w, border), self.sums(pressure), bool(flags[0])

@@ -9,10 +9,8 @@ from mpi4py import MPI
 
 from ehlpetsc.discretisation.contact.node_state import directional_derivative
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.plane.deflection import PressureSums
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
-from ehlpetsc.nonlinear.ranks import all_ranks
 from ehlpetsc.nonlinear.two_fields import Jacobian
 
 # of the relative tolerance of GMRES, change of the pressures that a known deflection may leave out: the
@@ -21,7 +19,7 @@ SAME_PRESSURE = 0.03
 
 
 class KnownDeflection(NamedTuple):
-    """Deflection of the local nodes and forces of all, by a change of the local unknowns."""
+    """Deflection of the local nodes, and forces by the local pressures, of a change of the local unknowns."""
 
     change: np.ndarray
     deflection: np.ndarray
@@ -70,20 +68,23 @@ class PlaneJacobian(Jacobian):
         directional_derivative(self.derivatives[0], pairs, self.problem.owned.start, pressure)
         return pressure
 
-    def remember(self, v: np.ndarray, pressure: np.ndarray, sums: PressureSums) -> None:
-        """Store deflection and forces by local pressures, if these are those of the change v of unknowns."""
+    def remember(self, v: np.ndarray, pressure: np.ndarray, deflection: np.ndarray) -> None:
+        """Store the deflection by local pressures, if these are those of the change v of unknowns."""
         missed, allowed = self.pressure_of(v) - pressure, SAME_PRESSURE * self.linear_rtol
         fits = np.linalg.norm(missed) <= allowed * np.linalg.norm(pressure)
-        is_known = all_ranks(self.ranks, fits)
-        self.known = KnownDeflection(v, *sums) if is_known else None
+        forces = self.exchange.local_forces(pressure)
+        self.known = KnownDeflection(v, deflection, forces) if fits else None
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
         p, by = self.problem, self.derivatives
         local, first = n_dofs(p.local), p.owned.start
         pairs = v[:local].reshape(-1, 2)
-        if self.known is not None and all_ranks(self.ranks, np.array_equal(self.known.change, v)):
-            _, deflection, forces = self.known
+        is_known = self.known is not None and np.array_equal(self.known.change, v)
+        forces = self.known.forces if is_known else np.zeros(p.balance.unknowns)
+        (unknown, *forces), border = self.exchange.with_border(np.array([not is_known, *forces]), v)
+        if unknown == 0.0:  # on any rank
+            deflection, forces = self.known.deflection, np.array(forces)
         else:
             deflection, forces = self.exchange.sums(self.pressure_of(v))
         window, separation = self.exchange.window(pairs), np.empty(p.local)
@@ -91,7 +92,6 @@ class PlaneJacobian(Jacobian):
         for k in range(2):
             directional_derivative(by[1 + k], window, 0, changes[:, k])
         directional_derivative(by[3], pairs, first, separation)
-        border = self.exchange.border(v)
         of_border = p.balance.gap(border, p.share.local)
         out[0:local:2] = p.deflection.row_scale * (separation - of_border - deflection)
         out[1:local:2] = p.reynolds.product(self.reynolds_derivatives, changes, first)

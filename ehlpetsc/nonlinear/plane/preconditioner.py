@@ -33,6 +33,7 @@ from ehlpetsc.nonlinear.plane.factors import OVERLAP, IncompleteLU, PETScFactors
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, PRESSURE, Reduction, reduction_of, unknowns_of
 from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fitted_term, put, taken
+from ehlpetsc.nonlinear.ranks import global_sum
 
 # relative tolerance of GMRES from which on its deflections and factors are of single precision, 1e-7; a stiff
 # dry layer needs a lower one, and double precision
@@ -225,6 +226,7 @@ class Elimination:
         self.factors = Factors(sparse, coarse)
         gaps = (np.full(p.local, p.balance.gap(unit, p.share.local)) for unit in np.eye(p.balance.unknowns))
         of_border = [self._pressures(operator, np.zeros(p.local), gap) for gap in gaps]
+        of_border = [(by_p, by_r, global_sum(self.ranks, forces)) for by_p, by_r, forces in of_border]
         self.factors = Factors(sparse, coarse, of_border)
         is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
         if is_broken and not (is_complete or sparse.has_petsc):
@@ -233,7 +235,7 @@ class Elimination:
     def _pressures(
         self, operator: PlaneJacobian, reynolds: np.ndarray, separation: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pressures and Reynolds unknowns of the local nodes, and forces; see :meth:`SparseForm.solve`."""
+        """Pressures, Reynolds unknowns and forces of the local nodes; see :meth:`SparseForm.solve`."""
         p, (sparse, coarse, _) = self.problem, self.factors
         changes = np.zeros((p.local, 2), dtype=sparse.precision)
         changes[:, 1] = separation
@@ -246,7 +248,7 @@ class Elimination:
                 separation = separation + change
             pressure, r = sparse.solve(reynolds, separation)
         pressure = pressure + coarsely
-        return pressure, r, operator.exchange.forces(pressure)
+        return pressure, r, operator.exchange.local_forces(pressure)
 
     def _coarsely(self, reynolds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
@@ -265,15 +267,16 @@ class Elimination:
         b_g = full[0:local:2] / scale
         pressure, r, forces = self._pressures(operator, full[1:local:2], b_g)
         by_unit = np.array([by_unit for _, _, by_unit in of_border])
-        border = p.balance.change(exchange.border(full), forces, by_unit)
+        forces, of_rows = exchange.with_border(forces, full)
+        border = p.balance.change(of_rows, forces, by_unit)
         for change, (by_pressure, by_r, _) in zip(border, of_border, strict=True):
             pressure, r = pressure + change * by_pressure, r + change * by_r
-        sums = exchange.sums(pressure, precision_of(operator))
-        separation = sums.deflection + p.balance.gap(border, p.share.local) + b_g
+        deflection = exchange.deflection(pressure, precision_of(operator))
+        separation = deflection + p.balance.gap(border, p.share.local) + b_g
         out, back = np.empty(operator.size), np.ascontiguousarray(self.reduction.back[:, p.owned])
         out[:local] = unknowns_of(sparse.kind, back, pressure, r, separation).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
         if p.owns_border:
             border_of(out, p.local)[:] = border
-        operator.remember(out, pressure, sums)
+        operator.remember(out, pressure, deflection)
         return out
