@@ -14,6 +14,7 @@ from ehlpetsc.discretisation.step_inputs import shear_constants
 from ehlpetsc.physics.contact.hertz import hertz_ellipse
 from ehlpetsc.physics.oil.rheology import flow_law
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.stepping import first_guess, steady_start
 
 DRY_MESH = {"inlet": -1.25, "outlet": 1.25, "width": 2.5}
 CONTACTS = {
@@ -73,6 +74,19 @@ def test_dry_layer_tends_to_hertz():
     ]
     assert mean[2] < 2.5e-3 and mean[3] < 8e-4
     assert mean[0] > 2.5 * mean[1] > 6.0 * mean[2]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_start_of_a_stiff_dry_layer_does_not_hang_on_the_last_digit(seed, monkeypatch):
+    """The film is 1e-10 of the deflection, and the law of the layer far from linear in it."""
+
+    def disturbed(*arguments):
+        guess = first_guess.hertz_start(*arguments)
+        return guess._replace(w=guess.w * (1.0 + 1e-15 * rng.standard_normal(guess.w.size)))
+
+    rng = np.random.default_rng(seed)
+    monkeypatch.setattr(steady_start, "hertz_start", disturbed)
+    assert dry({"contact.boundary_film": None, "contact.asperity_height": 1e-10}, 1.0, 32)[1] < 8e-4
 
 
 FILMS = [  # M, L, central and minimum film, pressure in the middle, h00: limits from 129^2 and 257^2

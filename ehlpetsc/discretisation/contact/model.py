@@ -108,6 +108,12 @@ class ContactModel:
         """
         raise NotImplementedError
 
+    def follow_pressure(self, now: np.ndarray, step: np.ndarray) -> None:
+        """Change entries of a Newton step near a solution in place, where a law of the solids is not linear.
+
+        `now`, `step`: as of :meth:`clip_step`, which limits the changed step.
+        """
+
     def check(
         self, w: np.ndarray, reynolds_residual: np.ndarray, tolerance: float
     ) -> tuple[str | None, np.ndarray]:

@@ -85,7 +85,7 @@ class PlaneFields(TwoFields):
             return
         now, step = pairs(x.array_r, self.local), pairs(y.array, self.local).copy()
         of_oil = np.maximum(now[:, 0] - step[:, 0], 0.0) - np.maximum(now[:, 0], 0.0)
-        self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
+        self._clip(now, step)
         pressure, new = self.contact.pressure(*now.T), self.contact.pressure(*(now - step).T)
         largest = np.array([pressure.max(), np.abs(new - pressure).max(), np.abs(of_oil).max()])
         highest, change, of_oil = global_max(self.ranks, largest)
@@ -97,12 +97,18 @@ class PlaneFields(TwoFields):
         given = pairs(y.array, self.local)
         if excess > 1.0:
             y.scale(1.0 / excess)
-            self.contact.clip_step(now, given, FILM_AFTER_RELEASE * self.problem.film_scale)
+            self._clip(now, given)
         else:
             given[:] = step
         reynolds, is_steady = self.problem.reynolds, self.inputs.history is None
         if isinstance(reynolds, Reynolds) and not is_steady and self.model.lower_bound is None:
             self._settle(reynolds, now, given)
+
+    def _clip(self, now: np.ndarray, step: np.ndarray) -> None:
+        """Change and limit single entries of a step; a steady start in oil may be far from its solution."""
+        if self.inputs.history is not None or self.problem.fluid is None:
+            self.contact.follow_pressure(now, step)
+        self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
 
     def _settle(self, reynolds: Reynolds, now: np.ndarray, step: np.ndarray) -> None:
         """Change a step so that thin oil and the edges of cavities are where its films have them.
