@@ -223,11 +223,8 @@ def test_islands_of_cells_are_solved_as_by_a_sparse_solver(share):
     nodes = rng.permutation(np.flatnonzero(rng.random(n_y * n_x) < share))
     place = np.full(n_y * n_x, -1, dtype=np.int32)
     place[nodes] = np.arange(len(nodes))
-    by, rows, mesh = (
-        rng.normal(size=(len(nodes), STENCIL)),
-        rng.normal(size=len(nodes)),
-        (n_x, n_y * n_x, False),
-    )
+    by, rows = rng.normal(size=(len(nodes), STENCIL)), rng.normal(size=len(nodes))
+    mesh = n_x, n_y * n_x, False
     by[:, OWN] += 12.0
     matrix = np.zeros((len(nodes), len(nodes)))
     for row, node in enumerate(nodes):

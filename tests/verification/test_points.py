@@ -77,7 +77,7 @@ def test_dry_layer_tends_to_hertz():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_start_of_a_stiff_dry_layer_does_not_hang_on_the_last_digit(seed, monkeypatch):
+def test_start_of_a_stiff_dry_layer_does_not_depend_on_the_last_digit(seed, monkeypatch):
     """The film is 1e-10 of the deflection, and the law of the layer far from linear in it."""
 
     def disturbed(*arguments):

@@ -33,7 +33,7 @@ STEPS = 3  # of the local system
 LARGEST = 0.3  # p0: change of a pressure in one of them
 SETTLED = 1e-3  # p0: change of all pressures that ends them
 FREE, HELD = -1, -2  # places of nodes that are not in the local system
-MAX_PRODUCTS = 2e7  # of an island, 20 ms: what is larger is no matter of single cells
+MAX_PRODUCTS = 2e7  # of an island, 20 ms: larger ones are left to Newton's method for the whole system
 UNSEEN = -1  # place of a cell in no island yet
 
 
