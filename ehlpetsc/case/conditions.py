@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.declarations import KeyTable
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
@@ -238,7 +239,7 @@ def reversal_faults(case: Case, table: ConditionsTable) -> list[str]:
     if table.entrainment.min() >= 0.0 or abs(last + mesh.inlet) < 1e-9:
         return []
     fault = f"mesh.outlet = {mesh.outlet:g}: oil enters there where the entrainment speed is negative"
-    cells = np.ceil(-2.0 * mesh.inlet * mesh.points_per_half_width - 1e-6)
+    cells = whole_up(-2.0 * mesh.inlet * mesh.points_per_half_width)
     half = 0.5 * cells / mesh.points_per_half_width
     inlet = f" with mesh.inlet = {-half:.12g}" if abs(half + mesh.inlet) > 1e-9 else ""
     return [f"{fault}; allowed: {half:.12g}{inlet}, a whole number of cells with the inlet as far out"]

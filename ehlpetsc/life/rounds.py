@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from mpi4py import MPI
 
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.case.tables import Case
 from ehlpetsc.effects.depths import PlasticRecord, WearRecord
@@ -61,7 +62,7 @@ class Positions:
         self.rq = self.scenes[0].rq
         shift = case.time.pass_shift if self.count > 1 else 0.0
         # columns of body 2 in excess of position 0, and the direction in which positions follow each other
-        self._columns_more = int(np.ceil(abs((self.count - 1) * shift) / scales.spacing))
+        self._columns_more = whole_up(abs((self.count - 1) * shift) / scales.spacing)
         self._sign = -1.0 if (directed_speeds(case, scales)[1] > 0.0) == (shift > 0.0) else 1.0
         self.passes_2 = 1.0
         if case.gears:

@@ -6,11 +6,10 @@ state; the conditions at an instant are defined here.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-LEVEL_TOLERANCE = 1e-6  # of a time step: times nearer than this are equal
+from ehlpetsc.base.counts import COUNT_TOLERANCE, whole_up
 
 
 class Conditions(NamedTuple):
@@ -107,7 +106,7 @@ class ConstantOperation:
     def time_left(self, time: float, nominal: float) -> float:
         """Time to the next time level [s]."""
         left = nominal - time % nominal
-        return left + nominal if left < LEVEL_TOLERANCE * nominal else left
+        return left + nominal if left < COUNT_TOLERANCE * nominal else left
 
     def level(self, time: float, nominal: float) -> float:
         """Number of time levels at a time [s], with a fraction between two levels."""
@@ -115,4 +114,4 @@ class ConstantOperation:
 
     def step_count(self, nominal: float) -> int:
         """Number of time steps of the whole run."""
-        return math.ceil(self.duration / nominal - 1e-9)
+        return whole_up(self.duration / nominal)

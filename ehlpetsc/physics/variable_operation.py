@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ehlpetsc.physics.operation import LEVEL_TOLERANCE, Conditions
+from ehlpetsc.base.counts import COUNT_TOLERANCE, whole_down, whole_up
+from ehlpetsc.physics.operation import Conditions
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -264,15 +265,15 @@ class VariableOperation:
             rate = np.maximum(rate, MIN_STEPS / (self.courant * self.period))
         steps = cumulative(rate, fine.time)
         multiple = 4 if self.is_reversing else 1  # equal time levels in both strokes
-        count = multiple * max(int(np.ceil(steps[-1] * (1.0 - 1e-12) / multiple)), 1)
+        count = multiple * max(whole_up(steps[-1] / multiple), 1)
         if self.is_reversing or self.table.repeat > 1:
             return np.interp(np.linspace(0.0, steps[-1], count + 1), steps, fine.time)
         # whole nodes a step, except for the last one
-        return np.interp(np.minimum(np.arange(count + 1), steps[-1]), steps, fine.time)
+        return np.interp(np.append(np.arange(count), steps[-1]), steps, fine.time)
 
     def step_count(self, nominal: float) -> int:
         """Number of time steps of the whole run."""
-        return int(np.ceil(self.level(self.duration, nominal) - LEVEL_TOLERANCE))
+        return whole_up(self.level(self.duration, nominal))
 
     def level(self, time: float, nominal: float) -> float:
         """Number of time levels at a time [s], with a fraction between two levels."""
@@ -284,13 +285,13 @@ class VariableOperation:
     def time_step(self, time: float, nominal: float) -> float:
         """Length of the time step from the level before `time` to the next one [s]."""
         levels = self._levels
-        k = max(int(np.floor(self.level(time, nominal) + LEVEL_TOLERANCE)), 0) % (len(levels) - 1)
+        k = max(whole_down(self.level(time, nominal)), 0) % (len(levels) - 1)
         return float(levels[k + 1] - levels[k])
 
     def time_left(self, time: float, nominal: float) -> float:
         """Time to the next time level or to the end of the run, whichever is nearer [s]."""
         level, step = self.level(time, nominal), self.time_step(time, nominal)
-        fraction = level - np.floor(level + LEVEL_TOLERANCE)
-        left = (1.0 - fraction) * step if fraction > LEVEL_TOLERANCE else step
+        fraction = level - whole_down(level)
+        left = (1.0 - fraction) * step if fraction > COUNT_TOLERANCE else step
         end = self.duration - time
         return min(left, end) if end > TIME_TOLERANCE * self.duration else left

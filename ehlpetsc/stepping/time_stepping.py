@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ehlpetsc.base.counts import COUNT_TOLERANCE, whole_up
 from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrored
@@ -17,7 +18,7 @@ from ehlpetsc.discretisation.transport import carried
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Effect, Scene, Step
 from ehlpetsc.nonlinear.options import ROUGHNESS
-from ehlpetsc.physics.operation import LEVEL_TOLERANCE
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
 from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
@@ -33,7 +34,7 @@ NEARLY_NOMINAL = 1.5  # a step within this factor of the nominal step is followe
 
 def on_level(steps: float, every: int = 1) -> bool:
     """Whether a number of nominal steps is a multiple of `every`, except for rounding."""
-    return abs(steps - every * round(steps / every)) < LEVEL_TOLERANCE
+    return abs(steps - every * round(steps / every)) < COUNT_TOLERANCE
 
 
 def next_step(dt: float | None, retries: int, nominal: float, left: float) -> float:
@@ -48,7 +49,12 @@ def next_step(dt: float | None, retries: int, nominal: float, left: float) -> fl
     longest = nominal
     if dt is not None and NEARLY_NOMINAL * dt < nominal:
         longest = dt if retries else MAX_STEP_RATIO * dt
-    return left / np.ceil(left / longest - LEVEL_TOLERANCE)
+    return left / whole_up(left / longest)
+
+
+def ramp_time(scales: Scales, dt: float) -> float:
+    """Duration of the ramp of roughness at rest [s], a whole number of steps of `dt` [s]."""
+    return whole_up(REST_RAMP_LENGTH * scales.a / scales.u / dt) * dt
 
 
 class TimeStepping:
@@ -179,7 +185,7 @@ class TimeStepping:
         except NoSteadyStart as error:
             raise NotConverged(f"steady start: {error}") from error
         dt, newton = self.operation.time_step(0.0, self.scales.dt), state.newton
-        self.ramp_time = np.ceil(REST_RAMP_LENGTH * self.scales.a / self.scales.u / dt) * dt
+        self.ramp_time = ramp_time(self.scales, dt)
         moved = self.operation.displacement(0.0, -self.ramp_time)
         frozen = {e.name: records[e.name] for e in self.effects if e.frozen_before_start}
         state = replace(state, time=-self.ramp_time, travelled=moved, records=state.records | frozen)
@@ -188,7 +194,7 @@ class TimeStepping:
             m = self.problem.mass_per_area(begun.q, begun.w)
             state = replace(state, unknowns=begun.unknowns, m=m, m_older=None)
             state = replace(state, time=begun.time, travelled=begun.travelled)
-        before = left * self.ramp_time + (dt if left else LEVEL_TOLERANCE * dt)  # steps may be coarse
+        before = left * self.ramp_time + (dt if left else COUNT_TOLERANCE * dt)  # steps may be coarse
         while state.time < -before:
             state = self.advance(state, watch=watch)
             state, newton = replace(state, records=state.records | frozen), newton + state.newton

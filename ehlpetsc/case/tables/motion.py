@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from ehlpetsc.base.counts import whole_near
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.case.tables.contact import VARYING
 from ehlpetsc.gears.load_sharing import RULES
@@ -161,7 +162,7 @@ class Mesh(Values):
     @property
     def nodes(self) -> int:
         """Number of nodes; the outlet is rounded to a whole number of spacings."""
-        return round((self.outlet - self.inlet) * self.points_per_half_width) + 1
+        return whole_near((self.outlet - self.inlet) * self.points_per_half_width) + 1
 
 
 def _complete_mesh(mesh: Mesh) -> dict[str, Any]:

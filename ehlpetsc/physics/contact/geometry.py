@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_near
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line
@@ -92,13 +93,13 @@ def one_row(mesh: Values, dry: Dry) -> int:
 
 def strip_rows(mesh: Values, dry: Dry) -> int:
     """Rows of a strip, over its period."""
-    return max(round(mesh.width * (mesh.points_across or mesh.points_per_half_width)), 2)
+    return max(whole_near(mesh.width * (mesh.points_across or mesh.points_per_half_width)), 2)
 
 
 def point_rows(mesh: Values, dry: Dry) -> int:
     """Rows of a point contact, an odd number."""
     points = mesh.points_across or mesh.points_per_half_width * dry.b / dry.a
-    return 2 * max(round(0.5 * (mesh.width or POINT_WIDTH) * points), 2) + 1
+    return 2 * max(whole_near(0.5 * (mesh.width or POINT_WIDTH) * points), 2) + 1
 
 
 def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:

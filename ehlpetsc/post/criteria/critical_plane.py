@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import ZERO, compiled
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.post.criteria.planes import (
     GRID_STEP,
     Criteria,
@@ -258,7 +259,7 @@ def _sought(stress: np.ndarray, lengths: np.ndarray, law: tuple, share: float) -
     """
     grid, work = planes_and_directions(components=stress.shape[1]), plane_workspace(stress.shape[-1])
     seek = partial(_worst_planes, grid, law, work)
-    wanted = max(int(np.ceil(share * len(stress))), MIN_SOUGHT)
+    wanted = max(whole_up(share * len(stress)), MIN_SOUGHT)
     if wanted >= len(stress) or stress.shape[1] == 3:
         return in_double_precision(seek, stress, lengths, 3)
     out = in_double_precision(partial(_estimates, FIRST_PAIRS, law, work), stress, lengths, 3)

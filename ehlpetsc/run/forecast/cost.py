@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ehlpetsc import __version__
 from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.effects.effect import combined_rq
 from ehlpetsc.physics import film_formulas, operation_of
@@ -154,7 +155,7 @@ def _part_in_contact(case: Case, s: Scales, profile: RoughSurface, reaches: floa
     part = "no part passes through the contact"
     if through > 0.0:
         part = f"0 to {1e3 * through:.3g} mm of {1e3 * length:.4g} mm pass through the contact, x = 0 first"
-    return [f"{part}; the whole profile needs time.travel = {math.ceil(needed)}"]
+    return [f"{part}; the whole profile needs time.travel = {whole_up(needed)}"]
 
 
 def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:

@@ -1,0 +1,50 @@
+"""Counts of steps and nodes, which must not depend on the last digit of the quotient behind them."""
+
+import math
+
+import numpy as np
+import pytest
+from support import CASES
+
+from ehlpetsc.base.counts import whole_down, whole_near, whole_up
+from ehlpetsc.case.loading import load
+from ehlpetsc.physics.operation import Conditions, ConstantOperation
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.stepping.time_stepping import next_step, ramp_time
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-15, -1e-15, 1e-8, -1e-8])
+@pytest.mark.parametrize("number", [1, 7, 100, 32_772, 4_000_000])
+def test_a_rounded_whole_number_counts_as_itself(number, rounding):
+    rounded = number * (1.0 + min(abs(rounding), 1e-7 / number) * math.copysign(1.0, rounding))
+    assert whole_up(rounded) == whole_down(rounded) == whole_near(rounded) == number
+    assert whole_near(rounded - 0.5) == number  # halves go up, whichever way they are rounded
+    assert (whole_up(number + 1e-5), whole_down(number - 1e-5)) == (number + 1, number - 1)
+
+
+def test_ramp_of_a_rough_start_has_the_same_steps_at_any_load_radius_and_speed():
+    random, counts = np.random.default_rng(1), set()
+    for _ in range(100):
+        load_given, radius, speed = 10.0 ** random.uniform((4.0, -3.0, -1.0), (6.0, -1.0, 1.0))
+        given = f"contact.load={load_given!r}", f"contact.radius={radius!r}"
+        motion = f"motion.entrainment_speed={speed!r}", "motion.slide_roll_ratio=0", "time.courant=1"
+        s = Scales.of(load(CASES / "table1_rough.toml", [*given, *motion, "mesh.points_per_half_width=50"]))
+        counts.add(round(ramp_time(s, s.dt) / s.dt))
+    assert counts == {50}
+
+
+def test_steps_of_a_run_of_a_whole_number_of_them_do_not_depend_on_rounding():
+    random = np.random.default_rng(2)
+    for speed, nominal in 10.0 ** random.uniform((-2.0, -8.0), (2.0, -4.0), (200, 2)):
+        operation = ConstantOperation(Conditions(1.0, 1.0, speed, 0.5 * speed), 5e5 * nominal * speed)
+        assert operation.step_count(nominal) == 500_000
+        assert next_step(nominal, 0, nominal, 3 * nominal) == pytest.approx(nominal, rel=1e-12)
+
+
+@pytest.mark.parametrize("inlet", [-2.5, -2.45, -2.05, -2.85])
+def test_nodes_of_a_mesh_of_half_a_spacing_more_do_not_depend_on_where_it_begins(inlet):
+    outlet = round(inlet + 4.05, 2)  # 40.5 spacings, in binary a little more or less
+    case = load(
+        CASES / "moes.toml", [f"mesh.inlet={inlet}", f"mesh.outlet={outlet}", "mesh.points_per_half_width=10"]
+    )
+    assert case.mesh.nodes == 42
