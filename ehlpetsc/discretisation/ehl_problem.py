@@ -95,7 +95,6 @@ class EHLProblem:
         self.film_scale, self.model = film_scale, model
         self.deflection, self.reynolds = deflection, reynolds
         self.balance = balance_of(case, scales)
-        self._undeformed = self.grid.undeformed[self.window]
         self.inlet_film = self.oil = None
         if self.fluid is not None:
             self.oil = IsothermalOil(self.fluid, scales)
@@ -129,7 +128,7 @@ class EHLProblem:
 
     def film(self, pressure: np.ndarray, border: np.ndarray, phi: np.ndarray) -> np.ndarray:
         """Separation by the integral form, in a^2/R."""
-        return self.balance.gap(border) + self.grid.undeformed + phi + self.deflection.integral(pressure)
+        return self.balance.gap(border) + self.grid.undeformed() + phi + self.deflection.integral(pressure)
 
     def mass_per_area(self, q: np.ndarray, w: np.ndarray) -> np.ndarray | None:
         r"""Mass per area of the film, :math:`\rho h(1-\theta)`, at every node; None without oil."""
@@ -154,8 +153,8 @@ class EHLProblem:
         state = model.state(q, w)
         residual = np.empty(self.size)
         # the parabola's second difference is dx^2 exactly
-        curvature = self.scales.R / inputs.conditions.radius
-        separation = state.separation - curvature * self._undeformed - inputs.phi[self.window]
+        undeformed = self.grid.undeformed(self.scales.R / inputs.conditions.radius, self.window)
+        separation = state.separation - undeformed - inputs.phi[self.window]
         sums = self.deflection.sums(state.pressure) if sums is None else sums
         approach = self.balance.gap(border, self.share.local)
         q_of(residual, self.local)[:] = self.deflection.residual(separation, approach, sums)

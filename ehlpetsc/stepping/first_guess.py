@@ -27,9 +27,9 @@ FILM_BISECTIONS = 60  # of an interval, down to rounding
 
 
 def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
-    """Undeformed gap of a step without the parabola of the reference radius, in a^2/R."""
+    """Undeformed gap of a step without the shapes of the reference radius, in a^2/R."""
     change = problem.scales.R / inputs.conditions.radius - 1.0
-    return inputs.phi + change * problem.grid.undeformed
+    return inputs.phi + change * problem.grid.parabolas
 
 
 def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknowns:

@@ -9,6 +9,7 @@ from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.contact.geometry import brewe_rigid_film
 from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.contact.shape import CYLINDER
 from ehlpetsc.physics.film_formulas import (
     expected_film,
     film_left_by_inlet,
@@ -195,7 +196,7 @@ def test_contact_or_pressure_at_the_ends_is_an_error():
     changed = {"mesh.inlet": -1.01, "mesh.outlet": 1.01, "surface": {"2": {"synthetic": dent}}}
     with pytest.raises(ehlpetsc.NotConverged, match=r"solids .* inlet, x = -1\.01 a: .* mesh\.inlet "):
         ehlpetsc.solve(load(CASES / "dry_hertz.toml", changed))
-    grid = Grid((np.linspace(-2.0, 1.2, 5),), (1e-4,), (1.0,), (1.0,), 0.5 * np.pi)
+    grid = Grid((np.linspace(-2.0, 1.2, 5),), (1e-4,), (1.0,), (CYLINDER,), 0.5 * np.pi)
     dry = np.zeros(5, bool)
     check_ends(grid, np.array([0.0, 0.5, 1.0, 0.3, 0.0]), dry)
     check_ends(grid, np.array([0.0, 0.5, 1.0, 0.3, 0.0099]), dry)

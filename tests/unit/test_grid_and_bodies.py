@@ -12,6 +12,7 @@ from ehlpetsc.effects.depths import PlasticDeformation, PlasticRecord, Wear, Wea
 from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.contact.shape import CYLINDER, STRAIGHT, Shape
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.motion.body_field import CELLS_PER_MESH_CELL, BodyField, BodyFields, MeshOnBodies
 
@@ -19,13 +20,14 @@ A = 2e-4  # half-width [m]
 X, Y = np.linspace(-1.5, 1.0, 26), np.linspace(-0.6, 0.6, 7)
 AXES = {"line": (X,), "strip": (Y, X), "point": (Y, X)}
 DX, DY = X[1] - X[0], Y[1] - Y[0]
+SHAPES = {"line": (CYLINDER,), "strip": (STRAIGHT, CYLINDER), "point": (Shape(0.5), Shape(1.5))}
 SPACINGS = {"line": (DX * A,), "strip": (DY * A, DX * A), "point": (DY * A, DX * A)}
 
 
 def grid_of(kind):
-    axes, curvatures = AXES[kind], {"line": (1.0,), "strip": (0.0, 1.0), "point": (0.5, 1.5)}
+    axes, shapes = AXES[kind], SHAPES[kind]
     half_widths = {"line": (1.0,), "strip": (np.inf, 1.0), "point": (0.4, 1.0)}
-    parts = SPACINGS[kind], half_widths[kind], curvatures[kind]
+    parts = SPACINGS[kind], half_widths[kind], shapes
     return Grid(axes, *parts, load=1.0, periodic=kind == "strip")
 
 
@@ -47,7 +49,7 @@ def test_grid(kind, shape, cell, node_size, distance, undeformed):
     node = np.ravel_multi_index((1, 3)[-len(shape) :], shape)
     assert [c[node] for c in grid.coordinates] == near([-0.4, -1.2][-len(shape) :])
     assert grid.distance[node] == near(distance)
-    assert grid.undeformed[node] == near(undeformed)
+    assert grid.undeformed()[node] == near(undeformed)
     np.testing.assert_array_equal(grid.rows(np.arange(grid.n))[-1], np.arange(grid.n)[-26:])
     edges, first = grid.edges(), 26 * np.arange(grid.n // 26)
     np.testing.assert_array_equal(edges.pop("inlet"), first)
@@ -61,12 +63,12 @@ def test_grid(kind, shape, cell, node_size, distance, undeformed):
 def test_nodes_inside_and_interpolation_along_both_axes():
     grid = grid_of("point")
     assert grid.inside(1.0).sum() == (grid.distance <= 1.0).sum() > 50
-    between = Grid((X + 0.04,), (DX * A,), (1.0,), (1.0,), 1.0)  # no node in the middle
+    between = Grid((X + 0.04,), (DX * A,), (1.0,), (CYLINDER,), 1.0)  # no node in the middle
     assert np.flatnonzero(between.inside(0.0)).tolist() == [np.argmin(np.abs(X + 0.04))]
     np.testing.assert_array_equal(between.inside(0.2), np.abs(X + 0.04) <= 0.2)
     grid = grid_of("point")
     axes = np.linspace(-0.7, 0.7, 15), np.linspace(-2.0, 0.9, 30)
-    fine = Grid(axes, (1.0, 1.0), (1.0, 1.0), (1.0, 1.0), 1.0)
+    fine = Grid(axes, (1.0, 1.0), (1.0, 1.0), (CYLINDER, CYLINDER), 1.0)
     y, x = grid.coordinates
     field = np.exp(-(x**2) - 2.0 * y**2)
     found = grid.interpolated(field, fine).reshape(fine.shape)

@@ -6,6 +6,7 @@ from support.exact_solutions import moving_band
 
 from ehlpetsc.effects.heat.half_spaces import Body, StepWeights, diffuse, exponentials
 from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.contact.shape import CYLINDER
 from ehlpetsc.physics.flash_temperature import Solid, blok_flash_temperature
 
 STEEL = Solid(46.0, 7850.0, 470.0)
@@ -46,7 +47,7 @@ def test_uniform_flux(steps):
 
 
 def body(speed, spacing, nodes, dt=None):
-    grid = Grid((np.arange(nodes),), (spacing,), (1.0,), (1.0,), 1.0)
+    grid = Grid((np.arange(nodes),), (spacing,), (1.0,), (CYLINDER,), 1.0)
     return Body(STEEL, speed, grid, dt or 0.5 * spacing / speed)
 
 
@@ -128,7 +129,7 @@ def plane(nodes, half, ny, periodic=False):
     """Grid of square cells; lengths in the half-width `half` [m], 1.6 ahead of and behind its middle."""
     step = 1.0 / nodes
     x, y = step * np.arange(-int(1.6 * nodes), int(1.6 * nodes) + 1), step * (np.arange(ny) - 0.5 * (ny - 1))
-    return Grid((y, x), (step * half, step * half), (1.0, 1.0), (1.0, 1.0), 1.0, periodic=periodic)
+    return Grid((y, x), (step * half, step * half), (1.0, 1.0), (CYLINDER, CYLINDER), 1.0, periodic=periodic)
 
 
 def moving_point(x, y, half, speed):
@@ -174,7 +175,7 @@ def test_moving_point(peclet, rows):
 def test_rows_alike_are_the_row_alone():
     grid, speed, dt = plane(20, 1e-4, 5, periodic=True), 3.0, 1e-6
     row = np.random.default_rng(3).uniform(0.0, FLUX, grid.shape[1])
-    line = Grid(grid.axes[1:], grid.spacings[1:], (1.0,), (1.0,), 1.0)
+    line = Grid(grid.axes[1:], grid.spacings[1:], (1.0,), (CYLINDER,), 1.0)
     rises = []
     for one, flux in ((Body(STEEL, speed, line, dt), row), (Body(STEEL, speed, grid, dt), np.tile(row, 5))):
         record = one.record(flux, one.steady(flux, speed)[1])

@@ -18,6 +18,7 @@ from ehlpetsc.discretisation.transport import carried, carried_with
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import reynolds_columns
 from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.contact.shape import CYLINDER
 from ehlpetsc.physics.scales import Scales
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
@@ -120,7 +121,7 @@ def test_reynolds_rows_of_a_part_equal_the_whole_with_and_without_oil():
         columns = reynolds_columns(first, last, n)
         np.testing.assert_array_equal(columns, reynolds_columns(0, n, n)[first:last])
     q = np.random.default_rng(7).uniform(-1.0, 1.0, 40)
-    grid = Grid((np.arange(40.0),), (1.0,), (1.0,), (1.0,), 1.0)
+    grid = Grid((np.arange(40.0),), (1.0,), (1.0,), (CYLINDER,), 1.0)
     whole, part = (NoOil(grid, part_of_line(*ends)) for ends in ((0, 40, 40), (12, 30, 40, 10)))
     (rows, entries), (some, of_part) = whole.evaluate(q, q, None), part.evaluate(q[10:], q[10:], None)
     np.testing.assert_array_equal(some, rows[12:30])

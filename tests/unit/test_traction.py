@@ -12,6 +12,7 @@ from ehlpetsc.effects.effect import Scene
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.contact.grid import Grid
+from ehlpetsc.physics.contact.shape import CYLINDER
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import benedict_kelley, hoehn_michaelis, shear_stresses, xu_kahraman
 from ehlpetsc.stepping.observables import diagnostics, mean_film
@@ -157,7 +158,7 @@ def test_film_of_rounding_size_has_solid_shear():
 
 def test_mean_film_is_over_the_central_half():
     x = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
-    scales = SimpleNamespace(grid=Grid((x,), (0.5,), (1.0,), (1.0,), 1.0), h=2e-6)
+    scales = SimpleNamespace(grid=Grid((x,), (0.5,), (1.0,), (CYLINDER,), 1.0), h=2e-6)
     films = np.array([9.0, 1.0, 2.0, 3.0, 9.0])
     assert mean_film(scales, films, 1.0) == pytest.approx(4e-6, rel=1e-14)
     assert mean_film(scales, films, 2.0) == pytest.approx(9.6e-6, rel=1e-14)

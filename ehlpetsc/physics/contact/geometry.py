@@ -19,6 +19,7 @@ from ehlpetsc.base.counts import whole_near
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line
+from ehlpetsc.physics.contact.shape import CYLINDER, STRAIGHT, Shape
 
 MIN_OVER_CENTRAL_FILM = 0.75  # of an incompressible oil
 POINT_WIDTH = 4.0  # half-widths b: of the mesh of a point contact across, unless given
@@ -83,7 +84,7 @@ def point_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, ratio
 
 def line_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     """Nodes of a line contact."""
-    return Grid((along(mesh),), (dry.a / mesh.points_per_half_width,), (1.0,), (1.0,), 0.5 * np.pi)
+    return Grid((along(mesh),), (dry.a / mesh.points_per_half_width,), (1.0,), (CYLINDER,), 0.5 * np.pi)
 
 
 def one_row(mesh: Values, dry: Dry) -> int:
@@ -110,7 +111,13 @@ def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     spacings = step * dry.a, dry.a / mesh.points_per_half_width
     load = 0.5 * np.pi * mesh.width
     return Grid(
-        (y, along(mesh)), spacings, (math.inf, 1.0), (0.0, 1.0), load, breadth=mesh.width, periodic=True
+        (y, along(mesh)),
+        spacings,
+        (math.inf, 1.0),
+        (STRAIGHT, CYLINDER),
+        load,
+        breadth=mesh.width,
+        periodic=True,
     )
 
 
@@ -121,12 +128,12 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     half = point_rows(mesh, dry) // 2
     y = np.arange(-half, half + 1) / points
     spacings = dry.a / points, dry.a / mesh.points_per_half_width
-    curvature = contact.radius / contact.radius_across
+    across = Shape(contact.radius / contact.radius_across)
     return Grid(
         (y, along(mesh)),
         spacings,
         (ratio, 1.0),
-        (curvature, 1.0),
+        (across, CYLINDER),
         2.0 * np.pi / 3.0 * ratio,
         growth=2.0 / 3.0,
         breadth=2.0 * ratio,

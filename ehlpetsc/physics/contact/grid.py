@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ehlpetsc.physics.contact.shape import Shape
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -21,8 +23,8 @@ class Grid:
         Of the nodes along each axis [m].
     half_widths
         Of the dry smooth contact along each axis in a; infinite along the length of a line contact.
-    curvatures
-        R over the radius of curvature along each axis.
+    shapes
+        Gap of the undeformed solids along each axis.
     load
         Integral of the pressure over the nodes, in p0 and a.
     growth
@@ -38,7 +40,7 @@ class Grid:
     axes: tuple[np.ndarray, ...]
     spacings: tuple[float, ...]
     half_widths: tuple[float, ...]
-    curvatures: tuple[float, ...]
+    shapes: tuple[Shape, ...]
     load: float
     growth: float = 1.0
     breadth: float = 1.0
@@ -86,10 +88,25 @@ class Grid:
         return tuple(axis.ravel() for axis in np.meshgrid(*self.axes, indexing="ij"))
 
     @cached_property
-    def undeformed(self) -> np.ndarray:
-        """Gap of the undeformed solids that touch in the middle, in a^2/R, flat."""
-        shapes = [0.5 * x**2 * c for x, c in zip(self.coordinates, self.curvatures, strict=True) if c]
-        return sum(shapes[1:], start=shapes[0])
+    def parabolas(self) -> np.ndarray:
+        """Gap of the parabolas of the undeformed solids of the radius R in a^2/R, flat."""
+        axes = zip(self.coordinates, self.shapes, strict=True)
+        gaps = [shape.parabola(nodes) for nodes, shape in axes if shape.curvature]
+        return sum(gaps[1:], start=gaps[0])
+
+    @cached_property
+    def profiles(self) -> np.ndarray:
+        """Gap of the profiles of the undeformed solids in a^2/R, flat."""
+        axes = zip(self.axes, self.shapes, strict=True)
+        gaps = np.meshgrid(*(shape.beside(nodes) for nodes, shape in axes), indexing="ij")
+        return sum(gaps[1:], start=gaps[0]).ravel()
+
+    def undeformed(self, curvature: float = 1.0, nodes: slice = slice(None)) -> np.ndarray:
+        """Gap of the undeformed solids that touch in the middle in a^2/R, flat.
+
+        `curvature`: R over the radius along x, which all parabolas follow and no profile.
+        """
+        return curvature * self.parabolas[nodes] + self.profiles[nodes]
 
     @cached_property
     def distance(self) -> np.ndarray:
