@@ -28,7 +28,8 @@ MAX_ROUNDING_FACTOR = 10.0  # limit of the factor by which rounding may raise Ne
 MAX_ROUNDING = 1e-6  # up to which it may raise a default one: rounding limits the oil balance of all contacts
 CLEAR_OF_BOUND = 0.02  # of the expected film: minimum film of a guess that is solved without the bound
 MAX_SHORTENED_STEPS = 20  # of a solve
-OVERFLOW = PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
+OVERFLOW = next(v for v, k in REASONS.items() if k in ("DIVERGED_FUNCTION_NANORINF", "DIVERGED_FNORM_NAN"))
 REJECTED_STEP = (
     PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
     PETSc.SNES.ConvergedReason.DIVERGED_LINE_SEARCH,
@@ -199,7 +200,10 @@ class NewtonSolver:
     def _solve(
         self, snes: PETSc.SNES, guess: Unknowns, inputs: StepInputs, max_it: int | None
     ) -> tuple[Unknowns, int]:
-        """Solution and iterations; a step to a residual that is not finite is repeated at half its length."""
+        """Solution and iterations; a step to a residual that is not finite is repeated at half its length.
+
+        A step that is not finite itself, since its linear solve has failed, ends the solve.
+        """
         self.system.set_initial_guess(guess, inputs)
         limit, unconstrained = max_it or self._max_it, snes is self._unconstrained_snes
         spent, share = 0, 1.0
@@ -213,6 +217,8 @@ class NewtonSolver:
             taken = snes.getIterationNumber()
             spent += taken + 1
             if snes.getConvergedReason() != OVERFLOW or self._before is None or spent >= limit:
+                break
+            if snes.ksp.getConvergedReason() == PETSc.KSP.ConvergedReason.DIVERGED_NANORINF:
                 break
             share, self._needs_renewal = 0.5 * share if taken == 0 else 0.5, True
             self.system.continue_from(self._before)
@@ -276,9 +282,6 @@ class NewtonSolver:
             self._petsc_objects.pop().destroy()
         self.system.matrices.renew()
         self._create()
-
-
-REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
 
 
 def release_frames(error: BaseException) -> None:

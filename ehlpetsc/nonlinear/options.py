@@ -16,7 +16,8 @@ DEFAULTS = {
     "snes_max_it": "30",
     "snes_rtol": "0",  # no fraction of the first residual is an accuracy: with a thick film it may be 1e17
     "snes_stol": "0",
-    "snes_divergence_tolerance": "-1",  # relative to the first residual, which may be almost zero
+    # no limit, as it is relative to the first residual, which may be almost zero; -1 is 1e4 since PETSc 3.22
+    "snes_divergence_tolerance": "-3",
     "snes_max_funcs": "100000",
     "ksp_type": "fgmres",  # stores the preconditioned vectors: one application less than gmres
     "ksp_rtol": "1e-4",  # tighter gains nothing, looser costs Newton iterations
