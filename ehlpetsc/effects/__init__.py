@@ -10,8 +10,10 @@ from collections.abc import Collection
 
 from ehlpetsc.base.quantities import register
 from ehlpetsc.effects.depths import PlasticDeformation, Wear
-from ehlpetsc.effects.effect import Effect, RoughSurfaces, Scene
+from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.heat.effect import Heat
+from ehlpetsc.effects.roughness import RoughSurfaces
+from ehlpetsc.effects.scene import Scene
 
 EFFECTS: list[type[Effect]] = [RoughSurfaces, PlasticDeformation, Wear, Heat]
 for effect in EFFECTS:

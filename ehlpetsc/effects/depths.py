@@ -10,7 +10,9 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
 from ehlpetsc.base.quantities import AtEnd, Count
-from ehlpetsc.effects.effect import Effect, Scene, Step
+from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.scene import Scene
+from ehlpetsc.effects.step import Step
 from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.errors import CaseError, NotConverged, OutputError, PostError, Stopped, UsageError
 from ehlpetsc.case.tables import Case
 from ehlpetsc.effects.depths import PlasticRecord, WearRecord
-from ehlpetsc.effects.effect import Scene
+from ehlpetsc.effects.scene import Scene
 from ehlpetsc.life import laws
 from ehlpetsc.life.body import MAX_EXTRAPOLATION, NO_ROWS, LifeBody, Rates
 from ehlpetsc.life.one_pass import OfBody, Pass
@@ -49,7 +49,7 @@ def number_of_positions(case: Case) -> int:
 class Positions:
     """Positions of surface 2.
 
-    `scenes`: `effects.effect.Scene` of each position.
+    `scenes`: `effects.scene.Scene` of each position.
 
     `rq`: combined root mean square roughness [m]. `passes_2`: passes of body 2 for each one of body 1, over
     the positions together.

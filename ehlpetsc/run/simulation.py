@@ -19,7 +19,7 @@ from ehlpetsc.case.loading import Case, load
 from ehlpetsc.case.tables.surface import check_unchanged
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import effects_of
-from ehlpetsc.effects.effect import Scene
+from ehlpetsc.effects.scene import Scene
 from ehlpetsc.nonlinear import solver_of
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import START, TIME_STEPS, RunOptions
@@ -96,7 +96,7 @@ class Simulation:
     operation : physics.operation.ConstantOperation
         Load, radius and speeds over time.
     roughness : surfaces.roughness.Roughness or None
-    scene : effects.effect.Scene
+    scene : effects.scene.Scene
         Case, scales, operation and the positions of both surfaces at the beginning of this run.
     options : nonlinear.options.RunOptions
         Context manager; entering it once around many steps saves time.

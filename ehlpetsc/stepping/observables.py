@@ -9,7 +9,9 @@ import numpy as np
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
-from ehlpetsc.effects.effect import Effect, Scene, Step
+from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.scene import Scene
+from ehlpetsc.effects.step import Step
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales

@@ -16,7 +16,9 @@ from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrored
 from ehlpetsc.discretisation.transport import carried
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.effects.effect import Effect, Scene, Step
+from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.scene import Scene
+from ehlpetsc.effects.step import Step
 from ehlpetsc.nonlinear.options import ROUGHNESS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step

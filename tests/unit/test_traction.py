@@ -8,7 +8,7 @@ import pytest
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.effects.effect import Scene
+from ehlpetsc.effects.scene import Scene
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.contact.grid import Grid

@@ -17,7 +17,6 @@ from ehlpetsc.discretisation.step_inputs import (
     shear_constants,
 )
 from ehlpetsc.discretisation.transport import carried, carried_with
-from ehlpetsc.effects.effect import Scene, Step
 from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows, last_profile
 from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, T_MEAN, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
@@ -30,6 +29,8 @@ from ehlpetsc.effects.heat.transport import (
     limited,
     transport_in_rows,
 )
+from ehlpetsc.effects.scene import Scene
+from ehlpetsc.effects.step import Step
 from ehlpetsc.physics.flash_temperature import Solid
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
