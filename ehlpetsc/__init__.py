@@ -7,7 +7,8 @@ use.
 
 import importlib
 
-__version__ = "0.1.0"
+from ehlpetsc.base.environment import need_solver
+from ehlpetsc.base.version import __version__ as __version__
 
 _HOMES = {
     "load": "ehlpetsc.case.loading",
@@ -29,7 +30,7 @@ def __getattr__(name: str) -> object:
     if name not in _HOMES:
         raise AttributeError(f"module 'ehlpetsc' has no attribute {name!r}")
     if _HOMES[name].startswith("ehlpetsc.run."):
-        importlib.import_module("ehlpetsc.api").need_solver()
+        need_solver()
     home = importlib.import_module(_HOMES[name])
     return getattr(home, name, home)
 

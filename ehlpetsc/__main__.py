@@ -15,27 +15,28 @@ import warnings
 from pathlib import Path
 
 import ehlpetsc.base.environment as packages
-from ehlpetsc import __version__
 from ehlpetsc.base.environment import NUMERICS, READING
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 from ehlpetsc.base.toml_file import is_plain
+from ehlpetsc.base.version import __version__
 from ehlpetsc.run.ranks import StopRequest
 
 MAX_RANKS = 99999
 DRAWING, FORECAST = (*NUMERICS, "matplotlib"), (*READING, "h5py")
 
 
-COMMANDS = {  # module and its function, by default main, packages that it needs, description
-    "post": ("ehlpetsc.post.command", NUMERICS, "stresses, fatigue damage, statistics"),
-    "plot": ("ehlpetsc.pictures.command", DRAWING, "pictures of results, of a series or of a case"),
-    "summary": ("ehlpetsc.analysis.summary", NUMERICS, "means, percentiles and extremes as CSV"),
-    "compare": ("ehlpetsc.analysis.compare", NUMERICS, "two results field by field"),
-    "gears": ("ehlpetsc.gears.command", DRAWING, "path of contact of a gear pair, and a run along it"),
-    "life": ("ehlpetsc.life.command", DRAWING, "wear against fatigue over many passes"),
-    "surface": ("ehlpetsc.pictures.surface", DRAWING, "roughness parameters of a profile or map file"),
-    "explain": ("ehlpetsc.run.forecast.explain", FORECAST, "film, run time, effects of a case"),
-    "keys": ("ehlpetsc.case.keys", READING, "keys of a case: meaning, unit, bounds, default"),
-    "template": ("ehlpetsc.case.keys:template_command", READING, "a commented case to begin with"),
+# module of `ehlpetsc.commands` and its function, by default main, packages that it needs, description
+COMMANDS = {
+    "post": ("post", NUMERICS, "stresses, fatigue damage, statistics"),
+    "plot": ("plot", DRAWING, "pictures of results, of a series or of a case"),
+    "summary": ("summary", NUMERICS, "means, percentiles and extremes as CSV"),
+    "compare": ("compare", NUMERICS, "two results field by field"),
+    "gears": ("gears", DRAWING, "path of contact of a gear pair, and a run along it"),
+    "life": ("life", DRAWING, "wear against fatigue over many passes"),
+    "surface": ("surface", DRAWING, "roughness parameters of a profile or map file"),
+    "explain": ("explain", FORECAST, "film, run time, effects of a case"),
+    "keys": ("keys", READING, "keys of a case: meaning, unit, bounds, default"),
+    "template": ("keys:template", READING, "a commented case to begin with"),
 }
 
 
@@ -95,7 +96,7 @@ def _start_command(name: str, words: list[str]) -> int:
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, _interrupt)
     module, _, function = place.partition(":")
-    return getattr(importlib.import_module(module), function or "main")(words)
+    return getattr(importlib.import_module(f"ehlpetsc.commands.{module}"), function or "main")(words)
 
 
 def _interrupt(*_: object) -> None:
@@ -121,7 +122,7 @@ def _start_ranks(words: list[str]) -> int:
 
 def _run(words: list[str]) -> int:
     """Run a case with PETSc on all ranks."""
-    from ehlpetsc.run.cli import parse, run
+    from ehlpetsc.commands.run import parse, run
 
     try:
         chosen = parse(words)
@@ -143,7 +144,7 @@ def _run(words: list[str]) -> int:
 
 def help_text() -> str:
     """All commands and the options of a run, in the manner of PETSc's ``-help``."""
-    from ehlpetsc.run.cli import run_parser
+    from ehlpetsc.commands.run import run_parser
 
     lines = [
         "usage: ehlpetsc [-n RANKS] CASE.toml [options]    run a case",

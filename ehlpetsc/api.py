@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import h5py
 
-from ehlpetsc.base import environment
+from ehlpetsc.base.environment import need_solver
 from ehlpetsc.base.errors import CaseError, ExitStatus, UsageError
 from ehlpetsc.results import reader
 from ehlpetsc.results.output_guard import PICTURES, check_derived, file_path
@@ -187,9 +187,3 @@ def solve(
     if output is None:
         return Result(h5py.File(io.BytesIO(recorder.to_bytes()), "r"), Path("memory.h5"))
     return read_result(output)
-
-
-def need_solver() -> None:
-    """Find Debian's PETSc; ImportError with advice if a package is missing."""
-    if missing := environment.prepare():
-        raise ImportError(environment.advice(missing, []))

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn, TextIO
 
-from ehlpetsc import __version__
 from ehlpetsc.base.environment import first_rank
 from ehlpetsc.base.errors import (
     CaseError,
@@ -22,6 +21,7 @@ from ehlpetsc.base.errors import (
     UsageError,
     not_written,
 )
+from ehlpetsc.base.version import __version__
 
 
 class CommandParser(argparse.ArgumentParser):

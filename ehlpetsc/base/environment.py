@@ -90,6 +90,12 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
     )
 
 
+def need_solver() -> None:
+    """Find Debian's PETSc; ImportError with advice if a package is missing."""
+    if lacks := prepare():
+        raise ImportError(advice(lacks, []))
+
+
 def first_rank() -> bool:
     """Whether this process is rank 0 of mpirun, or alone; also before MPI is initialised."""
     return next((os.environ[name] for name in RANK_VARIABLES if name in os.environ), "0") == "0"

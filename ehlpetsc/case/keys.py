@@ -6,7 +6,6 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from ehlpetsc.base.command_line import CommandParser, exit_status, put
 from ehlpetsc.base.declarations import Key, KeyTable, plain
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.tables import CASE
@@ -89,24 +88,6 @@ def _lines(indent: str, chosen: dict[str, Key]) -> list[str]:
     return lines
 
 
-def main(words: list[str]) -> int:
-    """Run the command ``ehlpetsc keys``; returns its exit status."""
-    parser = CommandParser("keys", "Keys of a case file: meaning, unit, bounds, default.", "output overwrite")
-    parser.add_argument(
-        "key", nargs="?", metavar="TABLE or KEY", help="as fluid, contact.load or alpha (default: all)"
-    )
-    chosen = parser.parse_args(words)
-    return exit_status("keys", lambda: put(keys(chosen.key), chosen))
-
-
 def template(kind: str = EXAMPLES[0]) -> str:
     """Text of a case to begin with."""
     return Path(__file__).with_name(f"{kind}.toml").read_text()
-
-
-def template_command(words: list[str]) -> int:
-    """Run the command ``ehlpetsc template``; returns its exit status."""
-    parser = CommandParser("template", "A commented case file to begin with.", "output overwrite")
-    parser.add_argument("kind", nargs="?", choices=EXAMPLES, default=EXAMPLES[0])
-    chosen = parser.parse_args(words)
-    return exit_status("template", lambda: put(template(chosen.kind), chosen))

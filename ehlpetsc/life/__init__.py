@@ -6,7 +6,7 @@
 from importlib import import_module
 from typing import Any
 
-from ehlpetsc.api import need_solver
+from ehlpetsc.base.environment import need_solver
 from ehlpetsc.life.history import LifeHistory, read_life
 
 __all__ = ["LifeHistory", "read_life", "run_life"]

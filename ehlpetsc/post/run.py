@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ehlpetsc import __version__
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import OutputError, PostError
 from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
+from ehlpetsc.base.version import __version__
 from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.criteria import CRITERIA

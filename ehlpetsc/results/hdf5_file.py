@@ -18,9 +18,9 @@ from typing import Any, BinaryIO
 import h5py
 import numpy as np
 
-from ehlpetsc import __version__
 from ehlpetsc.base.errors import OutputError, OutputLost, not_written
 from ehlpetsc.base.toml_file import similar_file
+from ehlpetsc.base.version import __version__
 from ehlpetsc.results.output_guard import replacing
 
 LIBVER = ("v110", "v110")  # the first with SWMR, that of Debian 12, which cannot read files of newer formats

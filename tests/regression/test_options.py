@@ -7,8 +7,8 @@ from support import ROOT
 from support.running import PYTHON, SCRIPT, called, run, settings, summary
 
 from ehlpetsc.base.errors import UsageError
+from ehlpetsc.commands.run import parse
 from ehlpetsc.results.reader import read_result
-from ehlpetsc.run.cli import parse
 
 SMOOTH = (ROOT / "cases" / "table1_smooth.toml").read_text()
 MESH = ["mesh.inlet=-2.5", "mesh.points_per_half_width=20"]

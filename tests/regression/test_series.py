@@ -8,8 +8,8 @@ import pytest
 from support import ROOT, is_line_with
 from support.running import SHORT, run, settings, summary
 
-from ehlpetsc.analysis.summary import main as summary_table
-from ehlpetsc.pictures.command import main as plot
+from ehlpetsc.commands.plot import main as plot
+from ehlpetsc.commands.summary import main as summary_table
 from ehlpetsc.results.reader import read_result
 
 CASE = ROOT / "cases" / "fig4.toml"

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 
 from ehlpetsc.__main__ import main
 from ehlpetsc.base.environment import prepare
-from ehlpetsc.run.cli import parse
+from ehlpetsc.commands.run import parse
 
 
 def kill_at_index(rank, count):

@@ -393,7 +393,7 @@ DOUBTFUL = {
 
 @pytest.mark.parametrize(("factors", "words", "warning"), DOUBTFUL.values(), ids=DOUBTFUL)
 def test_the_command_doubts_heights_that_are_hardly_roughness(tmp_path, capsys, factors, words, warning):
-    from ehlpetsc.pictures.surface import main
+    from ehlpetsc.commands.surface import main
 
     np.savetxt(tmp_path / "p.csv", RIDGE * factors, delimiter=",")
     np.save(tmp_path / "m.npy", FINE * factors[1])

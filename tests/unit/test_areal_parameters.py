@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ehlpetsc.pictures.surface import main
+from ehlpetsc.commands.surface import main
 from ehlpetsc.surfaces.parameters import (
     areal_parameters,
     autocorrelation,

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from support.made_results import P0, A, make_result
 
-from ehlpetsc.analysis.compare import compare, main
-from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.analysis.compare import compare
 from ehlpetsc.analysis.summary import weighted_percentiles
+from ehlpetsc.commands.compare import main
+from ehlpetsc.commands.summary import main as summary
 from ehlpetsc.results.reader import read_result
 
 

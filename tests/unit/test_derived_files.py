@@ -13,13 +13,13 @@ from support.made_loads import Scene, write
 from support.made_results import make_result
 
 from ehlpetsc.__main__ import main as program
-from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.base.errors import OutputError
-from ehlpetsc.gears.command import main as gears
-from ehlpetsc.life.command import main as life
-from ehlpetsc.pictures.command import main as plot
-from ehlpetsc.pictures.surface import main as surface
-from ehlpetsc.post.command import main as post
+from ehlpetsc.commands.gears import main as gears
+from ehlpetsc.commands.life import main as life
+from ehlpetsc.commands.plot import main as plot
+from ehlpetsc.commands.post import main as post
+from ehlpetsc.commands.summary import main as summary
+from ehlpetsc.commands.surface import main as surface
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.run.checkpoint import save_restart
 

@@ -9,7 +9,7 @@ import pytest
 from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.analysis.summary import ensemble_table, ensembles, run_scalars
-from ehlpetsc.analysis.summary import main as summary
+from ehlpetsc.commands.summary import main as summary
 from ehlpetsc.results.means import bootstrap_bounds, both_fill
 from ehlpetsc.results.reader import read_result
 

@@ -10,6 +10,7 @@ from support import CASES, ROOT, is_line_with
 from ehlpetsc.api import solve
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.explain import main
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import cost as forecast
 from ehlpetsc.run.forecast.cost import file_size
@@ -19,7 +20,6 @@ from ehlpetsc.run.forecast.explain import (
     SHARE_RATIOS,
     WAVE_ERRORS,
     explain,
-    main,
 )
 from ehlpetsc.run.forecast.validity import heat_warnings, limits, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness

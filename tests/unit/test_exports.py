@@ -17,7 +17,7 @@ from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.pictures.surface import main
+from ehlpetsc.commands.surface import main
 from ehlpetsc.results.reader import Result
 from ehlpetsc.surfaces.files.areal import read_map
 from ehlpetsc.surfaces.samples import areal_samples

@@ -16,8 +16,8 @@ from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.case.derived import rating_of
 from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.gears import main
 from ehlpetsc.gears import GearPair, path_of_contact
-from ehlpetsc.gears.command import main
 from ehlpetsc.gears.faults import faults, notes
 from ehlpetsc.gears.load_sharing import (
     END_STIFFNESS,

@@ -10,9 +10,9 @@ from support.made_results import save_life
 
 from ehlpetsc.base.errors import CaseError, OutputError, PostError
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.life import main
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import LifeBody, Rates
-from ehlpetsc.life.command import main
 from ehlpetsc.life.driver import check_case, line_of
 from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.one_pass import OfBody

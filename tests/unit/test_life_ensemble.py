@@ -9,8 +9,8 @@ from support.made_loads import Scene, write
 from support.made_results import save_life
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.life import main
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.life.command import main
 from ehlpetsc.life.ensemble import band, read_lives, run_lives
 from ehlpetsc.life.history import LifeHistory, read_life
 from ehlpetsc.life.one_pass import LIFE_CRITERIA, lines_of, passes_to_failure

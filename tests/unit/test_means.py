@@ -11,13 +11,13 @@ from support.made_loads import Scene, write
 from support.made_results import A, make_result
 
 import ehlpetsc
-from ehlpetsc.analysis.summary import main as summary
 from ehlpetsc.analysis.summary import run_scalars
 from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.post import main
+from ehlpetsc.commands.summary import main as summary
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.series import draw_fatigue, time_statistics
-from ehlpetsc.post.command import main
 from ehlpetsc.results.means import (
     both_fill,
     filled_from,

@@ -18,7 +18,7 @@ from support.browser import BROWSER, visited
 from support.made_results import P0, A, change_case, make_plane, make_result
 
 from ehlpetsc import read_result
-from ehlpetsc.pictures import command as plot
+from ehlpetsc.commands import plot
 from ehlpetsc.pictures import report, style
 from ehlpetsc.pictures.frames import choice as frames
 from ehlpetsc.pictures.frames import line, plane
@@ -254,7 +254,7 @@ def test_contacts_of_a_run_without_any_are_refused(point, capsys):
 
 def test_lines_load_no_module_of_planes(tmp_path):
     make_result(tmp_path / "line.h5")
-    code = "import sys; from ehlpetsc.pictures.command import main; main(sys.argv[1:]); print(*sys.modules)"
+    code = "import sys; from ehlpetsc.commands.plot import main; main(sys.argv[1:]); print(*sys.modules)"
     words = [sys.executable, "-c", code, str(tmp_path / "line.h5")]
     loaded = subprocess.run(words, capture_output=True, text=True, check=True).stdout.split()
     assert "ehlpetsc.pictures.frames.choice" in loaded

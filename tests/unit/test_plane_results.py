@@ -8,8 +8,8 @@ import pytest
 from support import optional, self_affine
 
 import ehlpetsc
-from ehlpetsc.analysis import compare, summary
 from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.commands import compare, summary
 from ehlpetsc.pictures.frames import line
 from ehlpetsc.results.exports import write_xdmf
 from ehlpetsc.run.recorder import Recorder

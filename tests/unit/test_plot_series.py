@@ -9,8 +9,8 @@ from matplotlib.image import imread
 from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.commands.plot import FIGURES, arguments, main
 from ehlpetsc.pictures import series as drawing
-from ehlpetsc.pictures.command import FIGURES, arguments, main
 from ehlpetsc.results.index import open_all
 from ehlpetsc.results.reader import read_result
 

@@ -11,8 +11,8 @@ from support.running import PYTHON, called
 from ehlpetsc import post
 from ehlpetsc.base.materials import MEAN_STRESSES
 from ehlpetsc.case.tables.outputs import POST_KEYS
+from ehlpetsc.commands.post import main
 from ehlpetsc.post import Material, cycles_to_failure
-from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.accumulate import CORRECTIONS, reversed_range
 from ehlpetsc.post.fatigue.cycles import RESIDUALS, loop_of
 from ehlpetsc.post.fatigue.strain_life import STRAINS, life_table, log_local_range, look_up

@@ -5,8 +5,8 @@ import pytest
 from support.made_loads import LOAD, A, Scene, write
 
 from ehlpetsc.base.errors import PostError
+from ehlpetsc.commands.post import main
 from ehlpetsc.pictures.damage_maps import damage_picture
-from ehlpetsc.post.command import main
 from ehlpetsc.post.loads import DEPTHS, Loads, prepare
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import PostResult

@@ -6,9 +6,9 @@ import pytest
 from support.made_loads import A, Scene, write
 from support.made_planes import FRICTION, sphere, write_plane
 
+from ehlpetsc.commands.post import main
 from ehlpetsc.pictures import damage_maps as gallery
 from ehlpetsc.post import damage, dang_van, stress_plane
-from ehlpetsc.post.command import main
 from ehlpetsc.post.criteria import critical_plane
 from ehlpetsc.post.criteria.critical_plane import count_on_planes
 from ehlpetsc.post.criteria.dang_van import count_utilisation

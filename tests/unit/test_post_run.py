@@ -15,10 +15,10 @@ from support import ROOT, is_line_with, refused
 from support.histories import history_at
 from support.made_loads import Scene, write
 
+from ehlpetsc.commands.post import main
 from ehlpetsc.pictures import damage_maps as gallery
 from ehlpetsc.post import dang_van
 from ehlpetsc.post import run as runner
-from ehlpetsc.post.command import main
 from ehlpetsc.post.fatigue.statistics import log_life, weibull_fit
 from ehlpetsc.post.loads import Loads
 from ehlpetsc.post.run import Job, run

@@ -17,9 +17,9 @@ from ehlpetsc.base.environment import missing
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.keys import EXAMPLES, keys, template
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.surface import main as surface
 from ehlpetsc.physics.oil.laws import density
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.pictures.surface import main as surface
 from ehlpetsc.run.forecast.cost import banner
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, TEXT_ENDINGS

@@ -13,7 +13,7 @@ from plotly.offline import get_plotlyjs
 from support.browser import BROWSER, visited
 from support.made_results import make_result, with_solids
 
-from ehlpetsc.pictures import command as plot
+from ehlpetsc.commands import plot
 from ehlpetsc.pictures import report
 from ehlpetsc.pictures.frames.choice import frame_to_show
 from ehlpetsc.results.means import Totals

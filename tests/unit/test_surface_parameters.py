@@ -9,7 +9,7 @@ from scipy.special import ndtr, ndtri
 from support import CASES, refused
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.pictures.surface import main
+from ehlpetsc.commands.surface import main
 from ehlpetsc.surfaces.parameters import (
     binned,
     core_parameters,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.pictures.surface import main
+from ehlpetsc.commands.surface import main
 from ehlpetsc.surfaces.files.areal import is_map, read_map
 from ehlpetsc.surfaces.files.profiles import Layout, read_profile
 from ehlpetsc.surfaces.files.text import text_columns

@@ -9,9 +9,9 @@ from support.convergence import observed_order
 import ehlpetsc
 from ehlpetsc.analysis.gear_run import GearRun
 from ehlpetsc.case.loading import load
+from ehlpetsc.commands.gears import main as gears
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.gears import path_of_contact
-from ehlpetsc.gears.command import main as gears
 from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.recorder import Recorder

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from ehlpetsc import __version__
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
-from ehlpetsc.effects.effect import combined_rq
+from ehlpetsc.base.version import __version__
+from ehlpetsc.effects.scene import combined_rq
 from ehlpetsc.physics import film_formulas, operation_of
 from ehlpetsc.results.writer import CHUNK_STEPS, frames_of_chunk
 

@@ -1,19 +1,16 @@
-"""The command ``ehlpetsc explain``: summary of a case before its run."""
+"""Summary of a case before its run, as text."""
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 import tomllib
 
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.base.command_line import CommandParser, ProgressLine, duration, exit_status, put
-from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.command_line import duration
 from ehlpetsc.base.toml_file import combinations, keys_of
-from ehlpetsc.case.loading import load, members
+from ehlpetsc.case.loading import members
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.contact import Contact
 from ehlpetsc.physics import operation_of
@@ -30,7 +27,6 @@ from ehlpetsc.run.forecast.cost import (
     surface_lines,
     work_time,
 )
-from ehlpetsc.run.forecast.domain import refusals
 from ehlpetsc.run.forecast.validity import load_unit, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
@@ -47,30 +43,6 @@ WAVES_ALONG = ("short_cutoff", "wavelength", "correlation")  # keys of the waves
 WAVES = (*WAVES_ALONG, "wavelength_across", "correlation_across")
 GROUND_WAVE = 1.35  # shortest wave over the correlation length: 0.5 % of the power density
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
-
-
-def main(words: list[str]) -> int:
-    """Run the command ``ehlpetsc explain``; returns its exit status."""
-    parser = CommandParser("explain", "Summary of a case before its run: film, lambda ratio, run time.")
-    parser.add_argument("case", metavar="CASE.toml")
-    chosen = parser.parse_args(words)
-    return exit_status("explain", lambda: _explain(chosen))
-
-
-def _explain(chosen: argparse.Namespace) -> None:
-    """Print the summary; raise `CaseError` for a case that a run refuses."""
-    # of large maps, which take most of the time
-    progress = ProgressLine("explain: surfaces", 3.0, sys.stderr)
-    progress.reach(0.0)
-    case = load(chosen.case, chosen.set)
-    progress.reach(1.0)
-    rough = Roughness.of(case, Scales.of(case))
-    progress.reach(2.0)
-    text = explain(case, rough)
-    progress.clear()
-    put(text, chosen)
-    if faults := refusals(case, Scales.of(case)):
-        raise CaseError(faults)
 
 
 def explain(case: Case, rough: Roughness | None = None) -> str:
