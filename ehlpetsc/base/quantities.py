@@ -142,7 +142,7 @@ STEP_SCALARS = {
         "mass defect summed over all nodes, relative to the mass that the contact carries",
         of=lambda o: o.mass_error,
     ),
-    "approach": Compared("m", "undeformed separation h00", of=lambda o: o.approach),
+    "approach": Compared("m", "rigid-body approach of the bodies, -h00", of=lambda o: o.approach),
     "tilt": StepScalar(
         "1",
         "slope of the gap across",

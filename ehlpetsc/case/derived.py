@@ -14,9 +14,9 @@ from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.materials import GRADES, fatigue_constants, flow_pressure, named_steels
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.case.checking import Fault, check, unsound_tables, values_of
-from ehlpetsc.case.tables.contact import CONTACT, GRADE, LAYER_NODES
+from ehlpetsc.case.tables.contact import CONTACT, FLUID, GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
-from ehlpetsc.case.values import is_allowed, is_number
+from ehlpetsc.case.values import allowed, is_allowed, is_number, show
 from ehlpetsc.physics.contact.hertz import hertz_load
 from ehlpetsc.physics.oil.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.oil.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY, reference_temperature, viscosity
@@ -35,17 +35,31 @@ if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath
     from ehlpetsc.gears.standards import Rating
 
-MAX_VISCOSITY = 1e12  # mm^2/s
 MEASURED_KEY = "asperity_height"
 DIGITS = 6  # of a measured asperity height
 
 
-def with_derived(tables: Tables, unsound: Set[str]) -> Tables:
-    """Tables of a case with the constants of its steels and of its oil, except those of unsound tables."""
+class NotDerived(Exception):
+    """A value does not follow from a given key; `fault` states the reason."""
+
+    def __init__(self, place: str, value: object, reason: str) -> None:
+        super().__init__(reason)
+        self.fault = Fault(place, f"{place} = {show(value)}: {reason}")
+
+
+def with_derived(tables: Tables, unsound: Set[str]) -> tuple[Tables, list[Fault]]:
+    """Tables of a case with the constants of its steels and of its oil, except those of unsound tables.
+
+    With the faults of given keys from which they do not follow.
+    """
+    faults = []
     for derived, sources in DERIVATIONS:
         if not unsound & sources:
-            tables = derived(tables)
-    return tables
+            try:
+                tables = derived(tables)
+            except NotDerived as error:
+                faults.append(error.fault)
+    return tables, faults
 
 
 def _with_material(tables: Tables) -> Tables:
@@ -70,17 +84,21 @@ def _with_approach(tables: Tables) -> Tables:
     if not {"approach", "radius"} <= contact.keys() or None in elastic:
         return tables
     modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
-    along, across = contact["radius"]
-    load = float(hertz_load(contact["approach"], along, across, modulus))
-    if not is_allowed(CONTACT.keys["load"], load):  # reported as a load that does not follow
-        return tables
+    approach, (along, across), key = contact["approach"], contact["radius"], CONTACT.keys["load"]
+    load = float(hertz_load(approach, along, across, modulus))
+    if not is_allowed(key, load):
+        limits = ((key.ge, "or more"), (key.le, "or less"))
+        cures = [f"{approach * (limit / load) ** (2 / 3):.3g} m {side}" for limit, side in limits if limit]
+        reason = f"the load of the dry contact, {load:.3g} N, is not allowed; allowed: "
+        raise NotDerived("contact.approach", approach, reason + " and ".join(cures))
     return tables | {"contact": {"load": load} | contact}
 
 
 def _with_grade(tables: Tables) -> Tables:
     """Viscosity by Walther's equation (ASTM D341) times the density, and alpha by Gold et al. (2001)."""
     fluid, heat = tables.get("fluid", {}), tables.get("heat", {})
-    grade, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
+    given, temperature = fluid.get("grade"), _oil_temperature(fluid, heat)
+    grade = given
     if isinstance(grade, str):
         named = GRADES[grade]
         density = named.density if temperature is None else named.density_at(temperature)
@@ -88,13 +106,20 @@ def _with_grade(tables: Tables) -> Tables:
         fluid = fluid | {"grade": grade}
         tables = tables | {"fluid": fluid}
     oil = check(GRADE, grade)[0] if isinstance(grade, dict) else None
-    if oil is None or temperature is None or not 200.0 < temperature < 700.0:
+    if oil is None:
         return tables
-    with np.errstate(all="ignore"):
-        nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])  # mm^2/s
-    if not 0.0 < nu < MAX_VISCOSITY:  # far from 40 and 100 degrees C
-        return tables
-    properties = {"viscosity": nu / 1e6 * oil.density} | fluid
+    nu = math.nan
+    if temperature is not None:
+        with np.errstate(all="ignore"):
+            nu = float(walther(temperature, *walther_constants(oil.v40, oil.v100))[0])  # mm^2/s
+    eta, key = nu / 1e6 * oil.density, FLUID.keys["viscosity"]
+    if not is_allowed(key, eta):  # far from 40 and 100 degrees C
+        if "viscosity" in fluid:
+            return tables
+        reason = f"the viscosity at {temperature} K, {eta:.3g} Pa s, is not allowed; allowed: {allowed(key)}"
+        needs = "needs the temperature of the oil, fluid.temperature"
+        raise NotDerived("fluid.grade", given, needs if temperature is None else reason)
+    properties = {"viscosity": eta} | fluid
     alpha = _slope(gold_pressure_viscosity(nu), properties)
     tables = tables | {"fluid": {"pressure_viscosity": alpha} | properties}
     return tables | {"heat": {"oil_density": oil.density} | heat} if heat else tables

@@ -173,12 +173,13 @@ def _checked(
     if wrong := approach_faults(data, kind) or given_by_gears(data, kind):
         return None, wrong
     unsound = unsound_tables(data, known)
-    data = with_derived(data, unsound)
+    data, underived = with_derived(data, unsound)
+    faults += underived
     try:
         data = with_columns(data, folder, kind, ("gears",))
         conditions = conditions_of(data, folder, kind, unsound)
     except ProfileError as error:
-        faults = [] if is_stored else [_file_fault(data, error)]
+        faults += [] if is_stored else [_file_fault(data, error)]
     if not unsound:
         data = with_reference_state(data, conditions, kind)
     if "motion" not in data and ("fluid" in data or "time" in data):

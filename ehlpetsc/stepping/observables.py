@@ -73,8 +73,8 @@ class Observation:
 
     @property
     def approach(self) -> float:
-        """Undeformed separation [m]."""
-        return self.problem.balance.separation(self.state.solution.unknowns.border)
+        """Rigid-body approach from the first touch of the undeformed smooth bodies, -h00 [m]."""
+        return -self.problem.balance.separation(self.state.solution.unknowns.border)
 
     @cached_property
     def mean_film(self) -> float:

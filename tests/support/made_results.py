@@ -101,7 +101,7 @@ def made(
         values["pressure"] = factor * values["pressure"]
         scalars = {"dt": 40e-6 / (steps - 1) if steps > 1 else 0.0, "contacts": contact.sum()}
         scalars |= {"h_min": values["film_thickness"].min(), "p_max": values["pressure"].max()}
-        scalars |= {"newton": 5, "load": 527e3, "approach": -1e-6, "wall": 0.02}
+        scalars |= {"newton": 5, "load": 527e3, "approach": 1e-6, "wall": 0.02}
         writer.append(step, time, values, scalars, contact, step % every == 0)
     writer.close(status)
     return path

@@ -1,5 +1,7 @@
 """Laws of the oil and oils by name and grade: check values, derivatives by complex step, films."""
 
+import re
+
 from types import SimpleNamespace
 
 import numpy as np
@@ -305,6 +307,23 @@ def test_viscosity_of_a_grade(celsius, nu):
     assert 50.0 < viscosity_laws.walther(343.15, *WALTHER_CONSTANTS)[0] < 60.0  # charts: about 54 mm^2/s
     barus = load(CASE, GRADE | LEFT_OUT | BARUS | {"fluid.temperature": celsius + 273.15})
     assert barus.fluid.pressure_viscosity == pytest.approx(secant, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    "temperature, message",
+    [
+        (None, r'fluid.grade = "ISO VG 220": needs the temperature of the oil, fluid.temperature$'),
+        (
+            205.0,
+            r'fluid.grade = "ISO VG 220": the viscosity at 205.0 K, .*, is not allowed; allowed: .* 10000',
+        ),
+    ],
+)
+def test_a_grade_without_a_viscosity_is_a_fault_of_the_grade(temperature, message):
+    changes = {"fluid.grade": "ISO VG 220", "fluid.temperature": temperature} | LEFT_OUT
+    fault = one_fault(load, CASE, changes)
+    assert re.search(message, fault), fault
+    load(CASE, changes | {"fluid.viscosity": 0.02, "fluid.pressure_viscosity": 2e-8})
 
 
 def test_named_grade_has_the_viscosities_of_its_class_and_keys_override_it():

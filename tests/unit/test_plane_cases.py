@@ -221,7 +221,7 @@ def test_dry_load_grows_as_the_power_three_halves_of_the_approach():
         state, modulus = simulation.advance(), simulation.scales.E
         of_hertz = hertz_ellipse(1.0, 0.01, 0.02, modulus).approach
         assert state.scalars["load"] == pytest.approx((approach / of_hertz) ** 1.5, rel=2e-4)
-        assert state.scalars["approach"] == pytest.approx(-approach, rel=1e-9)
+        assert state.scalars["approach"] == pytest.approx(approach, rel=1e-9)
         assert state.load_error < 1e-9
     for radii in ((0.01, 0.01), (0.01, 0.08), (0.03, 0.004)):
         approach = hertz_ellipse(25.0, *radii, 2.2e11).approach
@@ -232,7 +232,7 @@ def test_approach_that_balances_a_load_gives_this_load():
     """A thick film keeps the bodies further apart than in Hertz contact; on the same domain [m]."""
     balanced = Simulation(load(point(20.0, 10.0, 13)))
     state, given, mesh = balanced.advance(), balanced.scales.load, balanced.case.mesh
-    approach = -state.scalars["approach"]
+    approach = state.scalars["approach"]
     ratio = np.sqrt(approach / hertz_ellipse(given, R, R, balanced.scales.E).approach)
     assert ratio < 0.8
     changes = {f"mesh.{key}": getattr(mesh, key) / ratio for key in ("inlet", "outlet", "width")}
@@ -246,7 +246,7 @@ def test_mixed_contact_keeps_its_approach_while_the_load_varies_also_restarted(t
     states = list(Simulation(mixed()))
     loads = np.array([state.scalars["load"] for state in states])
     for state in states:
-        assert state.scalars["approach"] == pytest.approx(-APPROACH, rel=1e-9)
+        assert state.scalars["approach"] == pytest.approx(APPROACH, rel=1e-9)
         assert state.mass_error < 1e-6
     assert states[-1].scalars["contact_share"] > 0.02
     assert np.ptp(loads) > 1e-3 * loads.mean()
@@ -270,7 +270,8 @@ def test_mixed_contact_keeps_its_approach_while_the_load_varies_also_restarted(t
         ({"operation": {"time": [0, 1], "speed_1": [1, 2], "speed_2": [1, 2]}}, r"which \[operation\] would"),
         ({"gears": {"speed": 1}}, r"which \[gears\] would give; leave out one of both"),
         ({"contact.approach": 0.0}, "contact.approach = 0.0: allowed: a number >= 1e-09"),
-        ({"contact.approach": 1e-9}, "contact.load is missing, and does not follow from approach; allowed: "),
+        ({"contact.approach": 1e-9}, "approach = 1e-09: the load .* 0.000573 N, .*: 1.45e-09 m or more"),
+        ({"contact.youngs_modulus": 1e18, "contact.approach": 1e-2}, "the load .* N, is not .* m or less"),
         ({"contact.approach": "2 N"}, 'contact.approach = "2 N"'),
         ({"contact.approach": None}, "contact.load is missing; allowed: .*, or approach"),
     ],
@@ -309,7 +310,7 @@ def test_given_tilt_moves_the_dry_ellipse_and_a_free_one_evens_out_a_wedge():
     np.testing.assert_allclose(p[inside], expected, rtol=0.0, atol=5e-3 * hertz.p0)
     assert (p * y).sum() / p.sum() == pytest.approx(shift, abs=1e-4)
     raised = 0.5 * tilt**2 * RY  # of the middle over the nearest points of the undeformed bodies
-    assert state.scalars["approach"] == pytest.approx(raised - hertz.approach, rel=2e-3)
+    assert state.scalars["approach"] == pytest.approx(hertz.approach - raised, rel=2e-3)
     assert state.scalars["tilt"] == pytest.approx(tilt, rel=1e-12)
     tight, slope = {"snes_atol": "1e-10"}, 2e-3
     simulation = Simulation(load(ROLLER, {"contact.self_aligning": True}), options=tight)

@@ -223,7 +223,7 @@ def test_approach_follows_from_the_inlet_film(run):
     # the solver's logarithms are of x/a and pressures of p0: a constant times the load
     gap -= 4.0 / (np.pi * of.E) * result.steps.load * np.log(of.a)
     few = slice(0, 1) if case.time else slice(None)
-    np.testing.assert_allclose(result.steps.approach[few], gap[few], rtol=0, atol=1e-6 * of.a**2 / of.R)
+    np.testing.assert_allclose(-result.steps.approach[few], gap[few], rtol=0, atol=1e-6 * of.a**2 / of.R)
 
 
 def test_excluded_nodes_are_flagged_and_their_oil_counted():

@@ -82,7 +82,7 @@ def hertz_ellipse(load: float, radius_x: float, radius_y: float, modulus: float)
         E' [Pa].
     """
     from scipy.optimize import brentq
-    from scipy.special import ellipe, ellipk
+    from scipy.special import ellipe, ellipkm1
 
     larger, smaller = max(radius_x, radius_y), min(radius_x, radius_y)
     if larger / smaller < 1.0 + 1e-9:  # e = 0, where the fractions are 0/0
@@ -92,11 +92,12 @@ def hertz_ellipse(load: float, radius_x: float, radius_y: float, modulus: float)
     def misfit(log_k: float) -> float:
         k = math.exp(log_k)
         m = -math.expm1(2.0 * log_k)
-        return math.log((ellipe(m) / k**2 - ellipk(m)) / (ellipk(m) - ellipe(m))) - math.log(larger / smaller)
+        first, second = ellipkm1(k * k), ellipe(m)
+        return math.log((second / k**2 - first) / (first - second)) - math.log(larger / smaller)
 
     log_k = brentq(misfit, -math.log(larger / smaller), -1e-10, xtol=1e-15, rtol=1e-14)
     k, m = math.exp(log_k), -math.expm1(2.0 * log_k)
-    first, second = ellipk(m), ellipe(m)
+    first, second = ellipkm1(k * k), ellipe(m)
     cubed = 6.0 * load * larger * (first - second) / (math.pi * modulus * m)  # of the larger semi-axis
     major = cubed ** (1.0 / 3.0)
     minor = k * major
