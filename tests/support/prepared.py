@@ -70,6 +70,7 @@ def load_kernels():
 
     library = importlib.util.find_spec("mpi4py.MPI").origin
     stand_ins = {"mpi4py.MPI": mock.MagicMock(__file__=library), "petsc4py.PETSc": mock.MagicMock()}
+    stand_ins["petsc4py.PETSc"].SNES.ConvergedReason.DIVERGED_FNORM_NAN = -4  # sought by its name
     with temporary_modules(stand_ins):
         for path in sorted((ROOT / "ehlpetsc").glob("nonlinear/**/[!_]*.py")):
             importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
