@@ -1,7 +1,6 @@
 """Laws of the oil and oils by name and grade: check values, derivatives by complex step, films."""
 
 import re
-
 from types import SimpleNamespace
 
 import numpy as np
@@ -343,7 +342,7 @@ def test_named_grade_has_the_viscosities_of_its_class_and_keys_override_it():
 
 
 def test_faults():
-    with pytest.raises(CaseError, match=r"fluid\.viscosity .*missing"):
+    with pytest.raises(CaseError, match=r"fluid\.grade = .*needs the temperature"):
         load(CASE, GRADE | LEFT_OUT)  # no temperature
     message = r"fluid\.temperature = 350.*: needs fluid\.grade or oil.*reference_t"
     with pytest.raises(CaseError, match=message):
