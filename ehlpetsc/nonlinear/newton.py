@@ -25,7 +25,8 @@ from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 LINEAR_WORK = 100  # limit of the linear iterations of a solve, per Newton iteration allowed
 START_FACTOR = 7  # iteration limit of a steady start over that of a time step
 MAX_ROUNDING_FACTOR = 10.0  # limit of the factor by which rounding may raise Newton's absolute tolerance
-MAX_ROUNDING = 1e-6  # up to which it may raise a default one: rounding limits the oil balance of all contacts
+# of the oil in the contact, up to which it may raise a default one: rounding limits every oil balance
+MAX_ROUNDING = 1e-6
 CLEAR_OF_BOUND = 0.02  # of the expected film: minimum film of a guess that is solved without the bound
 MAX_SHORTENED_STEPS = 20  # of a solve
 REASONS = {v: k for k, v in vars(PETSc.SNES.ConvergedReason).items() if isinstance(v, int)}
@@ -254,7 +255,7 @@ class NewtonSolver:
         system.matrices.begin_solve()
         highest = MAX_ROUNDING_FACTOR * self._atol
         if "snes_atol" not in self._options.given:
-            highest = max(highest, MAX_ROUNDING)
+            highest = max(highest, MAX_ROUNDING * system.oil_in_contact())
         self.tolerance = min(max(self._atol, system.rounding()), highest)
         snes.setTolerances(max_it=max_it, atol=self.tolerance)
         if snes.rtol > 0.0 or snes.stol > 0.0:  # set by the user; stol accepts the residual of the guess

@@ -277,6 +277,16 @@ class TwoFields:
         changes *= LAST_DIGIT
         return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, float(changes @ changes))))
 
+    def oil_in_contact(self) -> float:
+        """Mean oil per area in the Hertz contact one step ago over the expected film, at least 1; steady: 1.
+
+        Oil that roughness encloses is far more than the film that the inlet supplies.
+        """
+        if self.inputs.history is None:
+            return 1.0
+        oil = self.inputs.history.before[self.problem.grid.inside(1.0)].mean()
+        return max(float(oil) / self.problem.film_scale, 1.0)
+
 
 def owned(owner: object, *objects: object) -> list:
     """List of PETSc's objects, destroyed with their owner or before Python ends, in reverse order.

@@ -10,6 +10,7 @@ from support.running import run, settings, whole_and_restarted
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.results.reader import read_result
+from ehlpetsc.run.simulation import Simulation
 
 QUICK = ("mesh.inlet=-1.4", "mesh.points_per_half_width=50", "time.travel=0.6", "output.every=1")
 
@@ -53,3 +54,21 @@ def test_explain_names_no_fault(case, tmp_path):
     # 132 nm/6 times ln(1 + (beta E*/p)^3), beta E* = 2 pi 132 nm/80 um of 113.7 GPa
     assert re.search(r" 10 MPa .* 315 nm .* p0 .* 21\.5 nm", done.stdout)
     assert "combined Rq 0.134 um" in done.stdout  # the waves on the mesh and the layer
+
+
+def test_oil_locked_in_below_a_thin_layer_is_solved_at_any_speed():
+    """Rounding of enclosed oil limits a residual that is scaled by the far thinner film of the inlet."""
+    profile = {"file": f"{ROOT}/cases/profiles/alicona_meander_profile.csv", "short_cutoff": 25e-6}
+    locked = {
+        "series": None,
+        "contact.asperity_height": 10e-9,
+        "motion.entrainment_speed": 1e-6,
+        "surface": {"1": profile, "2": profile},
+        "mesh": {"inlet": -1.5, "outlet": 1.3, "points_per_half_width": 50},
+        "time": {"travel": 0.86},
+    }
+    simulation = Simulation(load(ROOT / "cases" / "stribeck.toml", locked))
+    *_, end = simulation
+    assert simulation.finished and end.mass_error < 1e-6
+    smooth = 1e-6 * simulation.scales.h  # no film is expected to be thinner, m
+    assert end.film_thickness[simulation.scales.grid.inside(1.0)].mean() > 1000.0 * smooth
