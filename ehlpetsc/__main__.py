@@ -111,8 +111,9 @@ def _start_ranks(words: list[str]) -> int:
         return refuse(f"ehlpetsc: -n {ranks}: allowed: a whole number of ranks, at least 1")
     if any(name in os.environ for name in packages.MPIRUN_VARIABLES):
         return refuse(f"ehlpetsc: -n {ranks} under mpirun, which has started the ranks; leave it out")
+    # a virtual environment that is not activated has its mpirun beside its Python
+    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     if packages.SCRIPT.exists():
-        os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
         os.execv(packages.SCRIPT, [str(packages.SCRIPT), "-n", *words])
     mpirun = shutil.which("mpirun")
     if mpirun is None:
@@ -129,6 +130,8 @@ def _run(words: list[str]) -> int:
         stop = StopRequest(chosen.time_limit)  # before the imports, which take a second
         if missing := packages.prepare():
             return refuse(packages.advice(missing, words))
+        if fault := packages.load_mpi():
+            return refuse(f"ehlpetsc: {fault}")
         if "-help" in [*chosen.petsc, *os.environ.get("PETSC_OPTIONS", "").split()]:
             _print(help_text())
             if chosen.case is None:

@@ -1,4 +1,4 @@
-"""PETSc on the path, the marker of tests under mpirun, their order, and signals as a terminal has them."""
+"""PETSc and its MPI, the marker of tests under mpirun, their order, and signals as a terminal has them."""
 
 import gc
 import os
@@ -10,7 +10,8 @@ import pytest
 
 from ehlpetsc.base import environment
 
-environment.prepare()
+if not environment.prepare():
+    environment.load_mpi()
 sys.path.append(str(Path(__file__).parents[1] / ".test-packages"))  # optional ones that .ci/run has fetched
 os.environ.setdefault("MPLBACKEND", "Agg")  # no windows
 MPI_TESTS = Path(__file__).parent / "mpi"

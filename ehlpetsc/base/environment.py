@@ -1,4 +1,4 @@
-"""Environment of a run, set before imports: PETSc on the path, one thread per rank, required packages.
+"""Environment of a run, set before imports: PETSc on the path, its MPI, one thread per rank, needed packages.
 
 ``run_mpi.sh`` runs this file as a script, also in a Python that is too old or has no packages::
 
@@ -8,6 +8,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import importlib
 import importlib.util
 import os
@@ -27,6 +29,7 @@ RANK_VARIABLES = (*MPIRUN_VARIABLES, "SLURM_PROCID")  # the last one also in the
 # of Open MPI, of MPICH and Intel MPI, of MVAPICH, of srun; not SLURM_NTASKS, which a batch script has too
 SIZE_VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS")
 OLDEST_PYTHON = (3, 11)
+MPI_LIBRARY = rb"libmpi(?:ch)?\.so\.\d+"  # name by which a module asks for MPI: .12 of MPICH, .40 of Open MPI
 
 
 def prepare() -> list[str]:
@@ -44,6 +47,66 @@ def prepare() -> list[str]:
     if not has("petsc4py"):
         sys.path += map(str, _petsc4py_folders()[:1])
     return missing(NEEDED)
+
+
+def load_mpi() -> str:
+    """Load the MPI library that petsc4py needs, where mpi4py leaves the choice, before anything compiled.
+
+    mpi4py as a wheel has modules for MPICH and for Open MPI and takes the library that is loaded. That of the
+    wheel mpich, which petsc4py's wheel needs, is on no path that is searched.
+
+    Returns the fault of two MPIs in one process, of which one would end it; "" without one.
+    """
+    needed, offered = _mpi_libraries("petsc4py", "lib/**/PETSc.*.so"), _mpi_libraries("mpi4py", "MPI.*.so")
+    is_loaded = "mpi4py.MPI" in sys.modules
+    used = set(filter(_is_loaded, offered)) if is_loaded else offered
+    if not (needed and used):  # linked by other names
+        return ""
+    needs = f"petsc4py in {_folder('petsc4py')} needs {', '.join(needed)}"
+    if not needed & used:
+        order = "import ehlpetsc before mpi4py, or " if is_loaded else ""
+        return (
+            f"{needs}, mpi4py in {_folder('mpi4py')} uses {', '.join(used)}: {order}unset PYTHONPATH and "
+            "PETSC_DIR, and install both from one source in an environment of its own"
+        )
+    if not is_loaded and len(offered) > 1 and not any(map(_load, needed)):
+        return f"{needs}, which is not installed; type: {sys.executable} -m pip install mpich"
+    return ""
+
+
+def _mpi_libraries(package: str, modules: str) -> set[str]:
+    """MPI libraries that compiled modules of a package ask for; of several modules it loads one."""
+    names = set()
+    for path in _folder(package).glob(modules):
+        if found := re.search(MPI_LIBRARY, path.read_bytes()):
+            names.add(found.group().decode())
+    return names
+
+
+def _folder(package: str) -> Path:
+    return Path(importlib.util.find_spec(package).origin).parent
+
+
+def _is_loaded(library: str) -> bool:
+    try:
+        ctypes.CDLL(library, mode=os.RTLD_NOLOAD)
+    except OSError:
+        return False
+    return True
+
+
+def _load(library: str) -> bool:
+    """Load a library of the wheel mpich or of the system; whether it is there."""
+    from importlib import metadata  # slow, and needed here alone
+
+    with contextlib.suppress(metadata.PackageNotFoundError):
+        files = metadata.files("mpich") or []
+        library = next((str(file.locate()) for file in files if file.name == library), library)
+    try:
+        ctypes.CDLL(library, mode=ctypes.RTLD_GLOBAL)
+    except OSError:
+        return False
+    return True
 
 
 def has(name: str) -> bool:
@@ -91,9 +154,11 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
 
 
 def need_solver() -> None:
-    """Find Debian's PETSc; ImportError with advice if a package is missing."""
+    """Find PETSc and its MPI; ImportError with advice if a package is missing or is on another MPI."""
     if lacks := prepare():
         raise ImportError(advice(lacks, []))
+    if fault := load_mpi():
+        raise ImportError(fault)
 
 
 def first_rank() -> bool:
@@ -122,7 +187,9 @@ def _is_own_python(names: Iterable[str]) -> bool:
     if sys.version_info < OLDEST_PYTHON:
         return False
     prepare()
-    if missing(names) or DEBIAN in Path(importlib.util.find_spec("petsc4py").origin).parents:
+    if missing(names) or DEBIAN in _folder("petsc4py").parents:
+        return False
+    if load_mpi():
         return False
     # loaded, not initialised: under a batch system MPI cannot be initialised here
     importlib.import_module("mpi4py").rc.initialize = False

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import mpi4py.MPI  # noqa: F401  # loads the library that PETSc's wheel needs
+import numpy as np
 from petsc4py import PETSc
 
 from ehlpetsc.base.case import KINDS, Case
@@ -26,6 +28,9 @@ def solver_of(
 
     `film_scale`: expected film in a^2/R.
     """
+    if PETSc.ScalarType is not np.float64:
+        real = "needed: real numbers of double precision, as of python3-petsc4py-real or dolfinx-solver-real"
+        raise UsageError(f"PETSc in {PETSc.__file__} computes with {PETSc.ScalarType.__name__}; {real}")
     name, kind = options.value("ehl_scheme"), KINDS[case.kind]
     if name and name not in ALLOWED:
         raise UsageError(f"-ehl_scheme {name}: allowed: {', '.join(ALLOWED)}")

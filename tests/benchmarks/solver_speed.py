@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 from ehlpetsc.base import environment
 
-environment.prepare()
+environment.need_solver()
 import petsc4py
 
 petsc4py.init(sys.argv[:1])

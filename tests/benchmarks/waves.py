@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 from ehlpetsc.base import environment
 
-environment.prepare()
+environment.need_solver()
 import petsc4py
 
 petsc4py.init(sys.argv[:1])

@@ -14,7 +14,7 @@ import time
 from types import SimpleNamespace
 
 from ehlpetsc.__main__ import main
-from ehlpetsc.base.environment import prepare
+from ehlpetsc.base.environment import need_solver
 from ehlpetsc.commands.run import parse
 
 
@@ -62,7 +62,7 @@ def tamper(accident, rank, step):
 
 if __name__ == "__main__":
     accident, rank, step, *rest = sys.argv[1:]
-    prepare()
+    need_solver()
     import petsc4py
 
     petsc4py.init([sys.argv[0], *parse(rest).petsc])  # what is tampered with imports PETSc
