@@ -14,11 +14,12 @@ from ehlpetsc.base.errors import OutputError, UsageError
 from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.results.index import distinguishing_names, groups
 from ehlpetsc.results.means import bootstrap_bounds, filled_weights, mean, weighted_percentiles
-from ehlpetsc.results.post_result import DAMAGED, PostResult, damage_beside
+from ehlpetsc.results.post_result import DAMAGED, PostResult, damage_beside, is_damaged
 from ehlpetsc.results.reader import Result
 
 QUANTILES = (0.5, 0.9, 0.99)  # of damage over the points of a surface
 EXTREMES = {"h_min": min, "p_max": max, "oil_pressure": max, "mass_error": max, "load_error": max}
+UNITS = {"flash_temperature": "K", "life_": "passes", "smooth_depth": "m"}  # of names with the word
 ENSEMBLE_COLUMNS = ("ensemble", "scalar", "unit", "runs", "mean", "deviation", "min", "max", "low", "high")
 
 
@@ -41,22 +42,24 @@ def run_scalars(result: Result) -> dict[str, float]:
         reduce = EXTREMES.get(name)
         scalars[name] = float(reduce(values)) if reduce else mean(result, name, weights)
     post = damage_beside(result)
-    return scalars | _damage(post) if post else scalars
+    return scalars | damage_scalars(post) if post else scalars
 
 
-def _damage(post: PostResult) -> dict[str, float]:
+def damage_scalars(post: PostResult) -> dict[str, float]:
     """Maximum and quantiles of damage, lives, flash temperatures [K] over the points of each surface.
 
     Of a criterion that was computed too, the names begin with its name. A life is 1/D of the most damaged
     depth below a point [passes], of the worst point and of the points that 1 and 10 % of the surface exceed.
-    A share is that of the points with more damage than `DAMAGED` at some depth.
+    A share is that of the points that asperities damage at some depth, see
+    :func:`~ehlpetsc.results.post_result.is_damaged`, in one pass. Life [passes] and depth [m] of the smooth
+    contact are beside them.
     """
     found: dict[str, float] = {}
     for surface in post.surfaces:
         for criterion in (None, *post.criteria):
             values = post.passed(surface, criterion)
             if values.size:
-                found |= _points(values, post.z, surface, criterion)
+                found |= _points(values, post, surface, criterion)
         flash = post.temperatures[surface].flash if surface in post.temperatures else np.array([np.nan])
         if np.isfinite(flash).any():
             found[f"flash_temperature_{surface} largest"] = float(np.nanmax(flash))
@@ -64,19 +67,22 @@ def _damage(post: PostResult) -> dict[str, float]:
     return found
 
 
-def _points(values: np.ndarray, z: np.ndarray, surface: str, criterion: str | None) -> dict[str, float]:
+def _points(values: np.ndarray, post: PostResult, surface: str, criterion: str | None) -> dict[str, float]:
     """Statistics of the damage (depths, points) of a surface, or of the utilisation of the fatigue limit."""
     prefix = f"{criterion} " if criterion else ""
     quantity = "utilisation" if criterion == "dang-van" else "damage"
     found: dict[str, float] = {}
-    for depth, row in zip(z, values, strict=True):
+    for depth, row in zip(post.z, values, strict=True):
         name = f"{prefix}{quantity}_{surface} z/a={depth:g}"
         found |= {f"{name} q={q:g}": float(np.quantile(row, q)) for q in QUANTILES}
         found[f"{name} largest"] = float(row.max())
     if quantity == "utilisation":
         return found
     worst = values.max(axis=0)
-    found[f"{prefix}share_{surface} D>{DAMAGED:g}"] = float((worst > DAMAGED).mean())
+    smooth = post.smooth[criterion][surface]
+    damaged = is_damaged(values, smooth.damage_at(post.a * post.z)[:, None])
+    found[f"{prefix}share_{surface} D>{DAMAGED:g}"] = float(damaged.any(axis=0).mean())
+    found |= {f"{prefix}smooth_life_{surface}": smooth.life, f"{prefix}smooth_depth_{surface}": smooth.depth}
     name = f"{prefix}life_{surface}"
     with np.errstate(divide="ignore"):
         found[f"{name} worst"] = float(1.0 / worst.max())
@@ -112,8 +118,8 @@ def ensemble_table(results: list[Result]) -> list[Sequence]:
                 deviation = values.std(ddof=1) if values.size > 1 else np.nan
                 bounds = bootstrap_bounds(values)
             reduced = values.mean(), deviation, values.min(), values.max(), *bounds
-            others = "K" if name.startswith("flash_temperature") else "passes" if "life_" in name else "1"
-            unit = results[0].unit(f"steps/{name}") if name in results[0].scalars else others
+            others = (unit for word, unit in UNITS.items() if word in name)
+            unit = results[0].unit(f"steps/{name}") if name in results[0].scalars else next(others, "1")
             rows.append((ensemble, name, unit, values.size, *(f"{v:.6g}" for v in reduced)))
     return rows
 

@@ -138,6 +138,13 @@ def _summary(output: str, wall: float) -> None:
             words.append(f"weibull of surface {result.main}:")
             words.append(f"alpha={fit.alpha:.4g} beta={fit.beta:.4g} r2={fit.r_squared:.4f}")
         print(" ".join(words))
+    for name, contacts in result.smooth.items():
+        for surface in surfaces:
+            life, depth = contacts[surface].life, contacts[surface].depth
+            print(
+                f"smooth contact, surface {surface}, {name or 'D'}: smooth_life={life:.4g} passes "
+                f"smooth_depth={depth:.3g} m"
+            )
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():
             highest, mean, flash = result.temperatures[surface]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ehlpetsc.life import laws
-from ehlpetsc.results.post_result import DAMAGED
+from ehlpetsc.results.post_result import is_damaged
 from ehlpetsc.surfaces.filters import MIN_SPACINGS, mean_line, periodic_mean
 from ehlpetsc.surfaces.motion.body_field import BodyField
 
@@ -81,6 +81,8 @@ class LifeBody(NamedTuple):
         Depths of the edges of the cells below the surface as made [m].
     height : shape (*ny, n)
         Of the surface as made [m].
+    smooth_rate : shape (cells,)
+        Damage that a pass of the smooth contact adds to the cells below the surface as made.
     wear, pit : shape (*ny, n)
         Depths worn off and broken out [m].
     damage : shape (cells, *ny, n)
@@ -99,6 +101,7 @@ class LifeBody(NamedTuple):
     y: np.ndarray
     edges: np.ndarray
     height: np.ndarray
+    smooth_rate: np.ndarray
     wear: np.ndarray
     pit: np.ndarray
     damage: np.ndarray
@@ -110,11 +113,19 @@ class LifeBody(NamedTuple):
     volume_rate: float
 
     @classmethod
-    def new(cls, s: np.ndarray, height: np.ndarray, edges: np.ndarray, y: np.ndarray = NO_ROWS) -> LifeBody:
-        """Without wear and damage."""
+    def new(
+        cls,
+        s: np.ndarray,
+        height: np.ndarray,
+        edges: np.ndarray,
+        y: np.ndarray = NO_ROWS,
+        smooth_rate: np.ndarray | None = None,
+    ) -> LifeBody:
+        """Without wear and damage; by default the smooth contact adds no damage."""
         zero, cells = np.zeros(height.shape), np.zeros((len(edges) - 1, *height.shape))
+        smooth = cells.reshape(len(cells), -1)[:, 0] if smooth_rate is None else smooth_rate
         never = np.full_like(cells, np.inf)
-        return cls(s, y, edges, height, zero, zero, cells, never, zero > 0.0, 0.0, zero, cells, 0.0)
+        return cls(s, y, edges, height, smooth, zero, zero, cells, never, zero > 0.0, 0.0, zero, cells, 0.0)
 
     @property
     def recession(self) -> np.ndarray:
@@ -136,10 +147,13 @@ class LifeBody(NamedTuple):
         """Share of the columns that are pitted."""
         return float(self.is_pitted.mean())
 
-    @property
-    def damaged_share(self) -> float:
-        """Share of the columns with a cell of more damage than `DAMAGED`, gone or not."""
-        return float((self.damage.max(axis=0) > DAMAGED).mean())
+    def damaged_share(self, passes: float) -> float:
+        """Share of the columns with a cell, gone or not, that asperities have damaged after so many passes.
+
+        See :func:`.post_result.is_damaged`.
+        """
+        smooth = passes * laws.below(self.smooth_rate, self.height)
+        return float(is_damaged(self.damage, smooth).any(axis=0).mean())
 
     @property
     def pits(self) -> int:

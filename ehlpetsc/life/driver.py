@@ -17,7 +17,8 @@ from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeFile, LifeHistory, stored_or_new
-from ehlpetsc.life.one_pass import Pass, band, lines_of, passes_to_failure, run_pass
+from ehlpetsc.life.one_pass import Pass, band, lines_of, passes_to_failure, run_pass, smooth_contacts_of
+from ehlpetsc.life.remarks import SMOOTH_FIGURES, depth_lines, limits, smooth_figures, smooth_lines
 from ehlpetsc.life.rounds import Jumps, Positions, Ranks, Round, number_of_positions
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
@@ -122,6 +123,11 @@ def run_life(
         lock.release()
 
 
+def _lines_of_band(file: Path) -> list[str]:
+    """Lines on the criteria, of a solved pass."""
+    return list(lines_of(band(file), passes_to_failure(file)))
+
+
 class _Life:
     def __init__(
         self,
@@ -172,6 +178,8 @@ class _Life:
             self.file.close("done" if self.history.done >= self.jumps.passes else "stopped")
         if self.history.done < self.jumps.passes and self.history.solved >= self.case.life.max_solved:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
+        for line in limits(self.history):
+            self.show(line)
         return self.history
 
     def _run(self, stop: StopRequest | None, max_rounds: int | None) -> None:
@@ -186,20 +194,25 @@ class _Life:
             begun, self._passes = clock.monotonic(), 0
             solved_round = self._solve(stop)
             if self.history.rows:
-                bodies = self.history.bodies[-1]
+                last = self.history.rows[-1]
+                bodies, smooth = self.history.bodies[-1], {name: last[name] for name in SMOOTH_FIGURES}
             else:
-                bodies = tuple(map(self.positions.new_body, solved_round.passes[0].bodies, range(2)))
-            if self._show and not self.history.rows:
-                for line in on_root(self.comm, self._band):
-                    self.show(line)
-            self._jump(solved_round, bodies)
+                bodies, smooth = self._first_bodies(solved_round.passes[0])
+            self._jump(solved_round, bodies, smooth)
             self.show(line_of(self.history, clock.monotonic() - begun))
             rounds += 1
 
-    def _band(self) -> list[str]:
-        """Lines on the criteria, from the pass solved last."""
+    def _first_bodies(self, first: Pass) -> tuple[tuple[LifeBody, ...], dict[str, float]]:
+        """Bodies as made, and figures of the smooth contact; shows lines on it and on the criteria."""
         file = pass_file(self.path, 0, self.positions.count)
-        return list(lines_of(band(file), passes_to_failure(file)))
+        contacts = on_root(self.comm, smooth_contacts_of, file)
+        figures = smooth_figures(contacts, self.positions.passes_2)
+        for line in (*smooth_lines(figures), *depth_lines(first.bodies, figures)):
+            self.show(line)
+        if self._show:
+            for line in on_root(self.comm, _lines_of_band, file):
+                self.show(line)
+        return tuple(map(self.positions.new_body, first.bodies, contacts, range(2))), figures
 
     @property
     def _is_over(self) -> bool:
@@ -236,12 +249,15 @@ class _Life:
         fields = self.history.plastic[-1] if self.history.rows else None
         return unflat(PlasticRecord, fields, "plastic_deformation") if fields else None
 
-    def _jump(self, solved_round: Round, bodies: tuple[LifeBody, ...]) -> None:
-        """Jump with the rates of a solved round, and store the row."""
+    def _jump(self, solved_round: Round, bodies: tuple[LifeBody, ...], smooth: dict[str, float]) -> None:
+        """Jump with the rates of a solved round, and store the row.
+
+        `smooth`: figures of the smooth contact.
+        """
         done = self.history.done
         after, jump, rates = self.jumps.jump(bodies, solved_round, done, self._smooth_since(solved_round))
         row: dict[str, float] = {"passes": done + jump, "jump": jump, "solved": len(solved_round.passes)}
-        row |= solved_round.figures() | {"yielded": solved_round.yielded, "broken_out": 0}
+        row |= smooth | solved_round.figures() | {"yielded": solved_round.yielded, "broken_out": 0}
         for k, (body, rate, old) in enumerate(zip(after, rates, bodies, strict=True), 1):
             row["broken_out"] += int(np.count_nonzero(body.pit > old.pit))
             row[f"damage_ahead_{k}"] = body.damage_ahead(rate.wear, rate.damage)

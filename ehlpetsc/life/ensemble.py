@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ import numpy as np
 from ehlpetsc.base.errors import CaseError, OutputError, Stopped
 from ehlpetsc.base.toml_file import settings_of
 from ehlpetsc.life.history import LifeHistory, read_life
+from ehlpetsc.life.remarks import limits, smooth_lines
 from ehlpetsc.results.index import Index, read_index
 from ehlpetsc.results.means import bootstrap_bounds
 
@@ -120,7 +122,10 @@ def band(lives: list[LifeHistory], name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def lines_of_ensembles(lives: Lives) -> Iterator[str]:
-    """Lines with the mean of each figure over the lives of an ensemble and its bounds (90 %), at the end."""
+    """Lines with the mean of each figure over the lives of an ensemble and its bounds (90 %), at the end.
+
+    Then those on the smooth contact of the first one, and on the limits of each life.
+    """
     for others, members in lives.items():
         begin = f"{others}: " if others else ""
         for name in OF_SEEDS:
@@ -129,3 +134,5 @@ def lines_of_ensembles(lives: Lives) -> Iterator[str]:
                 f"{begin}{name} after {passes[-1]:.4g} passes, {len(members)} lives: "
                 f"{mean[-1]:.4g} ({low[-1]:.4g} to {high[-1]:.4g})"
             )
+        yield from (f"{begin}{line}" for line in smooth_lines(members[0].rows[-1]))
+        yield from (f"{begin}{line}" for line in dict.fromkeys(chain.from_iterable(map(limits, members))))

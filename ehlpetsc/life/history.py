@@ -24,11 +24,11 @@ from ehlpetsc.case.tables import Case
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.results.hdf5_file import GrowingFile, check_space, extend, open_for_reading, plain
 
-BODY_DATASETS = {"s": "m", "y": "m", "edges": "m", "height": "m"}  # of a body
+BODY_DATASETS = {"s": "m", "y": "m", "edges": "m", "height": "m", "smooth_rate": "1"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
 ROW_DATASETS |= {"wear_rate": "m", "damage_rate": "1", "volume_rate": "m^2"}  # of a pass
 KIND = "surfaces over their life"
-FORMAT = 4
+FORMAT = 5
 COMMIT_DATASET = "passes"  # of the figures, written last
 ROWS, CHUNK = 64, 4096  # in a chunk of a dataset: rows, numbers
 
@@ -143,7 +143,8 @@ class LifeHistory:
         """Values of a figure, or of "damaged_share_1" and "_2", in all rows, shape (rows,)."""
         name, k = name.rsplit("_", 1) if name.startswith("damaged_share") else (name, "")
         if k:
-            return np.array([body[int(k) - 1].damaged_share for body in self.bodies])
+            rows = zip(self.rows, self.bodies, strict=True)
+            return np.array([bodies[int(k) - 1].damaged_share(row["passes"]) for row, bodies in rows])
         return np.array([row[name] for row in self.rows])
 
     def add(self, row: dict, bodies: tuple[LifeBody, ...], plastic: dict[str, np.ndarray]) -> None:

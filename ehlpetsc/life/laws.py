@@ -9,6 +9,7 @@ the cells in which damage accumulates (Morales-Espejel and Brizmer, Tribology Tr
 from __future__ import annotations
 
 import numpy as np
+from scipy.optimize import brentq
 
 FINE_CELLS = 12  # cells of equal thickness below the surface as made
 CELL_GROWTH = 1.25  # of the thickness of the cells below them
@@ -39,13 +40,21 @@ def passes_to(amount: float | np.ndarray, rate: float | np.ndarray, slope: float
 def cell_edges(thickness: float, deepest: float) -> np.ndarray:
     """Depths of the edges of the cells of a column [m]: equal ones at the surface, growing below.
 
-    `thickness`: of the first cells [m]. `deepest`: depth that they reach at least [m].
+    The growth is chosen, near `CELL_GROWTH`, so that the last edge is the deepest depth. Cells therefore
+    change continuously with their thickness.
+
+    `thickness`: of the first cells [m]. `deepest`: last edge [m].
     """
-    edges = [0.0]
-    while edges[-1] < deepest or len(edges) < 2:
-        number = max(len(edges) - FINE_CELLS, 0)
-        edges.append(edges[-1] + thickness * CELL_GROWTH**number)
-    return np.array(edges)
+    fine = FINE_CELLS * thickness
+    terms = 1.0 + max(deepest - fine, 0.0) / thickness * (1.0 - 1.0 / CELL_GROWTH)
+    growing = round(np.log(terms) / np.log(CELL_GROWTH))
+    if not growing:  # equal cells alone
+        return np.linspace(0.0, deepest, min(max(round(deepest / thickness), 1), FINE_CELLS) + 1)
+    powers = np.arange(1, growing + 1)
+    growth = brentq(lambda g: fine + thickness * (g**powers).sum() - deepest, 0.0, 2.0 * CELL_GROWTH)
+    edges = np.append(thickness * np.arange(FINE_CELLS + 1), fine + thickness * np.cumsum(growth**powers))
+    edges[-1] = deepest
+    return edges
 
 
 def below(depths: np.ndarray, columns: np.ndarray) -> np.ndarray:

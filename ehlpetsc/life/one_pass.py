@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
 from ehlpetsc.case.tables.surface import SIDES
 from ehlpetsc.post.loads import Loads, Prepared, prepare
-from ehlpetsc.post.run import Job, solve
+from ehlpetsc.post.run import Job, smooth_contacts, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.ranks import on_root
 from ehlpetsc.run.recorder import Output, Recorder
@@ -21,7 +21,10 @@ from ehlpetsc.run.solve import solve as solve_run
 from ehlpetsc.surfaces.motion.body_field import BodyField
 
 if TYPE_CHECKING:
+    from ehlpetsc.results.post_result import SmoothContact
     from ehlpetsc.run.ranks import StopRequest
+
+T = TypeVar("T")
 
 
 class OfBody(NamedTuple):
@@ -132,9 +135,23 @@ def damage_of_pass(prepared: Prepared, side: str, settings: tuple[str, ...] = ()
 
     In double precision: a life sums it up, and its jumps and pits follow from it.
     """
-    job = Job(str(prepared.loads.path), "", settings=settings, share=1.0, precision="float64")
-    values = solve(prepared, side, job)
-    return values.get(f"criteria/fatemi_socie/{side}_damage", values[f"damage/{side}"])
+    return _of_criterion(solve(prepared, side, _job(prepared, settings)), side)
+
+
+def smooth_contacts_of(file: Path) -> tuple[SmoothContact, ...]:
+    """Smooth contact of both surfaces by the criterion of the case of a result."""
+    with Loads(file) as loads:
+        prepared = prepare(loads, SIDES, lambda text: None)
+        return tuple(_of_criterion(smooth_contacts(prepared, k, _job(prepared)), k) for k in SIDES)
+
+
+def _job(prepared: Prepared, settings: tuple[str, ...] = ()) -> Job:
+    return Job(str(prepared.loads.path), "", settings=settings, share=1.0, precision="float64")
+
+
+def _of_criterion(found: dict[str, T], side: str) -> T:
+    """Of results by the name of the damage, that by the criterion of the case, beside the default one."""
+    return found.get(f"criteria/fatemi_socie/{side}_damage", found[f"damage/{side}"])
 
 
 LIFE_CRITERIA = {  # name: post.criterion, post.mean_stress

@@ -32,6 +32,7 @@ from ehlpetsc.surfaces.motion.roughness import directed_speeds
 
 if TYPE_CHECKING:
     from ehlpetsc.base.declarations import Values
+    from ehlpetsc.results.post_result import SmoothContact
     from ehlpetsc.run.ranks import StopRequest
 
 CELL_SIZE = 0.25  # of the combined Rq: thickness of the first cells
@@ -109,10 +110,11 @@ class Positions:
         travel = self.case.time.travel + ratio * (ramp / scales.a + 1.0)  # a stretch of one half-width
         return f"{reason}; time.travel = {self.case.time.travel:g}, allowed: {travel:.2g} or more"
 
-    def new_body(self, of_pass: OfBody, k: int) -> LifeBody:
+    def new_body(self, of_pass: OfBody, smooth: SmoothContact, k: int) -> LifeBody:
         """Columns of a body after a pass in position 0, of body 2 in all of its positions.
 
-        Raises `PostError` if no stretch of it passed the contact at its full height.
+        `smooth`: smooth contact of the body. Raises `PostError` if no stretch of it passed the contact at its
+        full height.
         """
         s, dx, offset = of_pass.s, self.scales.spacing, self._offset(0, k)
         roughness = self.scenes[0].roughness
@@ -129,8 +131,9 @@ class Positions:
         grid = self.scales.grid
         height = profile.height(s - offset) if profile else np.zeros((*grid.shape[:-1], len(s)))
         y = self.scales.a * grid.axes[0] if len(grid.axes) > 1 else NO_ROWS
-        edges = laws.cell_edges(CELL_SIZE * self.rq, of_pass.depths[-1] + 1e-12)
-        return LifeBody.new(s, height, edges, y)
+        edges = laws.cell_edges(CELL_SIZE * self.rq, of_pass.depths[-1])
+        smooth_rate = (1.0, self.passes_2)[k] * smooth.damage_at(0.5 * (edges[1:] + edges[:-1]))
+        return LifeBody.new(s, height, edges, y, smooth_rate)
 
 
 class Ranks:

@@ -117,6 +117,11 @@ class Scales:
         ratio = conditions.load / self.load * (conditions.radius / self.R)
         return ratio ** (0.5 * self.grid.growth)
 
+    def dry_pressure(self, conditions: Conditions) -> float:
+        """Maximum pressure of the dry contact of the conditions at an instant [Pa]."""
+        area = self.size(conditions) ** (2.0 / self.grid.growth - 1.0)  # in proportion: of a line its width
+        return self.p0 * conditions.load / self.load / area
+
     @classmethod
     def of(cls, case: Case) -> Self:
         """Scales of a case, see `ehlpetsc.case.loading.Case`."""

@@ -22,8 +22,9 @@ from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.loads import Loads, Passage, Prepared, prepare
+from ehlpetsc.post.smooth_contact import smooth_contact
 from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, offset_weights
-from ehlpetsc.results.post_result import UPPER_FIRST, PostResult
+from ehlpetsc.results.post_result import UPPER_FIRST, PostResult, SmoothContact
 
 MAX_HISTORY_NUMBERS = 2.5e8  # of histories in memory; frames are read several times if they need more
 FRAMES_PER_READ = 144
@@ -92,6 +93,8 @@ def run(
         for surface in prepared.motions:
             datasets |= solve(prepared, surface, job, advance)
             datasets |= datasets_of(prepared, surface, datasets[f"damage/{surface}"], report)
+            for name, smooth in smooth_contacts(prepared, surface, job).items():
+                datasets |= {"smooth/depth": smooth.depths, f"smooth/{name}": smooth.damage}
         provenance = {"settings": "\n".join(job.settings), "fingerprint": identity}
         attributes = attributes_of(prepared) | provenance
         write_result(job.output, datasets, attributes)
@@ -159,6 +162,16 @@ def _solve_depths(
                     out[name][k][..., points] = column.reshape(points.size, *loads.rows).T
             advance(len(points))
     return out
+
+
+def smooth_contacts(prepared: Prepared, surface: str, job: Job) -> dict[str, SmoothContact]:
+    """Smooth contact of a surface by each criterion of damage, by the name of the damage in the file."""
+    ratio, counts = prepared.materials[surface].poisson_ratio, _counts(prepared, surface, job)
+    return {
+        names[0]: smooth_contact(prepared.loads, ratio, count)
+        for names, count in counts
+        if not names[0].endswith("utilisation")  # of a fatigue limit, not of a pass
+    }
 
 
 @compiled(error_model="python", nogil=True)

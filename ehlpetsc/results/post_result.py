@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,10 +17,50 @@ if TYPE_CHECKING:
 
 UPPER_FIRST = ("2", "1")
 DAMAGED = 0.1  # damage from which a point counts as damaged
+SMOOTH_SHARE = 0.1  # of the damage of a point: more by the smooth contact is not damage of asperities
 COMPARED = {  # name in files: quantity that compares points
     "fatemi_socie": "damage",
     "dang_van": "utilisation",
 }
+
+
+def is_damaged(damage: np.ndarray, smooth: np.ndarray) -> np.ndarray:
+    """Whether points are damaged by asperities: D above `DAMAGED`, less than a tenth of it by the smooth
+    contact.
+
+    A mirror has no such point, whatever the depths.
+
+    `smooth`: damage of the same depths and passes under the smooth contact.
+    """
+    return (damage > DAMAGED) & (smooth < SMOOTH_SHARE * damage)
+
+
+class SmoothContact(NamedTuple):
+    """Damage of a pass under the smooth contact of a case, see :mod:`ehlpetsc.post.smooth_contact`.
+
+    `depths`: equally spaced from 0 on [m], shape (n,). `damage`: of a pass, shape (n,).
+    """
+
+    depths: np.ndarray
+    damage: np.ndarray
+
+    @property
+    def life(self) -> float:
+        """Passes until D = 1 at the worst depth; inf without damage."""
+        return 1.0 / self.damage.max() if self.damage.any() else math.inf
+
+    @property
+    def depth(self) -> float:
+        """Worst depth, the vertex of the parabola through three depths [m]."""
+        k = int(np.clip(self.damage.argmax(), 1, len(self.depths) - 2))
+        above, at, below = self.damage[k - 1 : k + 2]
+        bend = above - 2.0 * at + below
+        step = 0.5 * (above - below) / bend if bend < 0.0 else 0.0
+        return float(self.depths[k] + np.clip(step, -1.0, 1.0) * (self.depths[1] - self.depths[0]))
+
+    def damage_at(self, depths: np.ndarray) -> np.ndarray:
+        """Damage of a pass at depths [m], interpolated; below the last depth that of the last."""
+        return np.interp(depths, self.depths, self.damage)
 
 
 class Dataset(NamedTuple):
@@ -61,6 +102,9 @@ DATASETS = {  # {n}: surface; {criterion}: as in CRITERIA
     "weibull/{n}_beta_bounds": Dataset("1", "90 % confidence bounds of the shape", "z bound"),
     "weibull/{n}_at_least_one": Dataset("1", "asperities with damage of 1 or more", "z"),
     "weibull/{n}_undamaged": Dataset("1", "asperities without damage, censored in the fit", "z"),
+    "smooth/depth": Dataset("m", "depth below the smooth contact", "depth"),
+    "smooth/damage/{n}": Dataset("1", "damage of one pass under the smooth contact", "depth"),
+    "smooth/criteria/{criterion}/{n}_damage": Dataset("1", "the same on the worst plane", "depth"),
     "temperature/{n}_highest": Dataset("K", f"highest surface temperature in one pass; {NOT_PASSED}", "s"),
     "temperature/{n}_mean": Dataset("K", "surface temperature, mean over the time in the Hertz contact", "s"),
     "temperature/{n}_flash": Dataset("K", "flash temperature: the highest over that of the body", "s"),
@@ -127,6 +171,8 @@ class PostResult:
         By criterion, then surface: damage or utilisation (nz, ns).
     temperatures
         By surface; empty of a run without [heat].
+    smooth
+        Smooth contact by criterion, None of the default damage, then surface.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -161,6 +207,15 @@ class PostResult:
             name.replace("_", "-"): found
             for name, kind in COMPARED.items()
             if (found := self._of_surfaces(f"criteria/{name}/{{n}}_{kind}"))
+        }
+
+        depths = self._arrays.get("smooth/depth")
+        names: dict[str | None, str] = {None: "smooth/damage/{n}"}
+        names |= {key.replace("_", "-"): f"smooth/criteria/{key}/{{n}}_damage" for key in COMPARED}
+        self.smooth = {
+            name: {side: SmoothContact(depths, values) for side, values in found.items()}
+            for name, place in names.items()
+            if (found := self._of_surfaces(place))
         }
 
     def _of_surfaces(self, name: str) -> dict[str, np.ndarray]:

@@ -125,9 +125,9 @@ def test_first_pit_is_independent_of_the_allowed_jump():
 
 def test_cells_reach_the_depth_recede_with_the_surface_and_take_damage_between_depths():
     edges = laws.cell_edges(0.5, 100.0)
-    assert edges[0] == 0.0 and edges[-1] >= 100.0 > edges[-2]
+    assert edges[0] == 0.0 and edges[-1] == 100.0
     assert np.diff(edges)[: laws.FINE_CELLS] == pytest.approx(0.5)
-    assert np.diff(edges)[-1] / np.diff(edges)[-2] == pytest.approx(laws.CELL_GROWTH)
+    assert np.diff(edges)[-1] / np.diff(edges)[-2] == pytest.approx(laws.CELL_GROWTH, rel=0.02)
     depths = laws.cell_depths(EDGES, np.array([0.0, 0.5, 1.0, 3.0]))
     expected = [[0.5, 0.25, np.nan, np.nan], [1.5, 1.0, 0.5, np.nan], [3.0, 2.5, 2.0, 0.5]]
     assert depths == pytest.approx(np.array(expected), nan_ok=True)

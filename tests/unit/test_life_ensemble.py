@@ -36,6 +36,7 @@ def life(passes, damage):
         row = {"passes": done, "jump": 1, "friction": 0.05, "solved": 1}
         for k in (1, 2):
             row |= {f"pitted_share_{k}": 0.0, f"pits_{k}": 0, f"wear_volume_{k}": 1e-12 * done}
+            row |= {f"smooth_life_{k}": 5.0, f"smooth_depth_{k}": 1e-5}
         made.add(row, (body, body), {})
     return made
 
@@ -63,6 +64,8 @@ def test_lives_of_an_index_are_printed_and_drawn_by_their_other_settings(tmp_pat
     assert main([str(index)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("entrainment_speed = 2.0: damaged_share_1 after 10 passes, 3 lives: 0.2 (")
+    assert "entrainment_speed = 1.0: smooth contact: smooth_life_2=5 passes smooth_depth_2=1e-05 m" in lines
+    assert sum("2.0: limit: of 10 passes those after 5 exceed" in line for line in lines) == 2
     assert (tmp_path / "a.life.series.png").stat().st_size > 10_000
     (tmp_path / "b.series.json").write_text(json.dumps({"members": []}))
     assert main([str(tmp_path / "b.series.json")]) == 2
