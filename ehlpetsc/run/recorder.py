@@ -25,7 +25,7 @@ from ehlpetsc.results.means import Totals
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, check_output_path, file_path, inputs_of
 from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run import checkpoint
-from ehlpetsc.run.forecast.validity import limits
+from ehlpetsc.run.forecast.limits import limits
 from ehlpetsc.run.ranks import Deadline, on_root
 from ehlpetsc.stepping.time_stepping import on_level
 
@@ -119,7 +119,7 @@ class Recorder(Output):
     `output`: result file; the restart file is named after it. None: in memory, without a restart file.
 
     `totals`: totals of all steps so far. `limits`: messages of
-    :func:`ehlpetsc.run.forecast.validity.limits`, on rank 0, set by :meth:`close`. `restart`: restart file.
+    :func:`ehlpetsc.run.forecast.limits.limits`, on rank 0, set by :meth:`close`. `restart`: restart file.
     """
 
     def __init__(self, simulation: Simulation, output: Path | None) -> None:

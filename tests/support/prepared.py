@@ -25,7 +25,7 @@ HEAVY = """
 scipy.fft scipy.interpolate scipy.linalg scipy.ndimage ehlpetsc.__main__ ehlpetsc.case.loading
 ehlpetsc.discretisation.ehl_problem ehlpetsc.effects.heat.step ehlpetsc.results.output_guard
 ehlpetsc.results.reader ehlpetsc.run.checkpoint ehlpetsc.results.means ehlpetsc.results.writer
-ehlpetsc.commands.run ehlpetsc.run.forecast.validity
+ehlpetsc.commands.run ehlpetsc.run.forecast.validity ehlpetsc.run.forecast.limits
 ehlpetsc.run.forecast.cost ehlpetsc.run.forecast.explain ehlpetsc.stepping.observables
 ehlpetsc.stepping.state ehlpetsc.stepping.steady_start
 ehlpetsc.surfaces.motion.body_field ehlpetsc.surfaces.motion.roughness

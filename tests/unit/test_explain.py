@@ -21,7 +21,8 @@ from ehlpetsc.run.forecast.explain import (
     WAVE_ERRORS,
     explain,
 )
-from ehlpetsc.run.forecast.validity import heat_warnings, limits, warnings
+from ehlpetsc.run.forecast.limits import limits
+from ehlpetsc.run.forecast.validity import heat_warnings, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
@@ -280,6 +281,24 @@ def test_unresolved_asperities_and_a_flattened_layer_have_limit_lines():
     (line,) = limit_lines("stribeck", h_min=1.3e-9)
     assert line.startswith("layer: flattened from 132 nm to a film of 1.3 nm")
     assert limit_lines("stribeck", h_min=1.4e-9) == []
+
+
+@pytest.mark.parametrize(
+    (
+        "share",
+        "films",
+        "is_enclosed",
+    ),  # computed: a layer of 10 nm at 1 mm/s and at 5 m/s; Stribeck case, 1 m/s
+    [(0.0795, 533.0, True), (0.001, 3.0, False), (0.48, 2.93, False), (0.98, 20.0, False)],
+)
+def test_enclosed_oil_that_carries_most_of_the_load_has_a_limit_line(share, films, is_enclosed):
+    means = {"contact_share": share, "lambda_ratio": 0.0016, "mean_gap_ratio": 0.0016 * films}
+    means["h_min"] = 1e-8
+    found = starting(limit_lines("stribeck", **means), "enclosed oil: ")
+    assert len(found) == is_enclosed
+    if is_enclosed:
+        assert " 92 % of the load in a mean film 464 times the smooth one" in found[0]
+        assert 'asperity_height = "measured"' in found[0]
 
 
 HEAT = "heat.bulk_temperature=363.0"

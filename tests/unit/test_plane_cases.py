@@ -18,7 +18,8 @@ from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast.cost import file_size, work_time
 from ehlpetsc.run.forecast.explain import explain
-from ehlpetsc.run.forecast.validity import heat_warnings, limits, warnings
+from ehlpetsc.run.forecast.limits import limits
+from ehlpetsc.run.forecast.validity import heat_warnings, warnings
 from ehlpetsc.run.recorder import Recorder
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.surfaces.motion.roughness import Roughness
