@@ -157,8 +157,8 @@ def help_text() -> str:
         run_parser().format_help().partition("\n")[2],
         "PETSc's options, of which -help with a case prints a list (-snes_*, -ksp_*, -pc_*, -log_view ...),",
         "may be in [petsc] of the case, in PETSC_OPTIONS and on the command line; the last one counts.",
-        "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped and restart file written,",
-        "5 result file deleted or replaced during the run.",
+        "Exit status: 0 done, 1 bug, 2 bad input, 3 no convergence, 4 stopped: the same command continues,",
+        "from the restart file after a time step; 5 result file deleted or replaced during the run.",
     ]
     return "\n".join(lines)
 

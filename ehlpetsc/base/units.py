@@ -76,7 +76,7 @@ def converted(value: object, unit: str, is_difference: bool = False, depth: int 
         point = value.replace(".", "").replace(",", ".", 1).strip()
         raise UnitFault(f'"{value}": a comma in a number; allowed: digits and a decimal point, as "{point}"')
     if isinstance(value, str) and PLAIN_NUMBER.fullmatch(value):
-        raise UnitFault(f'"{value}": a number in quotation marks; allowed: {value.strip()}')
+        raise UnitFault(f'"{value}": a number in quotation marks; allowed: {float(value)!r}')
     if not match:
         return value
     number, text = float(match[1]), match[2].strip()

@@ -121,6 +121,15 @@ def with_columns(tables: Tables, folder: Path, kind: str, of: Sequence[str] = tu
     return tables
 
 
+def with_file(place: str, case: Case) -> str:
+    """Place of a key, with the file that it is a column of: ``operation.load of loads.csv``."""
+    name, _, column = place.partition(".")
+    key, _, columns = FILES.get(name, ("", None, ()))
+    table = getattr(case, name) if column in columns else None
+    file = getattr(table, key) if table else None
+    return f"{place} of {file}" if file else place
+
+
 def of_gears(path: ContactPath) -> ConditionsTable:
     """Conditions along a path of contact, where teeth carry at least `MIN_LOAD_FRACTION` of the load."""
     min_load = MIN_LOAD_FRACTION * path.load.max()

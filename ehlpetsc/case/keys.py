@@ -51,11 +51,12 @@ def default_of(key: Key) -> str:
 def keys(name: str | None = None) -> str:
     """Keys with meaning, allowed values and default, a line each, followed by the equation of the key.
 
-    `name` is a table, as "fluid" or "surface.1", or a key or its symbol, as "asperity_height" or "alpha".
+    `name` is a table, as "fluid", "surface.1" or "grade", or a key or its symbol, as "asperity_height" or
+    "alpha".
     """
     every, lines = tables(), []
     for place, table in every.items():
-        if name is None or f"{place}.".startswith(f"{name}.") or place.startswith(f"{name} ("):
+        if name is None or _is_of(place, name):
             same = place.replace("surface.2", "surface.1") if name is None else place
             lines += [f"[{place}]" if place else "top-level keys"]
             lines += [f"  as [{same}]"] if same != place else _lines("  ", own_keys(table))
@@ -71,6 +72,13 @@ def keys(name: str | None = None) -> str:
     known = every[above].keys if above in every and above else {k for t in every.values() for k in t.keys}
     places = ", ".join(place for place in every if place and " " not in place)
     raise UsageError(f"{name}: no such table or key; {nearest(last, sorted(known)) or f'tables: {places}'}")
+
+
+def _is_of(place: str, name: str) -> bool:
+    """Whether a table is the one of a name or within it; of both surfaces the first, unless named in full."""
+    path = place.partition(" (")[0]
+    ends_with_it = path.endswith(f".{name}") and not path.startswith("surface.2")
+    return ends_with_it or f"{path}.".startswith(f"{name}.")
 
 
 def _lines(indent: str, chosen: dict[str, Key]) -> list[str]:

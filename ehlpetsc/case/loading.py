@@ -40,7 +40,7 @@ from ehlpetsc.case.derived import (
     with_derived,
     with_layer_stiffness,
 )
-from ehlpetsc.case.tables import CASE, Case, extend
+from ehlpetsc.case.tables import CASE, Case, extend, key_of
 from ehlpetsc.case.tables.surface import AREAL, PROFILE, SIDES, file_digests
 from ehlpetsc.case.values import is_number, shortened, show
 from ehlpetsc.effects import EFFECTS
@@ -78,7 +78,7 @@ def load(
         a surface may be arrays, ``{"surface": {"1": {"x": x, "z": z}}}`` [m].
     overrides
         ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
-        syntax, otherwise text.
+        syntax, otherwise text. An empty table, ``time={}``, leaves out a table that must have keys.
     laws, density_laws, shear_laws, effects
         Viscosity, density and shear laws by name, and effects, of your own. With their keys and quantities
         they are known to the process from then on; names of built-in ones are refused.
@@ -92,7 +92,7 @@ def load(
     """
     extend(laws, density_laws, effects, shear_laws)
     if not isinstance(case, dict | str | PathLike):  # a number would be a file descriptor
-        raise CaseError([f"{case!r}: not a case; allowed: the path of a case file, or a dict of its tables"])
+        raise CaseError([f"{_not_tables(case)}; allowed: the path of a case file, or a dict of its tables"])
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
     written, folder = copy.deepcopy(data), Path(path).parent
@@ -110,6 +110,12 @@ def load(
     stored = with_columns(data, folder, kind)
     text = text if stored == written else None
     return _of_files(checked.copy({"_path": Path(path), "_tables": stored, "_text": text}))
+
+
+def _not_tables(given: object) -> str:
+    if isinstance(given, Case):
+        return "a Case, which is loaded already; for other values load its file or tables with them"
+    return f"{shortened(repr(given))}: not a case"
 
 
 def _of_files(case: Case) -> Case:
@@ -154,12 +160,19 @@ def _override(data: Tables, overrides: Overrides) -> list[Fault]:
     items: Any = overrides.items() if isinstance(overrides, dict) else overrides or ()
     for override in [items] if isinstance(items, str | int | float) else list(items):
         try:
-            put(data, *parsed(override))
+            keys, value = parsed(override)
+            put(data, keys, None if _leaves_out(keys, value) else value)
         except ValueError:
             one_line = " ".join(override.split()) if isinstance(override, str) else show(override)
             text = shortened(one_line)
             faults.append(Fault("", f"{text}: allowed: table.key=value, as in fluid.viscosity=0.003"))
     return faults
+
+
+def _leaves_out(keys: list[str], value: object) -> bool:
+    """Whether a value is an empty table in place of one that must have keys."""
+    key = key_of(".".join(keys)) if value == {} else None
+    return bool(key and key.table and check(key.table, {})[1])
 
 
 def _checked(
@@ -175,6 +188,8 @@ def _checked(
     unsound = unsound_tables(data, known)
     data, underived = with_derived(data, unsound)
     faults += underived
+    gears = data.get("gears")
+    load_file = gears.get("load_file") if isinstance(gears, dict) else None
     try:
         data = with_columns(data, folder, kind, ("gears",))
         conditions = conditions_of(data, folder, kind, unsound)
@@ -187,6 +202,8 @@ def _checked(
     case, found = check(in_kind(CASE, kind), data, known=known, is_sound=not unsound and not faults)
     if case:
         case = case.copy({"_kind": kind, "_conditions": conditions})
+        if load_file:  # of which the columns have been checked in its place
+            case = case.copy({"gears": case.gears.copy({"load_file": load_file})})
         case = case if faults else with_layer_stiffness(case)  # which needs speeds
         reversed_flow = reversal_faults(cast(Case, case), conditions) if conditions else []
         faults += [Fault("mesh", line) for line in reversed_flow]

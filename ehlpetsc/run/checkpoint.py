@@ -10,6 +10,7 @@ import hashlib
 import io
 import json
 import tomllib
+from collections.abc import Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,6 +20,9 @@ import numpy as np
 from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.base.toml_file import plain
+from ehlpetsc.case.conditions import with_file
+from ehlpetsc.case.tables import CASE
+from ehlpetsc.case.values import show
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects import EFFECTS
 from ehlpetsc.effects.effect import flat, unflat
@@ -39,6 +43,7 @@ OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 SCALE_TOLERANCE = 1e-12  # relative
 SCALE_NAMES = ("a", "p0", "h")  # of load, radius and elasticity
+MAX_NAMED = 3  # changed keys in a refusal
 SPEEDS = ("motion", "operation", "gears")  # tables
 
 
@@ -88,7 +93,7 @@ def load(path: Path, case: Case, scales: Scales) -> tuple[Checkpoint, list[str]]
     earlier = tomllib.loads(values["case"])
     if misfit := _misfit(values, earlier, case, scales):
         raise OutputError(f"{path}: {misfit}")
-    changes = changed_keys(earlier, tomllib.loads(case.text))
+    changes = changed_keys(earlier, tomllib.loads(case.text), case)
     named = " ".join(changes)  # a change of the file that a key names is reported
     check_surfaces(path, values, {key: one for key, one in case.digests.items() if key not in named})
     return _checkpoint(values), changes
@@ -99,11 +104,16 @@ def pass_of(path: Path) -> int:
     return load_restart(path)["pass_number"]
 
 
-def changed_keys(earlier: dict, now: dict) -> list[str]:
-    """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics."""
+def changed_keys(earlier: dict, now: dict, case: Case) -> list[str]:
+    """Messages ``fluid.viscosity was 0.002, is 0.004``, one for every changed key of the physics.
+
+    `case`: of now.
+    """
     old, new = (flat_keys({k: v for k, v in d.items() if k not in NOT_PHYSICS}) for d in (earlier, now))
     keys = [key for key in {**old, **new} if old.get(key) != new.get(key)]
-    return [f"{key} was {old.get(key, 'left out')}, is {new.get(key, 'left out')}" for key in keys]
+    shown = [[show(of[key]) if key in of else "left out" for key in keys] for of in (old, new)]
+    changes = zip(keys, *shown, strict=True)
+    return [f"{with_file(key, case)} was {before}, is {after}" for key, before, after in changes]
 
 
 def _checkpoint(values: dict[str, Any]) -> Checkpoint:
@@ -125,11 +135,8 @@ def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -
     """Reason why a file does not fit the case; None if it fits."""
     now_table = tomllib.loads(case.text)
     if not all(np.isclose(values[name], getattr(scales, name), rtol=SCALE_TOLERANCE) for name in SCALE_NAMES):
-        changes = changed_keys(*({"contact": tables.get("contact", {})} for tables in (earlier, now_table)))
-        return (
-            f"of another load, radius or elasticity{': ' * bool(changes)}{', '.join(changes)}; "
-            "what changes with time is in [operation]"
-        )
+        changes = _changes_of(("contact", "operation", "gears"), earlier, now_table, case)
+        return f"of another load, radius or elasticity{changes}; what changes with time is in [operation]"
     for axis, now in axes_of(scales).items():
         x, where = values.get(axis, np.zeros(1)) / values["a"], " across" if axis == "y" else ""
         if len(x) != len(now):
@@ -144,8 +151,18 @@ def _misfit(values: dict[str, Any], earlier: dict, case: Case, scales: Scales) -
     if case.time.start != start:
         return f'time.start was "{start}"; it must be as it was, or the profiles would jump'
     if any(now_table.get(name) != earlier.get(name) for name in SPEEDS):
-        return f"of other speeds; {', '.join(SPEEDS)} must be as they were, or the profiles would jump"
+        changes = _changes_of(SPEEDS, earlier, now_table, case)
+        as_before = f"{', '.join(SPEEDS)} must be as they were, or the profiles would jump"
+        return f"of other speeds{changes}; {as_before}"
     return None
+
+
+def _changes_of(names: Collection[str], earlier: dict, now: dict, case: Case) -> str:
+    """Changed keys of some tables after a colon; "": none."""
+    before, after = ({name: of[name] for name in names if name in of} for of in (earlier, now))
+    changes = changed_keys(before, after, case)
+    more = f" and {len(changes) - MAX_NAMED} more" if len(changes) > MAX_NAMED else ""
+    return f": {', '.join(changes[:MAX_NAMED])}{more}" if changes else ""
 
 
 VERSION = 8  # of the format
@@ -232,7 +249,9 @@ def restart_of_same(path: Path, restart: Path, case: Case) -> Path | None:
         except (OutputError, KeyError):
             raise OutputError(f"{path}: exists and is not a result of ehlpetsc; {OVERWRITE_ADVICE}") from None
         if text != case.text:
-            raise OutputError(f"{path}: holds a run of another case, or of other --set; {OVERWRITE_ADVICE}")
+            changes = _changes_of(CASE.keys, tomllib.loads(text), tomllib.loads(case.text), case)
+            reason = f"holds a run of another case, or of other --set{changes}"
+            raise OutputError(f"{path}: {reason}; {OVERWRITE_ADVICE}")
     if status == "done" or not restart.exists():
         return None
     try:

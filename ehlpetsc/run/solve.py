@@ -158,6 +158,6 @@ class Run(Output):
 def place_of_stop(simulation: Simulation, recorder: Recorder) -> str:
     """Step at which a run was stopped, and how it is continued."""
     if simulation.dimensionless is None:
-        return "stopped during the steady start; nothing to continue from"
+        return "stopped during the steady start, with no restart file; the same command begins anew"
     advice = f"; continue with the same command or --restart {recorder.restart}" if recorder.output else ""
     return f"stopped at step {simulation.dimensionless.step}{advice}"

@@ -38,6 +38,7 @@ def test_same_case_overwrites_and_another_is_refused(done):
     refused = run(*other, cwd=done)
     assert refused.returncode == 2 and path.read_bytes() == before
     assert is_line_with(refused.stderr, "table1_smooth.h5: ", "another case", "--set", "-o", "--overwrite")
+    assert "other --set: fluid.viscosity was 0.005, is 0.004; give" in refused.stderr
     assert run(*other, "--overwrite", cwd=done).returncode == 0
     with read_result(path) as result:
         assert "viscosity = 0.004" in result.attrs["case"]

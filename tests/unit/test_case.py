@@ -89,6 +89,19 @@ def test_series_members_differ_in_the_series_key_only_and_all_are_checked():
     assert len(found) == 2
     assert "fluid.viscosity = -1" in found[0] and "fluid.viscosity = nan" in found[1]
     assert "fluid.visc" in fault(SMOOTH, "series.key='fluid.visc'", "series.values=[1]")
+    for key in ("title", "fluid", "petsc"):
+        message = f'series.key = "{key}": allowed: a key of a table, as "fluid.viscosity"'
+        assert fault(SMOOTH, f"series.key='{key}'", "series.values=[1]").endswith(message)
+
+
+def test_an_empty_table_leaves_out_one_that_must_have_keys():
+    whole = case.load(ROUGH, ["wear.coefficient=1e-17", "contact.model=mixed"])
+    assert whole.time and whole.wear and whole.surface.body_1
+    kept = case.load(ROUGH, ["time={}", "surface.1={}", "fluid.grade={}", "output={}", "life={}"])
+    assert kept.time is None and kept.surface.body_1 is None and kept.surface.body_2
+    assert kept.life and kept.output.every == 1  # which need no keys
+    assert case.load(ROUGH, {"fluid": {}, "motion": {}, "time": {}}).fluid is None
+    assert "contact is missing" in fault(SMOOTH, "contact={}")
 
 
 def test_all_faults_of_a_case_and_needs_that_are_not_met_are_reported():

@@ -1,11 +1,13 @@
 """A state into a restart file and back, with the case as it was and with other settings."""
 
+import re
+import tomllib
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support import CASES
 
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
@@ -14,12 +16,13 @@ from ehlpetsc.effects.depths import PlasticRecord, WearRecord
 from ehlpetsc.effects.effect import flat
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.output_guard import inputs_of
 from ehlpetsc.run import checkpoint
 from ehlpetsc.run.forecast.domain import cures
 from ehlpetsc.stepping.state import State, TimeLevel
 from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
-CASE = Path(__file__).parents[2] / "cases" / "table1_rough.toml"
+CASE = CASES / "table1_rough.toml"
 MESH = ["mesh.points_per_half_width=20"]
 NO_DEPTH = BodyFields.zero(1e-6)
 DEPTHS = BodyFields(BodyField(1e-6, 3, np.arange(4.0)), BodyField(1e-6, -2, np.ones(5)))
@@ -83,14 +86,32 @@ def test_changed_physical_keys_are_listed(tmp_path):
     assert notes == ["fluid.viscosity was 0.002, is 0.004", "time.courant was left out, is 0.25"]
 
 
+@pytest.mark.parametrize("table, key", [("operation", "file"), ("gears", "load_file")])
+def test_a_changed_column_of_conditions_is_reported_with_its_file(tmp_path, table, key):
+    text, columns = (CASES / "fzg.toml").read_text(), "path [mm],load\n-9,2e5\n{},5.{}e5\n9,2e5\n"
+    if table == "operation":
+        text, columns = (CASES / "table1_smooth.toml").read_text(), "time,load\n0,5e5\n{},5.{}e5\n"
+    (tmp_path / "case.toml").write_text(text)
+    cases = []
+    for last in (2, 3):
+        (tmp_path / "loads.csv").write_text(columns.format(1, last))
+        cases.append(load(tmp_path / "case.toml", {f"{table}.{key}": "loads.csv"}))
+    (change,) = checkpoint.changed_keys(*(tomllib.loads(case.text) for case in cases), cases[1])
+    assert re.fullmatch(rf"{table}\.\w+ of loads.csv was \[.*\], is \[.*\]", change), change
+    assert tmp_path / "loads.csv" in inputs_of(cases[1])  # so that no output replaces it
+
+
 @pytest.mark.parametrize(
     "change, text",
     [
         (["mesh.points_per_half_width=21"], "nodes, the case"),
         (["mesh.inlet=-2.4", "mesh.outlet=1.6"], "begins at -2.5 .* -2.4;"),
         (["contact.model='mixed'"], "another contact model"),
-        (["motion.entrainment_speed=4.0"], "of other speeds; motion"),
-        (["contact.load=1054e3"], r"another load, .* \[operation\]"),
+        (
+            ["motion.entrainment_speed=4.0"],
+            "speeds: motion.entrainment_speed was .*, is 4.0; motion",
+        ),
+        (["contact.load=1054e3"], r"another load, .*: contact.load was .*, is 1054000.0; .* \[operation\]"),
         (["time.start=rough"], r'time\.start was "smooth"'),
     ],
 )

@@ -266,6 +266,17 @@ def test_a_number_is_no_case(case):
         ehlpetsc.load(case)
 
 
+@pytest.mark.parametrize(
+    "given, words",
+    [(ehlpetsc.load(CASES / "moes.toml"), "a Case, which is loaded already; for other values load its file")]
+    + [([1.0] * 500, r"\[1.0, 1.0, .*\.\.\.: not a case"), ({1, 2}, r"\{1, 2\}: not a case")],
+)
+def test_other_objects_than_a_path_or_tables_are_refused_in_a_short_line(given, words):
+    with pytest.raises(ehlpetsc.CaseError, match=f"^{words}.*; allowed: the path") as refusal:
+        ehlpetsc.load(given, {"fluid.viscosity": 0.1})
+    assert len(str(refusal.value)) < 200
+
+
 @pytest.mark.parametrize("output", ["", ".", "/"])
 def test_output_without_a_name_is_refused(output):
     with pytest.raises(ehlpetsc.OutputError, match="a folder, not a file .*give the name of a file"):

@@ -93,6 +93,8 @@ def test_case_series_and_gears_with_units_equal_those_in_si(tmp_path):
         ("contact.load", "1.000,5 N/mm", 'as "1000.5 N/mm"$'),
         ("motion.entrainment_speed", "3,0", 'as "3.0"$'),
         ("motion.entrainment_speed", "3.0", '"3.0": a number in quotation marks; allowed: 3.0$'),
+        ("motion.entrainment_speed", ".5", '".5": a number in quotation marks; allowed: 0.5$'),
+        ("motion.entrainment_speed", "2.", '"2.": a number in quotation marks; allowed: 2.0$'),
         ("contact.load", "350 kn/mm", "unknown unit; .* or with a unit, a product of such as N, kN, "),
         ("fluid.viscosity", "15 cSt", '"15 cSt": kinematic, .* density, at 870 kg/m.3 "13.05 mPa s"$'),
         ("fluid.viscosity", "0.2 St", '"0.2 St": kinematic, .* "17.4 mPa s"$'),

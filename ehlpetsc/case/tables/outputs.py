@@ -37,7 +37,7 @@ def _one_or_several(series: Values) -> dict[str, Any]:
         raise Refused("needs either key or keys: one of them")
     keys, lists = (series.keys, series.values) if series.keys else ([series.key], [series.values])
     if not all(map(DOTTED_KEY.fullmatch, keys)):
-        raise Refused(key="keys" if series.keys else "key")
+        raise Refused('allowed: a key of a table, as "fluid.viscosity"', "keys" if series.keys else "key")
     if series.combine and not series.keys:
         raise Refused("combine is for several keys")
     if len(set(keys)) < len(keys):
