@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from ehlpetsc.base.errors import CaseError
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.gears.path import gear_loss_factor, hertz, loss, mean_friction, path_of_contact
 from ehlpetsc.gears.standards import STANDARDS, Rating, values_of
-from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.post_result import PostResult
 from ehlpetsc.results.reader import read_result
 

@@ -25,7 +25,7 @@ from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.contact import CONTACT
 from ehlpetsc.case.tables.motion import COLUMNS, GEARS, OPERATION, PATH_COLUMNS
 from ehlpetsc.case.values import is_number, shortened, show
-from ehlpetsc.physics.scales import reduced_modulus
+from ehlpetsc.elasticity.bodies import reduced_modulus
 
 if TYPE_CHECKING:
     from ehlpetsc.gears.path import Path as ContactPath

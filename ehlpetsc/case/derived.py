@@ -17,6 +17,7 @@ from ehlpetsc.case.checking import Fault, check, unsound_tables, values_of
 from ehlpetsc.case.tables.contact import CONTACT, FLUID, GRADE, LAYER_NODES
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.case.values import allowed, is_allowed, is_number, show
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics.contact.hertz import hertz_load
 from ehlpetsc.physics.oil.law import STANDARD_TEMPERATURE
 from ehlpetsc.physics.oil.laws import ROELANDS_PRESSURE, ROELANDS_VISCOSITY, reference_temperature, viscosity
@@ -28,7 +29,7 @@ from ehlpetsc.physics.oil.viscosity_laws import (
     walther,
     walther_constants,
 )
-from ehlpetsc.physics.scales import Scales, reduced_modulus
+from ehlpetsc.physics.scales import Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case

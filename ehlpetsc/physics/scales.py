@@ -3,29 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 
 from ehlpetsc.base.case import KINDS, Case
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics.contact.geometry import Geometry
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.operation import Conditions
 
 NODE_TOLERANCE = 1e-9  # relative: half-widths, and x/a of nodes, nearer than this are equal
-
-
-def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[float]) -> float:
-    r"""Reduced modulus E' [Pa], :math:`2/E'=(1-\nu_1^2)/E_1+(1-\nu_2^2)/E_2`.
-
-    Parameters
-    ----------
-    youngs_modulus, poisson_ratio
-        E1, E2 [Pa] and nu1, nu2.
-    """
-    return 2.0 / sum((1.0 - nu * nu) / e for e, nu in zip(youngs_modulus, poisson_ratio, strict=True))
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics.contact.geometry import Dry
-from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.results.index import distinguishing_names, series_values
 from ehlpetsc.results.output_guard import replacing
 from ehlpetsc.results.reader import Result

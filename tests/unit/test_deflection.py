@@ -22,21 +22,23 @@ from ehlpetsc.discretisation.line.deflection import (
     Deflection,
     PressureSums,
     SymmetricToeplitz,
-    curvature_kernel,
-    deflection_kernel,
     fast_length,
 )
 from ehlpetsc.discretisation.plane.deflection import (
-    NEAR,
     Convolution,
     Transposition,
+)
+from ehlpetsc.discretisation.plane.deflection import Deflection as PlaneDeflection
+from ehlpetsc.discretisation.unknowns import Unknowns, q_of
+from ehlpetsc.elasticity.half_plane import curvature_kernel, deflection_kernel
+from ehlpetsc.elasticity.half_space import (
+    NEAR,
     cell_potential,
     differences_of_primitive,
     free_kernel,
     periodic_kernel,
 )
-from ehlpetsc.discretisation.plane.deflection import Deflection as PlaneDeflection
-from ehlpetsc.discretisation.unknowns import Unknowns, q_of
+from ehlpetsc.elasticity.kernel import Kernel
 from ehlpetsc.nonlinear.line.banded_jacobian import GROUP, exponentials, grouped_kernel
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.physics.film_formulas import expected_film
@@ -165,7 +167,7 @@ CPU_FLAG_OF_KERNELS = {"Prescott": "sse3", "Haswell": "avx2", "SkylakeX": "avx51
 TERMS = """
 import json
 from ehlpetsc.discretisation.line.curvature_product import exponentials
-from ehlpetsc.discretisation.line.deflection import curvature_kernel
+from ehlpetsc.elasticity.half_plane import curvature_kernel
 terms = [exponentials(curvature_kernel(n), nearest) for n, nearest in ((50, 33), (12801, 9), (12801, 33))]
 print(json.dumps([[rates.tolist(), weights.tolist()] for rates, weights in terms]))
 """
@@ -220,8 +222,8 @@ def test_film_of_hertz_pressure_is_flat_to_second_order():
     for points in (16, 32, 64):
         x = np.arange(-2 * points, 2 * points + 1) / points
         square = x**2 + x[:, None] ** 2
-        shape, cell = (len(x), len(x)), (1 / points, 1 / points)
-        deflection = PlaneDeflection(shape, cell, CIRCLE, 1.0, False, slice(None))
+        kernel = Kernel(free_kernel(len(x), len(x), 1 / points, 1 / points))
+        deflection = PlaneDeflection((1 / points, 1 / points), kernel, CIRCLE, 1.0, False, slice(None))
         film = deflection.integral(np.sqrt(np.maximum(1.0 - square, 0.0)).ravel()) + 0.5 * square.ravel()
         inside = film[square.ravel() < 0.81]
         spreads.append(inside.std())

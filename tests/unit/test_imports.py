@@ -17,20 +17,21 @@ PACKAGE = Path(__file__).parents[2] / "ehlpetsc"
 GROUND = {"base"}  # every room may import it; it imports no room
 MAY_IMPORT = {
     "base": "",
-    "physics": "",
+    "elasticity": "",
+    "physics": "elasticity",
     "surfaces": "physics",
     "effects": "surfaces physics discretisation",
     "gears": "physics",
-    "case": "gears surfaces physics effects",
+    "case": "gears surfaces physics effects elasticity",
     "results": "case surfaces physics effects",
-    "discretisation": "physics",
-    "nonlinear": "discretisation physics",
+    "discretisation": "physics elasticity",
+    "nonlinear": "discretisation physics elasticity",
     "stepping": "nonlinear discretisation physics effects",
     "run": "stepping nonlinear discretisation physics effects case surfaces results",
-    "analysis": "gears results physics effects",
+    "analysis": "gears results physics effects elasticity",
     "post": "case results physics",
     "life": "run post effects case surfaces results physics",
-    "pictures": "life analysis post gears results physics case surfaces effects",
+    "pictures": "life analysis post gears results physics case surfaces effects elasticity",
     # what the package offers: imports when asked
     "api": "case results run pictures effects physics",
     # arguments and `main` of each command, which `__main__` starts by its name
@@ -246,7 +247,7 @@ def test_no_attribute_of_another_object_is_set():
     assert {path: lines for path, lines in found.items() if lines} == {}
 
 
-MAX_MODULES = 115
+MAX_MODULES = 118
 CODE = """
 import sys
 from ehlpetsc.__main__ import main

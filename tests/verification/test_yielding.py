@@ -5,7 +5,7 @@ import pytest
 from support import CASES
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation.line.deflection import deflection_kernel
+from ehlpetsc.elasticity.half_plane import deflection_kernel
 from ehlpetsc.run.simulation import Simulation
 
 MIXED = "contact.model=mixed"

@@ -42,7 +42,7 @@ def exponentials(
 
     Gauss-Legendre quadrature in :math:`v=\ln(1+t/a)`, in which the integrand is an entire function.
 
-    `kernel`: :func:`.deflection.curvature_kernel`, shape (n,).
+    `kernel`: :func:`ehlpetsc.elasticity.half_plane.curvature_kernel`, shape (n,).
     `nearest`: first distance represented, at least 3.
     `tolerance`: relative error, at least 1e-11: the kernel itself is rounded.
 

@@ -10,21 +10,9 @@ point contact, over twice the nodes, because the domain is free; across a strip 
 Points of a rank are whole rows along x. The transform along x is local; before the one across, a
 :class:`Transposition` hands each rank all rows of some wave numbers.
 
-The pressure of a cell is linear along x (hat) and constant across. With lengths in half-widths a, pressure in
-p0 and deflection in a^2/R, that of node (0, 0) deflects node (i, j) by
-
-.. math:: C K_{ij},\qquad K_{ij}=\int\!\!\int\frac{\Lambda(s/\Delta x)}{|(x_i-s,\,y_j-t)|}\,ds\,dt,\qquad
-   C=\frac{2p_0R}{\pi E'a},
-
-the second difference in x (over :math:`\Delta x`) and the first difference in y of
-
-.. math::
-   G(x,y)=\frac{x^2}{2}\operatorname{asinh}\frac{y}{|x|}+|x|y\operatorname{asinh}\frac{|x|}{y}-\frac{yr}{2},
-   \qquad\partial_x^2\partial_yG=\frac1r .
-
-Its sum over y is the kernel of a line contact, :math:`-2\Delta x\,g_k` with the hat functions of
-:mod:`ehlpetsc.discretisation.line.deflection`: pressures that do not depend on y deflect as in the line
-contact.
+Kernel K: :mod:`ehlpetsc.elasticity.kernels`. Its part by the pressures in reversed order of the rows costs no
+further transform: with :math:`\hat p_k` the transform across over a length L, that of the reversed rows is
+:math:`e^{-2\pi ik(n_y-1)/L}\,\hat p_{-k}`.
 """
 
 from __future__ import annotations
@@ -36,92 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
 
-from ehlpetsc.discretisation.line.deflection import deflection_kernel
-
-NEAR = 60  # larger spacings: up to here the differences of G, beyond it the expansion in moments of the cell
-IMAGES = 12  # periods on either side that are summed one by one
-NEGLIGIBLE_WAVES = 5.0  # periods along x beyond which waves across the strip, exp(-2 pi x/L), are below 1e-13
-
-
-def free_kernel(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
-    """K of the distances 0 .. n - 1 nodes along and across, shape (n_y, n_x), in half-widths."""
-    x, y = np.arange(n_x) * dx, np.arange(n_y) * dy
-    kernel = cell_potential(x, y, dx, dy)
-    reach = NEAR * max(dx, dy)
-    near_x, near_y = min(n_x, int(reach / dx) + 1), min(n_y, int(reach / dy) + 1)
-    kernel[:near_y, :near_x] = differences_of_primitive(near_x, near_y, dx, dy)
-    return kernel
-
-
-def differences_of_primitive(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
-    """Exact K of the nearest nodes: in extended precision, because the differences cancel."""
-    x = np.arange(-1, n_x + 1, dtype=np.longdouble) * np.longdouble(dx)
-    y = (np.arange(n_y + 1, dtype=np.longdouble) - np.longdouble(0.5)) * np.longdouble(dy)
-    g = primitive(x[None, :], y[:, None])
-    along = (g[:, 2:] - 2.0 * g[:, 1:-1] + g[:, :-2]) / np.longdouble(dx)
-    return (along[1:] - along[:-1]).astype(float)
-
-
-def primitive(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """G of the module, odd in y."""
-    x, side, y = np.abs(x), np.sign(y), np.abs(y)
-    r = np.sqrt(x * x + y * y)
-    safe_x, safe_y = np.where(x > 0.0, x, 1.0), np.where(y > 0.0, y, 1.0)
-    by_x = np.where(x > 0.0, 0.5 * x * x * np.arcsinh(y / safe_x), 0.0)
-    return side * (by_x + np.where(y > 0.0, x * y * np.arcsinh(x / safe_y), 0.0) - 0.5 * y * r)
-
-
-def cell_potential(x: np.ndarray, y: np.ndarray, dx: float, dy: float) -> np.ndarray:
-    r"""K at a distance by the moments of a cell, shape (len(y), len(x)); relative error (cell/r)^6/500.
-
-    :math:`K=\Delta x\Delta y\,(1+\frac{\Delta x^2}{12}\partial_x^2+\frac{\Delta y^2}{24}\partial_y^2+
-    \frac{\Delta x^4}{360}\partial_x^4+\frac{\Delta x^2\Delta y^2}{288}\partial_x^2\partial_y^2+
-    \frac{\Delta y^4}{1920}\partial_y^4)\frac1r`.
-    """
-    x2, y2 = (x * x)[None, :], (y * y)[:, None]
-    r2 = x2 + y2
-    r2 = np.where(r2 > 0.0, r2, 1.0)
-    inverse = 1.0 / np.sqrt(r2)
-    x2, y2 = x2 / r2, y2 / r2  # squares of the cosine and of the sine
-    second_x, second_y = 3.0 * x2 - 1.0, 3.0 * y2 - 1.0
-    fourth_x, fourth_y = (9.0 + z * (105.0 * z - 90.0) for z in (x2, y2))
-    fourth_xy = 105.0 * x2 * y2 - 15.0 * (x2 + y2) + 3.0
-    ax, ay = dx * dx / r2, dy * dy / r2
-    correction = ax * second_x / 12.0 + ay * second_y / 24.0
-    correction += ax * ax * fourth_x / 360.0 + ax * ay * fourth_xy / 288.0 + ay * ay * fourth_y / 1920.0
-    return dx * dy * inverse * (1.0 + correction)
-
-
-def periodic_kernel(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
-    r"""K of a strip, summed over all periods n_y dy across, shape (n_y, n_x).
-
-    The mean across is the kernel of the line contact, :math:`-2\ln|x|` instead of the diverging sum. The
-    rest is the sum over the nearest periods; the others, seen from afar, are the integral of 1/r over all
-    distances beyond them (midpoint rule with its first correction).
-    """
-    period, kernel = n_y * dy, np.zeros((n_y, n_x))
-    near = min(n_x, int(NEGLIGIBLE_WAVES * period / dx) + 2)
-    y = np.arange(n_y) * dy
-    one_side = free_kernel(near, (IMAGES + 1) * n_y + 1, dx, dy)
-    for k in range(-IMAGES, IMAGES + 1):
-        kernel[:, :near] += one_side[np.abs(np.arange(n_y) + k * n_y)]
-    kernel[:, :near] += dx * dy * _distant_periods(np.arange(near) * dx, y, period)
-    kernel[:, :near] = 0.5 * (
-        kernel[:, :near] + kernel[-np.arange(n_y), :near]
-    )  # symmetric to the last digit
-    kernel[:, :near] -= kernel[:, :near].mean(axis=0)
-    kernel += 2.0 * dx / n_y * (deflection_kernel(n_x) - np.log(dx))
-    return kernel
-
-
-def _distant_periods(x: np.ndarray, y: np.ndarray, period: float) -> np.ndarray:
-    """Sum of 1/r over the periods beyond `IMAGES`, except for a constant over y; shape (len(y), len(x))."""
-    total = np.zeros((len(y), len(x)))
-    for side in (-1.0, 1.0):
-        t = (IMAGES + 0.5) * period + side * y[:, None]
-        r = np.hypot(x[None, :], t)
-        total += -np.log(t + r) / period + period / 24.0 * (-t / r**3)
-    return total
+from ehlpetsc.elasticity.kernel import Kernel
 
 
 class Transposition:
@@ -163,24 +66,42 @@ class Convolution:
     """Product with a kernel symmetric along and across, by FFT, in the precision of its argument.
 
     `kernel`: at distances 0 .. n - 1 nodes, shape (n_y, n_x); over a period across if `periodic`.
+    `mirrored`: of a second product, with the rows of its argument in reversed order; None: none.
     """
 
-    def __init__(self, kernel: np.ndarray, periodic: bool, ranks: Transposition):
+    def __init__(
+        self, kernel: np.ndarray, periodic: bool, ranks: Transposition, mirrored: np.ndarray | None = None
+    ):
         (self.n_y, self.n_x), self.ranks = kernel.shape, ranks
         self.length_x = next_fast_len(2 * self.n_x - 1, real=True)
         self.length_y = self.n_y if periodic else next_fast_len(2 * self.n_y - 1)
         self.waves = self.length_x // 2 + 1
         self.waves_here = ranks.wave_numbers(self.waves)
+        spectrum = self._spectrum(kernel, periodic)
+        self.spectra = {spectrum.dtype: spectrum, np.dtype(np.float32): spectrum.astype(np.float32)}
+        self.of_reversed: dict[np.dtype, np.ndarray] = {}
+        if mirrored is not None:
+            turn = np.exp(-2j * np.pi * np.arange(self.length_y) * (self.n_y - 1) / self.length_y)
+            product = turn[:, None] * self._spectrum(mirrored, periodic)
+            self.of_reversed = {spectrum.dtype: product, np.dtype(np.float32): product.astype(np.complex64)}
+            self.opposite = -np.arange(self.length_y) % self.length_y
+
+    def _spectrum(self, kernel: np.ndarray, periodic: bool) -> np.ndarray:
+        """Transform of a kernel at the wave numbers of this rank, shape (length_y, waves)."""
         along = rfft(_even(kernel, self.length_x, axis=1), axis=1).real[:, self.waves_here]
         across = along if periodic else _even(along, self.length_y, axis=0)
-        spectrum = np.ascontiguousarray(fft(across, axis=0).real)
-        self.spectra = {spectrum.dtype: spectrum, np.dtype(np.float32): spectrum.astype(np.float32)}
+        return np.ascontiguousarray(fft(across, axis=0).real)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Product with values at the local nodes, shape (local rows n_x,)."""
         rows = rfft(values.reshape(-1, self.n_x), self.length_x, axis=1)
         waves = fft(self.ranks.to_waves(rows, self.waves), self.length_y, axis=0, overwrite_x=True)
-        waves *= self.spectra[values.dtype]
+        if self.of_reversed:
+            images = waves[self.opposite] * self.of_reversed[values.dtype]
+            waves *= self.spectra[values.dtype]
+            waves += images
+        else:
+            waves *= self.spectra[values.dtype]
         waves = ifft(waves, axis=0, overwrite_x=True)[: self.n_y]
         rows = self.ranks.to_rows(waves, self.waves)
         return np.ascontiguousarray(irfft(rows, self.length_x, axis=1)[:, : self.n_x]).ravel()
@@ -197,21 +118,21 @@ def _even(values: np.ndarray, length: int, axis: int) -> np.ndarray:
 class Deflection:
     """Deflection rows of the local nodes.
 
-    `shape`, `spacings`: (n_y, n_x); (dy, dx) in half-widths.
-    `stiffness`: C of the module.
+    `spacings`: dy, dx in half-widths.
+    `kernel`: K of the module; `stiffness`: C.
     `film_scale`: of the row scale, in a^2/R.
     `periodic`: across.
     `owned`: local nodes in the window.
 
-    `kernel`: C K, shape (n_y, n_x).
+    `compliances`: C K at distances, shape (n_y, n_x).
     `row_scale`: coefficient of the separation in a row; that of the border's gap is its negative.
     `cell`: dx dy.
     """
 
     def __init__(
         self,
-        shape: Sequence[int],
         spacings: Sequence[float],
+        kernel: Kernel,
         stiffness: float,
         film_scale: float,
         periodic: bool,
@@ -219,12 +140,12 @@ class Deflection:
         ranks: Transposition | None = None,
     ):
         self.owned = owned
-        (n_y, n_x), (dy, dx) = shape, spacings
-        self.cell, self.periodic, self.stiffness = dx * dy, periodic, stiffness
+        dy, dx = spacings
+        self.cell, self.kernel, self.stiffness = dx * dy, kernel, stiffness
         self.row_scale = np.sqrt(self.cell) / film_scale
-        kernel = stiffness * (periodic_kernel if periodic else free_kernel)(n_x, n_y, dx, dy)
-        self.kernel = kernel
-        self.convolution = Convolution(kernel, periodic, ranks or Transposition())
+        self.compliances = stiffness * kernel.direct
+        mirrored = None if kernel.mirrored is None else stiffness * kernel.mirrored
+        self.convolution = Convolution(self.compliances, periodic, ranks or Transposition(), mirrored)
 
     def residual(self, separation: np.ndarray, of_border: Any, sums: PressureSums) -> np.ndarray:
         """Local rows, from the separation at the nodes of the window and the gap of the border."""

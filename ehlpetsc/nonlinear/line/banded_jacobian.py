@@ -47,7 +47,7 @@ def exponentials(kernel: np.ndarray, nodes_per_half_width: float) -> tuple[np.nd
     M unknowns more with neighbours only. Distances are between groups of `GROUP` nodes: near by, where that
     would be too coarse, the kernel is taken as it is.
 
-    `kernel`: :func:`ehlpetsc.discretisation.line.deflection.curvature_kernel`, shape (n,).
+    `kernel`: :func:`ehlpetsc.elasticity.half_plane.curvature_kernel`, shape (n,).
 
     The kernel at a distance of d groups is about ``weights @ exp(-rates * d)``, both of shape (TERMS,).
     """

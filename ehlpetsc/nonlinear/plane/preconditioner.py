@@ -163,8 +163,9 @@ class Elimination:
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
-        self.coarse_space = CoarseSpace(problem.deflection.kernel, problem.grid.periodic)
-        self.term = fitted_term(problem.deflection.stiffness, problem.grid.increments)
+        self.coarse_space = CoarseSpace(problem.deflection.compliances, problem.grid.periodic)
+        deflection = problem.deflection
+        self.term = fitted_term(deflection.stiffness, problem.grid.increments, deflection.kernel)
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again

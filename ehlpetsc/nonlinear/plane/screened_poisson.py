@@ -19,6 +19,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned
+from ehlpetsc.elasticity.kernel import Kernel
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, STIFF, VOID
 
 SCREENED, SHORTEST_COARSE = 0.2, 0.15  # s and the smallest fitted k, in the largest wave number of the mesh
@@ -27,13 +28,16 @@ ONE = unsigned(1)
 STENCIL, OWN = 6, 2  # nodes i-2 .. i+1, below, above of a row; index of i
 
 
-def fitted_term(stiffness: float, spacings: Sequence[float]) -> tuple[float, float]:
-    """Coefficient c and square of s for C of the deflection; relative errors of 2 pi C/|k| count the same."""
+def fitted_term(stiffness: float, spacings: Sequence[float], kernel: Kernel) -> tuple[float, float]:
+    r"""Coefficient c and square of s; relative errors of the deflection by waves count the same.
+
+    `stiffness`: C of the deflection, :math:`2\pi C/|k|` times the softening of the kernel.
+    """
     dy, dx = spacings
     largest = np.pi / min(dx, dy)
     s_2 = (SCREENED * largest) ** 2
     k_2 = np.geomspace((SHORTEST_COARSE * largest) ** 2, 4.0 / dx**2 + 4.0 / dy**2, 200)  # of the stencil
-    ratio = np.sqrt(k_2) / (k_2 + s_2) / (2.0 * np.pi * stiffness)
+    ratio = np.sqrt(k_2) / (k_2 + s_2) / (2.0 * np.pi * stiffness) / kernel.softening(np.sqrt(k_2))
     return float(ratio.sum() / (ratio @ ratio)), float(s_2)
 
 

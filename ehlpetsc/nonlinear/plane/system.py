@@ -16,6 +16,9 @@ from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Unknowns, pairs
+from ehlpetsc.elasticity.bodies import Bodies
+from ehlpetsc.elasticity.kernel import Mesh
+from ehlpetsc.elasticity.kernels import kernel_of
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
 from ehlpetsc.nonlinear.plane.held_films import HIGHEST, MOVED, HeldFilms, settle
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
@@ -151,8 +154,9 @@ def plane_system(
     cuts = first_rows(grid.shape[0], ranks.size)
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)
     transposition = RankTransposition(cuts, ranks) if ranks.size > 1 else None
-    law = scales.stiffness, film_scale_of(case, scales, film_scale), grid.periodic
-    deflection = Deflection(grid.shape, grid.increments, *law, share.owned, transposition)
+    kernel = kernel_of(Bodies.of(case.contact), Mesh(grid.shape, grid.increments, grid.periodic, scales.a))
+    law = kernel, scales.stiffness, film_scale_of(case, scales, film_scale), grid.periodic
+    deflection = Deflection(grid.increments, *law, share.owned, transposition)
     problem = problem_of(case, scales, film_scale, share, deflection, has_sides, bound_tolerance)
     exchange = PlaneExchange(problem, ranks, grid.periodic)
     return PlaneFields(problem, exchange, PlaneMatrices(problem, exchange, ranks), comm)

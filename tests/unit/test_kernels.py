@@ -1,0 +1,58 @@
+"""Kernels of both bodies: terms, images beyond plane ends, compliance of waves."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
+from ehlpetsc.elasticity import kernels
+from ehlpetsc.elasticity.bodies import Bodies
+from ehlpetsc.elasticity.half_space import free_kernel
+from ehlpetsc.elasticity.images import images
+from ehlpetsc.elasticity.kernel import Kernel, Mesh
+from ehlpetsc.elasticity.kernels import kernel_of
+from ehlpetsc.nonlinear.plane.screened_poisson import fitted_term
+
+MESH = Mesh((6, 9), (0.05, 0.03), False, 1e-4)
+STEEL = Bodies(2.2e11, (0.5, 0.5))
+
+
+def test_images_are_the_pressures_mirrored_about_both_end_planes():
+    (n_y, n_x), (dy, dx) = MESH.shape, MESH.spacings
+    pressure = np.random.default_rng(2).random(MESH.shape)
+    product = Convolution(free_kernel(n_x, n_y, dx, dy), False, Transposition(), images(MESH))
+    rows = np.concatenate([pressure[::-1], pressure, pressure[::-1]])  # planes half a cell beyond the rows
+    long = Convolution(free_kernel(n_x, 3 * n_y, dx, dy), False, Transposition())
+    expected = long(rows.ravel()).reshape(3 * n_y, n_x)[n_y : 2 * n_y]
+    np.testing.assert_allclose(product(pressure.ravel()), expected.ravel(), rtol=1e-13)
+    single = product(pressure.ravel().astype(np.float32))
+    assert single.dtype == np.float32
+    np.testing.assert_allclose(single, expected.ravel(), rtol=1e-6)
+
+
+def test_a_term_is_added_to_the_half_spaces(monkeypatch):
+    def of_first_body(bodies, mesh):
+        share = bodies.shares[0]
+        return Kernel(np.full(mesh.shape, share), share * images(mesh), lambda k: share / k)
+
+    alone = kernel_of(STEEL, MESH)
+    assert alone.mirrored is None and alone.softening(np.array([1.0, 7.0])) == pytest.approx(1.0, rel=0)
+    monkeypatch.setattr(kernels, "TERMS", (of_first_body, lambda bodies, mesh: None, of_first_body))
+    both = kernel_of(STEEL, MESH)
+    np.testing.assert_allclose(both.direct, alone.direct + 1.0, rtol=1e-15)
+    np.testing.assert_allclose(both.mirrored, images(MESH), rtol=1e-15)
+    assert both.softening(np.array([1.0, 4.0])) == pytest.approx([2.0, 1.25], rel=1e-15)
+
+
+def test_sparse_form_is_as_compliant_as_short_waves():
+    of_both = fitted_term(0.2, MESH.spacings, kernel_of(STEEL, MESH))
+    of_soft = fitted_term(0.2, MESH.spacings, Kernel(np.zeros(MESH.shape), softening=lambda k: 3.0 + 0.0 * k))
+    assert of_soft == pytest.approx((3.0 * of_both[0], of_both[1]), rel=1e-14)
+
+
+def test_shares_of_the_compliance_are_those_of_the_bodies():
+    class Contact:
+        youngs_modulus, poisson_ratio = (2e11, 6e10), (0.3, 0.2)
+
+    bodies = Bodies.of(Contact)
+    assert sum(bodies.shares) == pytest.approx(1.0, rel=1e-15)
+    assert bodies.shares[0] / bodies.shares[1] == pytest.approx(0.91 / 0.96 * 0.3, rel=1e-14)
