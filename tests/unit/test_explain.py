@@ -14,14 +14,18 @@ from ehlpetsc.commands.explain import main
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import cost as forecast
 from ehlpetsc.run.forecast.cost import file_size
-from ehlpetsc.run.forecast.explain import (
+from ehlpetsc.run.forecast.explain import explain
+from ehlpetsc.run.forecast.limits import limits
+from ehlpetsc.run.forecast.mesh_error import (
     DAMAGE_ERRORS,
     FRICTION_ERRORS,
+    NODES,
+    OPPOSED_ERRORS,
     SHARE_RATIOS,
     WAVE_ERRORS,
-    explain,
+    expected_errors,
+    wave_error,
 )
-from ehlpetsc.run.forecast.limits import limits
 from ehlpetsc.run.forecast.validity import heat_warnings, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
@@ -69,8 +73,15 @@ def test_expected_errors_are_those_of_the_page_of_accuracy():
     for name, _, error in list(csv.reader((folder / "waves.csv").read_text().splitlines()))[1:]:
         stored.setdefault(name, []).append(abs(float(error)))
     page = (folder / "ACCURACY.md").read_text()
-    waves = [errors for name, errors in stored.items() if name.startswith("line") and "roll 4" not in name]
-    assert np.max(waves, axis=0) == pytest.approx(WAVE_ERRORS)
+    lines_of = {name: errors for name, errors in stored.items() if name.startswith("line")}
+    opposed = [errors for name, errors in lines_of.items() if "roll 4" in name]
+    others = [errors for name, errors in lines_of.items() if "roll 4" not in name]
+    assert np.max(others, axis=0) == pytest.approx(WAVE_ERRORS)
+    assert np.max(opposed, axis=0) == pytest.approx(OPPOSED_ERRORS)
+    for faster, row in ((1.0, WAVE_ERRORS), (2.0, WAVE_ERRORS), (3.0, OPPOSED_ERRORS)):
+        assert [wave_error(n, faster) for n in NODES] == pytest.approx(row)
+    assert wave_error(32, 6.0) == pytest.approx(OPPOSED_ERRORS[3])  # waves of the film half as long
+    assert WAVE_ERRORS[3] < wave_error(16, 2.5) < OPPOSED_ERRORS[3]
     for name, row, table in (
         ("mixed, layer: friction", "friction", FRICTION_ERRORS),
         ("mixed, layer: damage", "mean damage of both surfaces, 0.05 a deep", DAMAGE_ERRORS),
@@ -81,16 +92,46 @@ def test_expected_errors_are_those_of_the_page_of_accuracy():
         printed = [abs(float(word)) for word in re.findall(r"\| ([+-]?[\d.]+)", line)]
         errors = [value - 1.0 if table is loads else 0.01 * value for value in printed]
         assert errors == pytest.approx([table[k] for k in (1, 3, 4)]), name
+
+
+def test_mesh_errors_of_a_layer_and_of_rigid_solids():
     strip = ["mesh.points_per_half_width=50", "surface.1.synthetic.short_cutoff=40e-6"]
     (line,) = starting(lines("fzg_strip.toml", *strip), "Mesh error: ")
+    waves, friction, damage = (
+        f"{100 * row[1]:.2g} %" for row in (WAVE_ERRORS, FRICTION_ERRORS, DAMAGE_ERRORS)
+    )
     assert line == (
-        "Mesh error: 7.7 % of the waves of film and pressure; "
-        "in mixed contact 15 % in friction, 18 % in damage, 3.5 times the load on the solids"
+        f"Mesh error: {waves} of the waves of film and pressure; in mixed contact {friction} in friction, "
+        f"+-{damage} in damage, {SHARE_RATIOS[1]} times the load on the solids above 0.001 of the load"
     )
     (line,) = starting(lines("running_in.toml"), "Waves of surface 1: ")
     assert line.endswith("; 8.04 nodes to the shortest one, 27 um")
     (line,) = starting(lines("running_in.toml", "motion.slide_roll_ratio=4.0"), "Mesh error: ")
-    assert line.startswith("Mesh error: at least 15 % of the waves")  # the film's are two thirds as long
+    assert line.startswith(f"Mesh error: {100 * wave_error(8.04, 3.0):.2g} % of the waves")
+    (line,) = starting(lines("table1_mixed.toml"), "Mesh error")
+    assert line.endswith("load and length of contact of rigid solids shrink with every finer mesh")
+    layer = load(CASES / "stribeck.toml").contact
+    coarse = expected_errors(16, 1.0, layer, inlet_is_resolved=False)
+    assert (
+        f"more than {100 * FRICTION_ERRORS[3]:.2g} % in friction" in coarse and "resolve the inlet" in coarse
+    )
+
+
+def test_waves_of_a_profile_without_a_shortest_one_are_found_in_its_heights():
+    (line, _) = starting(lines("table1_rough.toml"), "Waves of surface ")
+    found = re.search(r"1 % of the height variance is in waves under ([\d.]+) um, ([\d.]+) nodes", line)
+    length, nodes = map(float, found.groups())
+    spacing = 335.682 / 200
+    assert nodes == pytest.approx(length / spacing, rel=2e-3)
+    (coarse,) = starting(lines("table1_rough.toml"), "Mesh error")
+    given = load(CASES / "table1_rough.toml")
+    heights = Roughness.of(given, Scales.of(given)).side("1").given
+    assert (
+        heights.unresolved_variance(0.24e-6 * length) < 0.01 < heights.unresolved_variance(0.26e-6 * length)
+    )
+    assert ("at least" in coarse) == (nodes < 6)
+    assert starting(lines("ridge.toml"), "Waves of surface ")
+    assert not starting(lines("table1_smooth.toml"), "Waves of surface ")
 
 
 def test_steps_of_changing_conditions_and_the_travel_that_post_processing_needs():

@@ -42,11 +42,20 @@ def domain_warnings(case: Case, scales: Scales) -> list[str]:
         return []
     near = _near_edges if KINDS[case.kind].is_whole else _near_inlet
     notes = [] if case.fluid.inlet_film is not None else near(case, scales)
-    film = film_scale_of(case, scales, expected_film(case, scales))
-    opening = inlet_opening(film, case.mesh.points_per_half_width)
-    if MESH_MARGIN * MAX_FILM_SLOPE < opening:
-        notes.append(_coarse(case, film, opening, ": the film comes out too thin"))
+    if not resolves_inlet(case, scales):
+        notes.append(_coarse(case, *_inlet(case, scales), ": the film comes out too thin"))
     return notes
+
+
+def resolves_inlet(case: Case, scales: Scales) -> bool:
+    """Whether the mesh resolves the gap beside a contact with oil, where the film is formed."""
+    return _inlet(case, scales)[1] <= MESH_MARGIN * MAX_FILM_SLOPE
+
+
+def _inlet(case: Case, scales: Scales) -> tuple[float, float]:
+    """Expected film in a^2/R, and the films by which the gap beside the contact opens from node to node."""
+    film = film_scale_of(case, scales, expected_film(case, scales))
+    return film, inlet_opening(film, case.mesh.points_per_half_width)
 
 
 def domain_faults(case: Case, scales: Scales) -> list[str]:
@@ -58,12 +67,10 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
         return [f'{case.path}: time.ramp = "coarse": allowed: in steps {allowed}']
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
-    film = film_scale_of(case, scales, expected_film(case, scales))
-    points = case.mesh.points_per_half_width
-    opening = inlet_opening(film, points)
+    film, opening = _inlet(case, scales)
     if opening <= MAX_OPENING:
         return []
-    where = f"{case.path}: mesh.points_per_half_width = {points}"
+    where = f"{case.path}: mesh.points_per_half_width = {case.mesh.points_per_half_width}"
     return [f"{where}: {_coarse(case, film, opening, ', which leaves no film')}"]
 
 

@@ -27,6 +27,7 @@ from ehlpetsc.run.forecast.cost import (
     surface_lines,
     work_time,
 )
+from ehlpetsc.run.forecast.mesh_error import wave_lines
 from ehlpetsc.run.forecast.validity import load_unit, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
@@ -34,14 +35,6 @@ RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
     "(mesh.width), carry more of the load in mixed lubrication"
 )
-NODES = 6, 8, 12, 16, 32  # to the shortest wave; errors of tests/benchmarks/ACCURACY.md on them
-WAVE_ERRORS = 0.15, 0.077, 0.046, 0.026, 0.0053  # film and pressure, the worst up to pure sliding
-FRICTION_ERRORS = 0.24, 0.15, 0.08, 0.05, 0.01  # in mixed contact with a layer, as the next two
-DAMAGE_ERRORS = 0.34, 0.18, 0.09, 0.07, 0.02
-SHARE_RATIOS = 4.8, 3.5, 2.4, 1.8, 1.2  # load on the solids over its limit
-WAVES_ALONG = ("short_cutoff", "wavelength", "correlation")  # keys of the waves of a surface
-WAVES = (*WAVES_ALONG, "wavelength_across", "correlation_across")
-GROUND_WAVE = 1.35  # shortest wave over the correlation length: 0.5 % of the power density
 POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
@@ -63,51 +56,10 @@ def explain(case: Case, rough: Roughness | None = None) -> str:
         surface_lines(case, scales, rough),
         [RIDGES] * bool(rough and not KINDS[case.kind].is_areal),
         _size(case, scales, rough),
-        _waves(case, scales),
+        wave_lines(case, scales, rough),
         [f"Warning: {line}" for line in warnings(case, scales, rough)],
     ]
     return "\n".join(line for section in sections for line in section)
-
-
-def _waves(case: Case, s: Scales) -> list[str]:
-    """Nodes on the waves that a case prescribes for its surfaces, and the error to expect."""
-    dy, dx, lines, fewest = s.grid.spacings[0], s.grid.spacings[-1], [], math.inf
-    for side in ("1", "2"):
-        spec = case.surface.side(side)
-        table = spec and (spec.synthetic or spec)
-        given = {key: length for key in WAVES if (length := getattr(table, key, None))}
-        nodes = [
-            f"{key} of {1e6 * length:.4g} um: {length / (dy if key.endswith('across') else dx):.1f}"
-            for key, length in given.items()
-        ]
-        along = [GROUND_WAVE * w if k == "correlation" else w for k, w in given.items() if k in WAVES_ALONG]
-        if along:
-            fewest = min(fewest, min(along) / dx)
-            nodes.append(f"{min(along) / dx:.3g} nodes to the shortest one, {1e6 * min(along):.4g} um")
-            lines.append(f"Waves of surface {side}: {'; '.join(nodes)}")
-    if not lines or case.time is None or case.fluid is None:
-        return lines
-    # the film keeps its waves at the mean speed: next to a faster surface they are shorter than its own
-    shorter = min(1.0, 2.0 * abs(s.u) / s.u_max)
-    return [*lines, expected_errors(shorter * fewest, case.contact.asperity_height is not None)]
-
-
-def expected_errors(nodes: float, layer: bool) -> str:
-    """Errors to expect with so many nodes to the shortest wave, interpolated in the table of accuracy.
-
-    `layer`: whether asperities below the waves carry load.
-    """
-
-    def at(table: tuple[float, ...]) -> float:
-        return float(np.exp(np.interp(np.log(nodes), np.log(NODES), np.log(table))))
-
-    bound = "at least " * (nodes < NODES[0]) + "at most " * (nodes > NODES[-1])
-    mixed = (
-        f"; in mixed contact {100.0 * at(FRICTION_ERRORS):.2g} % in friction, "
-        f"{100.0 * at(DAMAGE_ERRORS):.2g} % in damage, {at(SHARE_RATIOS):.2g} times the load on the solids"
-    )
-    waves = f"{100.0 * at(WAVE_ERRORS):.2g} % of the waves of film and pressure"
-    return f"Mesh error: {bound}{waves}{mixed * layer}"
 
 
 def _dry(case: Case, s: Scales) -> list[str]:
