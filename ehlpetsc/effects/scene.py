@@ -28,10 +28,13 @@ class Scene:
     begin: tuple[float, float]
 
     @classmethod
-    def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: int) -> Scene:
-        """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass."""
+    def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: float) -> Scene:
+        """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass.
+
+        `number`: of a life with a fraction, as its partners drift.
+        """
         offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
-        shift = (number - 1) * case.time.pass_shift if case.time else 0.0
+        shift = (number - 1) * (case.time.pass_shift or 0.0) if case.time else 0.0
         return cls(case, scales, operation, (offset_1, offset_2 + shift))
 
     @cached_property

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 NO_ROWS = np.zeros(0)
 MAX_EXTRAPOLATION = 2.0  # length of a jump over the previous one, up to which rates are extrapolated
+MAX_FALL, MAX_RISE = 0.5, 1.0  # of a rate in such a jump, over the rate
 
 
 class Rates(NamedTuple):
@@ -37,8 +38,9 @@ class Rates(NamedTuple):
     ) -> Rates:
         """Rates with the slopes since a previous round.
 
-        No rate falls below 0 or doubles within `MAX_EXTRAPOLATION` times as many passes. The worn volume of
-        the columns changes as their wear does, also where this limits it.
+        No rate halves or doubles within `MAX_EXTRAPOLATION` times as many passes: two rounds say too little
+        of a rate that vanishes. The worn volume of the columns changes as their wear does, also where this
+        limits it.
 
         `before`: rates of that round. `passes`: since it. `column_area`: of a column, over the width of the
         body across [m].
@@ -48,7 +50,7 @@ class Rates(NamedTuple):
         beyond, beyond_before = (volume - column_area * wear.sum() for wear, _, volume in (self[:3], before))
         for new, old in zip((self.wear, self.damage, beyond), (*before[:2], beyond_before), strict=True):
             bound = np.abs(new) / (MAX_EXTRAPOLATION * passes)
-            slopes.append(np.clip((new - old) / passes, -bound, bound))
+            slopes.append(np.clip((new - old) / passes, -MAX_FALL * bound, MAX_RISE * bound))
         slopes[2] += column_area * slopes[0].sum()
         return self._replace(slopes=tuple(slopes))
 

@@ -17,9 +17,11 @@ from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.effects.effect import flat, unflat
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeFile, LifeHistory, stored_or_new
+from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import Pass, band, lines_of, passes_to_failure, run_pass, smooth_contacts_of
+from ehlpetsc.life.positions import Positions, number_of_positions, with_shift
 from ehlpetsc.life.remarks import SMOOTH_FIGURES, depth_lines, limits, smooth_figures, smooth_lines
-from ehlpetsc.life.rounds import Jumps, Positions, Ranks, Round, number_of_positions
+from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
 from ehlpetsc.run.forecast.cost import work_time
@@ -110,6 +112,7 @@ def run_life(
     """
     case = case if isinstance(case, Case) else load(case)
     check_case(case)
+    case = with_shift(case)
     comm = comm or MPI.COMM_SELF
     path = Path(f"{Path(case.path).stem}.life.h5" if output is None else output)
     on_root(comm, check_files, path, case)
@@ -145,7 +148,7 @@ class _Life:
         self.positions = Positions(case, self.scales)
         self.jumps = Jumps(case.life, self.positions.rq)
         self.ranks, self.file = Ranks(comm, self.positions.count), LifeFile(path)
-        self._scene = self.positions.scenes[0]
+        self._scene = self.positions.scene(0.0)
         faults = mesh_warnings(self._scene.roughness, self.scales, MAX_LIFE_UNRESOLVED)
         if faults and not unresolved:
             advice = "the life would depend on the mesh; allowed also: a longer short_cutoff, --unresolved"
@@ -185,6 +188,7 @@ class _Life:
     def _run(self, stop: StopRequest | None, max_rounds: int | None) -> None:
         rounds = 0
         if not self.history.rows:
+            self.positions.check_travel()
             for line in mesh_warnings(self._scene.roughness, self.scales):
                 self.show(f"warning: {line}")
             seconds = duration(work_time(self.case, self.scales, self._scene.roughness))
@@ -220,12 +224,13 @@ class _Life:
 
     def _solve(self, stop: StopRequest | None) -> Round:
         """The next round: of a single position while passes yield, as each changes the next."""
-        solve = partial(self._solve_pass, self._plastic())
-        every, rows = list(range(self.positions.count)), self.history.rows
+        solve, rows = partial(self._solve_pass, self._plastic()), self.history.rows
+        every = self.positions.places(len(rows))
         yields = self.case.contact.yield_pressure is not None
         is_single = yields and (not rows or self.jumps.is_yielding(rows[-1]["yielded"]))
-        positions = [self.history.solved % len(every)] if is_single else every
-        solved_round = Round(self.ranks.solve(positions, solve, stop), self.positions.passes_2)
+        positions = [every[self.history.solved % len(every)]] if is_single else every
+        passes = self.ranks.solve(positions, solve, stop)
+        solved_round = Round(passes, self.positions.passes_2, self.positions.drifts)
         rest = [position for position in every if position not in positions]
         if rest and not self.jumps.is_yielding(solved_round.yielded):  # a jump takes the mean of all
             rest_passes = self.ranks.solve(rest, solve, stop)
@@ -233,16 +238,16 @@ class _Life:
         return solved_round
 
     def _solve_pass(
-        self, plastic: PlasticRecord | None, position: int, comm: MPI.Comm, stop: StopRequest | None
+        self, plastic: PlasticRecord | None, place: float, comm: MPI.Comm, stop: StopRequest | None
     ) -> Pass:
         records = {}
         if self.history.rows:
-            records = self.positions.records(self.history.bodies[-1], position, plastic)
-        simulation = Simulation(self.case, comm, pass_number=position + 1, records=records)
-        file = pass_file(self.path, position, self.positions.count)
+            records = self.positions.records(self.history.bodies[-1], place, plastic)
+        simulation = Simulation(self.case, comm, pass_number=place + 1.0, records=records)
+        file = pass_file(self.path, int(place), self.positions.count)
         solved = run_pass(simulation, records, file, stop, self._show_share)
         self._passes += 1
-        return solved
+        return self.positions.followed(solved, place)
 
     def _plastic(self) -> PlasticRecord | None:
         """Record of the plastic deformation after the last row; None without."""
@@ -255,9 +260,10 @@ class _Life:
         `smooth`: figures of the smooth contact.
         """
         done = self.history.done
-        after, jump, rates = self.jumps.jump(bodies, solved_round, done, self._smooth_since(solved_round))
+        before = self.jumps.continuous_passes(self.history.rows, solved_round)
+        after, jump, rates = self.jumps.jump(bodies, solved_round, done, before)
         row: dict[str, float] = {"passes": done + jump, "jump": jump, "solved": len(solved_round.passes)}
-        row |= smooth | solved_round.figures() | {"yielded": solved_round.yielded, "broken_out": 0}
+        row |= smooth | solved_round.figures(bodies) | {"yielded": solved_round.yielded, "broken_out": 0}
         for k, (body, rate, old) in enumerate(zip(after, rates, bodies, strict=True), 1):
             row["broken_out"] += int(np.count_nonzero(body.pit > old.pit))
             row[f"damage_ahead_{k}"] = body.damage_ahead(rate.wear, rate.damage)
@@ -267,12 +273,3 @@ class _Life:
         plastic = flat(solved_round.plastic, "plastic_deformation") if solved_round.plastic else {}
         self.history.add(row, after, plastic)
         on_root(self.comm, self.file.store, self.history)
-
-    def _smooth_since(self, solved_round: Round) -> int:
-        """Passes of the last jump; 0 if the rates were discontinuous in it."""
-        if not self.history.rows:
-            return 0
-        last = self.history.rows[-1]
-        parted = last["broken_out"] or last["solved"] != len(solved_round.passes)
-        yields = self.jumps.is_yielding(max(last["yielded"], solved_round.yielded))
-        return 0 if parted or yields else int(last["jump"])

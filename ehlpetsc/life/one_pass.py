@@ -11,7 +11,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
 from ehlpetsc.case.tables.surface import SIDES
-from ehlpetsc.post.loads import Loads, Prepared, prepare
+from ehlpetsc.post.loads import Loads, Passage, Prepared, prepare
 from ehlpetsc.post.run import Job, smooth_contacts, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.ranks import on_root
@@ -31,13 +31,14 @@ class OfBody(NamedTuple):
     """Effects of a pass on a body.
 
     `s`: abscissas in the body of the points that passed the whole contact [m], shape (points,). `depths`:
-    below the present surface [m], shape (n,). `damage`: shape (n, *rows, points). `depth`: wear before
-    and after the pass.
+    below the present surface [m], shape (n,). `damage`: shape (n, *rows, points). `pressure`: largest one on
+    each point [Pa], of all rows, shape (points,). `depth`: wear before and after the pass.
     """
 
     s: np.ndarray
     depths: np.ndarray
     damage: np.ndarray
+    pressure: np.ndarray
     depth: tuple
 
     @property
@@ -97,8 +98,8 @@ def run_pass(
     damage, figures = on_root(simulation.comm, _evaluated, file, recorder.restart)
     records, offsets = simulation.dimensionless.records, simulation.scene.mesh_on_bodies.offsets
     bodies = tuple(
-        OfBody(s + offset, z, d, depth)
-        for (s, z, d), offset, depth in zip(damage, offsets, _depths(before, records, "wear"), strict=True)
+        OfBody(s + offset, z, d, p, depth)
+        for (s, z, d, p), offset, depth in zip(damage, offsets, _depths(before, records, "wear"), strict=True)
     )
     yielded = 0.0
     for old, new in _depths(before, records, "plastic_deformation"):
@@ -114,10 +115,13 @@ def _depths(before: dict[str, np.ndarray], after: dict, name: str) -> list[tuple
 
 
 def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]]:
-    """Points s, depths [m] and damage of both surfaces, of the points that passed; figures of the run."""
+    """Points s, depths [m], damage and largest pressure [Pa] of both surfaces; figures of the run.
+
+    Of the points that passed.
+    """
     Path(restart).unlink(missing_ok=True)
     with Loads(file) as loads:
-        figures = means(loads) | {"p_max": float(loads.steps("p_max").max())}
+        figures = means(loads)
         prepared, damages = prepare(loads, SIDES, lambda text: None), []
         for side in SIDES:
             passed = prepared.motions[side].complete
@@ -126,8 +130,20 @@ def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]
                     f"surface {side}: no stretch of it passed the whole contact; raise time.travel"
                 )
             damage = damage_of_pass(prepared, side)[..., passed]
-            damages.append((prepared.s[passed], loads.a * prepared.depths, damage))
+            pressure = largest_pressures(loads, prepared.motions[side])[passed]
+            damages.append((prepared.s[passed], loads.a * prepared.depths, damage, pressure))
     return damages, figures
+
+
+def largest_pressures(loads: Loads, motion: Passage) -> np.ndarray:
+    """Largest pressure on each point of a body over its passage, of all rows [Pa]; 0: it met no node."""
+    largest = np.zeros(motion.enter.size)
+    for frame, pressure in enumerate(loads.frames("pressure", 0, loads.time.size)):
+        of_rows = pressure.reshape(-1, loads.x.size).max(axis=0)
+        at = motion.positions(frame, loads.x, loads.dx)
+        inside = np.isfinite(at)
+        largest[inside] = np.maximum(largest[inside], np.interp(at[inside], loads.x, of_rows))
+    return largest
 
 
 def damage_of_pass(prepared: Prepared, side: str, settings: tuple[str, ...] = ()) -> np.ndarray:

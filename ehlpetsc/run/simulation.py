@@ -86,7 +86,8 @@ class Simulation:
         Previous pass of the same case, at its end, whose bodies meet again with their plastic deformation and
         wear.
     pass_number
-        Number of a pass that is continued from a restart file; by default it follows from `after`.
+        Number of a pass that is continued from a restart file; by default it follows from `after`. With a
+        fraction surface 2 is shifted by that part of `time.pass_shift`.
     records
         Records of effects by name with which the pass begins, instead of those of `after`.
 
@@ -101,7 +102,7 @@ class Simulation:
     options : nonlinear.options.RunOptions
         Context manager; entering it once around many steps saves time.
     stepper : stepping.time_stepping.TimeStepping
-    pass_number : int
+    pass_number : float
         Number of the pass of both bodies over each other, from 1.
     state : AcceptedState or None
         Last state of this process.
@@ -132,7 +133,7 @@ class Simulation:
         comm: MPI.Comm | None = None,
         options: dict | None = None,
         after: Simulation | None = None,
-        pass_number: int | None = None,
+        pass_number: float | None = None,
         records: dict | None = None,
     ) -> None:
         self.case = case = case if isinstance(case, Case) else load(case)
@@ -146,7 +147,7 @@ class Simulation:
         on_root(self.comm, check_unchanged, case)
         self.scales = Scales.of(case)
         self.operation = operation_of(case, self.scales)
-        self.pass_number: int = pass_number or (after.pass_number + 1 if after else 1)
+        self.pass_number: float = pass_number or (after.pass_number + 1 if after else 1)
         if after and not (after.finished and self._is_of_contact(after)):
             raise UsageError("after: allowed: a pass at its end, on the same nodes, of the same contact law")
         if faults := domain_faults(case, self.scales):

@@ -7,7 +7,7 @@ from support import COARSE_LIFE
 from ehlpetsc import Simulation
 from ehlpetsc.case.loading import load
 from ehlpetsc.life import laws, read_life, run_life
-from ehlpetsc.life.rounds import CELL_SIZE
+from ehlpetsc.life.positions import CELL_SIZE
 from ehlpetsc.post.run import Job
 from ehlpetsc.post.run import run as post
 from ehlpetsc.results.post_result import PostResult
@@ -138,7 +138,13 @@ def test_pits_and_wear_are_independent_of_the_jump(tmp_path):
 
 
 def test_continued_life_equals_an_uninterrupted_one(tmp_path):
-    keys = {"wear.coefficient": 1e-18, "life.passes": 1e9, "time.pass_shift": 50e-6, "life.partners": 2}
+    keys = {
+        "wear.coefficient": 1e-18,
+        "life.passes": 1e9,
+        "time.pass_shift": 50e-6,
+        "life.partners": 2,
+        "time.travel": 4.4,
+    }
     one = case(keys | {"contact.yield_pressure": 2e9, "life.damage_jump": 0.5})
     once = run_life(one, tmp_path / "once.life.h5", most=3, unresolved=True)
     stopped = tmp_path / "stopped.life.h5"
@@ -155,7 +161,7 @@ def test_continued_life_equals_an_uninterrupted_one(tmp_path):
 
 def test_yield_pressure_that_no_pass_reaches_leaves_a_life_as_it_is(tmp_path):
     """Also the first round solves all positions of surface 2."""
-    keys, lives = {"time.pass_shift": 50e-6, "life.partners": 2}, []
+    keys, lives = {"time.pass_shift": 50e-6, "life.partners": 2, "time.travel": 4.4}, []
     for yielding in ({}, {"contact.yield_pressure": 1e11}):
         path = tmp_path / f"{len(lives)}.life.h5"
         lives.append(run_life(case(keys | yielding), path, most=2, unresolved=True))

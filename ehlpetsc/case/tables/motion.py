@@ -215,6 +215,9 @@ TIME_KEYS = {
         default=1.0,
     ),
     "passes": Key("passes of the same stretches of both surfaces", "", 1, 10_000, kind=int, default=1),
-    "pass_shift": Key("shift of the profile of surface 2 from pass to pass", "m", -1, 1, default=0.0),
+    "pass_shift": Key(
+        "shift of the profile of surface 2 from pass to pass; left out: none, of a life 0.382 half-widths",
+        *("m", -1, 1),
+    ),
 }
 TIME = KeyTable("time", "left out: steady", TIME_KEYS)

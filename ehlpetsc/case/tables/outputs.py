@@ -151,7 +151,7 @@ LIFE_KEYS = {
         "positions of surface 2, time.pass_shift apart, that a round solves; of gears, teeth of the wheel",
         *("", 1, 1000),
         kind=int,
-        default=4,
+        default=3,
     ),
     "max_solved": Key("solved passes after which a life ends early", "", 1, 100_000, kind=int, default=500),
 }
