@@ -12,6 +12,7 @@ import signal
 import sys
 import traceback
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import ehlpetsc.base.environment as packages
@@ -177,13 +178,23 @@ def refuse(text: str, status: ExitStatus = ExitStatus.BAD_INPUT) -> int:
 
 
 def _after_error(error: BaseException) -> int:
-    """Report an error, or Ctrl-C in a command; returns the exit status."""
-    if isinstance(error, KeyboardInterrupt):
+    """Report an error, or Ctrl-C in a command; returns the exit status.
+
+    Some libraries answer Ctrl-C with an error of their own: matplotlib as it ends a movie, Python in a class.
+    """
+    if any(isinstance(one, KeyboardInterrupt) for one in _causes(error)):
         refuse("ehlpetsc: stopped; files written before are complete")
         return ExitStatus.STOPPED
     traceback.print_exception(error)
     sys.stdout.flush()
     return ExitStatus.BUG
+
+
+def _causes(error: BaseException | None) -> Iterator[BaseException]:
+    """An error, and those from which or during whose handling it arose."""
+    while error is not None:
+        yield error
+        error = error.__cause__ or error.__context__
 
 
 if __name__ == "__main__":

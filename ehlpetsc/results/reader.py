@@ -231,13 +231,16 @@ class Result:
     def export(self, path: str | PathLike, name: str, frame: int = -1) -> None:
         """Write a field of a stored frame, or heights ``surface/1`` over s, as .gsf, .x3p (heights) or .vti.
 
-        `frame`: index; negative ones count from the end.
+        `frame`: index; negative ones count from the end. An OutputError for other datasets, as scalars.
         """
         target = file_path(path)
         from ehlpetsc.results.exports import WRITERS, GridField
 
         check_derived(target, [self.path], tuple(WRITERS), "export")
-        if name in ("surface/1", "surface/2"):
+        names = [*self.fields, *(side for side in ("surface/1", "surface/2") if side in self)]
+        if name not in names:
+            raise OutputError(f"{self.path}: {name}: no field of a frame; allowed: {', '.join(names)}")
+        if name.startswith("surface/"):
             x, values, unit = self[f"{name}/s"][:], self[f"{name}/z"][:], "m"
         else:
             x, values, unit = self.x, self.frame(name, frame), self.unit(name)

@@ -101,6 +101,25 @@ def test_interrupted_command_leaves_no_temporary_file(tmp_path, monkeypatch, cap
     assert [path.name for path in tmp_path.iterdir()] == ["one.h5"]
 
 
+def test_ctrl_c_to_which_a_library_adds_an_error_of_its_own_is_no_bug(tmp_path, monkeypatch, capsys):
+    """Of a movie matplotlib saves the frames then, of which there are none; Python wraps it in a class."""
+    from matplotlib.animation import PillowWriter
+
+    def in_a_class(*_):
+        raise RuntimeError("Error calling __set_name__") from KeyboardInterrupt()
+
+    result = make_result(tmp_path / "one.h5", steps=3)
+    monkeypatch.setattr(PillowWriter, "grab_frame", lambda *_, **__: signal.raise_signal(signal.SIGINT))
+    assert program(["plot", str(result), "--movie"]) == 4
+    for chain, status in ((in_a_class, 4), (lambda *_: 1 / 0, 1)):
+        monkeypatch.setattr("ehlpetsc.commands.surface.run", chain)
+        assert program(["surface", str(tmp_path / "z.csv")]) == status
+    printed = capsys.readouterr().err
+    assert printed.count("ehlpetsc: stopped; files written") == 2
+    assert printed.count("Traceback") == printed.count("ZeroDivisionError") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["one.h5"]
+
+
 def sentence(capsys, command, *words):
     """The one sentence that a command ends with, after notes."""
     *notes, message = refused(capsys, command, *words).splitlines()

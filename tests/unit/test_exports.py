@@ -134,7 +134,11 @@ def test_a_result_writes_fields_and_surfaces(tmp_path, is_plane):
     [
         ("p.x3p", "pressure", r"^pressure: in Pa; X3P holds heights in m, \.gsf and \.vti any field$"),
         ("p.png", "pressure", r"allowed for export: a name that ends in \.gsf, \.x3p, \.vti$"),
-        ("p.vti", "film", "does not store film$"),
+        ("p.vti", "film", r"film: no field of a frame; allowed: pressure, surface/1$"),
+        ("p.vti", "steps/time", "steps/time: no field of a frame; allowed: pressure, surface/1$"),
+        ("p.gsf", "contact_count", "contact_count: no field of a frame"),
+        ("p.gsf", "surface/2", "surface/2: no field"),
+        ("p.gsf", "surface/1/s", "surface/1/s: no field"),
         ("r.h5", "pressure", "is read by this run"),
     ],
 )

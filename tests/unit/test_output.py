@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from support import CASES
+from support import CASES, ROOT
 
 import ehlpetsc
 from ehlpetsc.base import quantities
@@ -220,6 +220,18 @@ def test_killed_run_is_readable_up_to_its_last_flush(tmp_path, lost):
         np.testing.assert_array_equal(result.steps("newton"), range(50))
         for k in range(50):
             assert result.frame("film_thickness", k)[2] == k + 0.02
+
+
+def test_other_readers_open_a_killed_run_as_the_page_of_results_says(tmp_path):
+    page = (ROOT / "ehlpetsc" / "results" / "README.md").read_text()
+    path = killed(tmp_path / "mixed.h5", 50, 3)
+    with pytest.raises(OSError, match="already open for write"):
+        h5py.File(path, "r")
+    assert '`h5py.File("mixed.h5", "r", swmr=True)`' in page
+    with h5py.File(path, "r", swmr=True) as file:
+        assert len(file["time"]) == 50 <= len(file["pressure"])
+    with read_result(path) as result:
+        assert result.to_xarray().sizes["time"] == 50 and ").to_xarray()`" in page
 
 
 @pytest.mark.parametrize("pace, steps", [(0.1, 45), (0.7, 15), (5.0, 6)])
