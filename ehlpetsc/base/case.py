@@ -23,6 +23,7 @@ class Kind(NamedTuple):
 
     Parts, ``module:name``, each loaded where it is used, so that a kind loads no module of another one:
     `geometry`: a :class:`ehlpetsc.physics.contact.geometry.Geometry`.
+    `forecast`: a :class:`ehlpetsc.run.forecast.kinds.Forecast`.
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
     `sweeps`: solver by the paper's sweeps; "": none.
@@ -32,6 +33,7 @@ class Kind(NamedTuple):
     radii: str
     is_areal: bool
     geometry: str
+    forecast: str
     system: str
     linear_solver: str
     sweeps: str = ""
@@ -53,6 +55,7 @@ KINDS = {
         radii=" in a line contact or a strip, of one radius",
         is_areal=False,
         geometry="physics.contact.geometry:LINE",
+        forecast="run.forecast.kinds:LINE",
         system="nonlinear.line.system:line_system",
         linear_solver="nonlinear.options:line_solver",
         sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
@@ -61,12 +64,21 @@ KINDS = {
 KINDS["strip"] = KINDS["line"]._replace(
     is_areal=True,
     geometry="physics.contact.geometry:STRIP",
+    forecast="run.forecast.kinds:STRIP",
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
     sweeps="",
 )
 KINDS["point"] = KINDS["strip"]._replace(
-    is_whole=True, radii=" in a point contact, of two radii", geometry="physics.contact.geometry:POINT"
+    is_whole=True,
+    radii=" in a point contact, of two radii",
+    geometry="physics.contact.geometry:POINT",
+    forecast="run.forecast.kinds:POINT",
+)
+KINDS["roller"] = KINDS["point"]._replace(
+    radii=" in a roller, of one radius and a length",
+    geometry="physics.contact.roller:ROLLER",
+    forecast="run.forecast.kinds:ROLLER",
 )
 """Kinds of contact by name, :attr:`Case.kind`."""
 
@@ -78,6 +90,8 @@ def kind_of(tables: dict[str, Any]) -> str:
     )
     if isinstance(contact.get("radius"), list | tuple):
         return "point"
+    if contact.get("length") is not None:
+        return "roller"
     return "line" if mesh.get("width") is None else "strip"
 
 

@@ -7,7 +7,6 @@ conditions twice are refused.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence, Set
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -216,7 +215,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None, kind: st
         return tables
     contact, motion, time = (tables.get(name, {}) for name in ("contact", "motion", "time"))
     load, radius, u, xi = table.reference()
-    radii, ratio = _radii(contact.get("radius"), radius)
+    radii, extent = _radii(contact, radius)
     contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
     if any((speed != constants.get(key)).any() for key, speed in speeds.items()):
@@ -228,16 +227,16 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None, kind: st
         elastic = [contact.get(key) for key in ("youngs_modulus", "poisson_ratio")]
         if None not in elastic:
             modulus = reduced_modulus(*([value] * 2 if is_number(value) else value for value in elastic))
-            half_width = KINDS[kind].part("geometry").half_width(load, radius, modulus, ratio)
+            half_width = KINDS[kind].part("geometry").half_width(load, radius, modulus, extent)
             time["travel"] = float(table.swept_length() / half_width)
     return tables | {"contact": contact, "motion": motion, "time": time}
 
 
-def _radii(given: Any, radius: float) -> tuple[Any, float]:
-    """Radii with one along [m], in the ratio of those given, and this ratio, infinite of a line."""
-    if not isinstance(given, list | tuple):
-        return radius, math.inf
-    along, across = given
+def _radii(contact: Tables, radius: float) -> tuple[Any, float]:
+    """Radii with one along [m], in the ratio of those given, and the extent of the formulas."""
+    if not isinstance(contact.get("radius"), list | tuple):
+        return radius, contact.get("length", 1.0)
+    along, across = contact["radius"]
     return [radius, across * (radius / along)], across / along
 
 
@@ -259,9 +258,10 @@ def given_by_gears(data: Tables, kind: str) -> list[Fault]:
     if "gears" not in data:
         return []
     if KINDS[kind].is_whole:
-        text = f"contact.radius = {show(data['contact']['radius'])}: a {kind} contact has no [gears]"
-        text += "; leave the radius out (mesh.width: a strip), or [gears]"
-        return [Fault("contact.radius", text)]
+        key = next(key for key in ("length", "radius") if key in data["contact"])  # which makes it whole
+        text = f"contact.{key} = {show(data['contact'][key])}: a {kind} contact has no [gears]"
+        text += f"; leave the {key} out (mesh.width: a strip), or [gears]"
+        return [Fault(f"contact.{key}", text)]
     faults = []
     for table, keys in OF_GEARS.items():
         values = data.get(table)

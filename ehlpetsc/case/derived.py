@@ -281,7 +281,7 @@ def _film_friction(case: Values, path: ContactPath) -> np.ndarray:
     half_widths = hertz(path, modulus)[0]
     for k, conditions in enumerate(map(Conditions._make, columns)):
         if conditions.load > 0.0:
-            film, _ = contact_films(LINE, modulus, math.inf, case.fluid, conditions)
+            film, _ = contact_films(LINE, modulus, 1.0, case.fluid, conditions)
             found[k] = expected_friction(
                 case.fluid, conditions.load, half_widths[k], conditions.sliding, film
             )

@@ -98,6 +98,7 @@ def load(
     written, folder = copy.deepcopy(data), Path(path).parent
     faults = _override(data, overrides)
     kind = kind_of(data)
+    faults += _of_roller(folder, data)
     faults += in_si(data, kind)
     faults += resolve_measured_layer(folder, data, {fault.place for fault in faults})
     base = copy.deepcopy(data) if "series" in data else data  # each member has bulk temperatures of its own
@@ -121,6 +122,16 @@ def _not_tables(given: object) -> str:
 def _of_files(case: Case) -> Case:
     """The case with the digests of its surface files."""
     return case.copy({"_digests": file_digests(case)})
+
+
+def _of_roller(folder: Path, data: Tables) -> list[Fault]:
+    """Resolve the profile of a roller, if any; returns the faults."""
+    contact = data.get("contact")
+    if not isinstance(contact, dict) or "profile" not in contact:
+        return []
+    from ehlpetsc.case.profile_files import resolve_profile
+
+    return resolve_profile(folder, contact)
 
 
 def stored_case(text: str, overrides: Overrides = None) -> Case:
@@ -221,17 +232,22 @@ def contact_faults(case: Case, data: Tables) -> list[Fault]:
         if place in ("surface.1.z", "surface.2.z") and isinstance(value[0], list):
             served[place] = AREAL
     faults = [
-        Fault(place, f"{place}: of {' and '.join(of)} contacts, and this is a {case.kind}; leave it out")
+        Fault(place, f"{place}: of {_listed(of)} contacts, and this is a {case.kind}; leave it out")
         for place, of in served.items()
         if case.kind not in of
     ]
     return faults + (_size_faults(case) if KINDS[case.kind].is_areal else [])
 
 
+def _listed(words: Collection[str]) -> str:
+    """Words as "one, two and three"."""
+    return " and ".join(filter(None, (", ".join([*words][:-1]), [*words][-1])))
+
+
 def _size_faults(case: Case) -> list[Fault]:
     """Fault of a plane with too many nodes."""
     geometry = KINDS[case.kind].part("geometry")
-    rows = geometry.rows(case.mesh, geometry.dry(case.contact, modulus_of(case)))
+    rows = geometry.rows(case.contact, case.mesh, geometry.dry(case.contact, modulus_of(case)))
     if rows * case.mesh.nodes <= MAX_PLANE_NODES:
         return []
     size = f"{case.mesh.nodes} x {rows} nodes; allowed: {MAX_PLANE_NODES} in all"

@@ -120,12 +120,13 @@ class Tilt(Load):
     def __init__(self, scales: Scales, tilt: float | None):
         super().__init__(scales)
         self.unit, self.y = scales.h / scales.a, scales.grid.coordinates[0]
-        self.is_free, self.given = tilt is None, (tilt or 0.0) / self.unit
+        self.is_free = tilt is None
+        self.given = scales.grid.tilt if tilt is None else tilt / self.unit
         self.equations = "load", "moment" if self.is_free else "tilt"
         self.by_border, self.by_forces = np.array([0.0, not self.is_free]), np.array([1.0, self.is_free])
 
     def uniform(self, gap: float) -> np.ndarray:
-        """See :class:`Load`; with the given tilt."""
+        """See :class:`Load`; with the given tilt, or that with which a self-aligning contact begins."""
         return np.array([gap, self.given])
 
     def gap(self, border: np.ndarray, nodes: slice = slice(None)) -> np.ndarray:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar, get_type_hi
 
 import numpy as np
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import KeyTable
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class Effect(Generic[R]):
     name = ""
     record: type = NoRecord
     table: KeyTable | None = None
-    contacts: Collection[str] = ("line", "strip", "point")
+    contacts: Collection[str] = tuple(KINDS)
     moves_with_surfaces = False
     frozen_before_start = False
     fields: dict = {}

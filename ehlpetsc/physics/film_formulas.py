@@ -31,8 +31,8 @@ def load_outside(scales: Scales, film: float, inlet: float, half_width: float) -
     film, inlet, half_width
         Central film, distances of the first node and of the edges from the middle [m].
     """
-    side_leakage, load = rigid_factors(scales.radius_ratio)
-    across = 2.0 * scales.R * scales.radius_ratio
+    side_leakage, load = rigid_factors(scales.extent)
+    across = 2.0 * scales.R * scales.extent
 
     def inside(gap: float) -> float:
         return math.atan(half_width / math.sqrt(across * gap)) / math.sqrt(gap)
@@ -48,7 +48,7 @@ def film_on_mesh(case: Case, scales: Scales, inlet: float, half_width: float) ->
     On the mesh the contact carries that load too: its film is that of a flooded contact under the load and
     that outside, by :func:`load_outside`, parameters as there.
     """
-    fluid, groups = case.fluid, (scales.R, scales.E, scales.radius_ratio)
+    fluid, groups = case.fluid, (scales.R, scales.E, scales.extent)
 
     def flooded(load: float) -> float:
         return scales.geometry.smooth_films(
@@ -77,20 +77,20 @@ def smooth_films(scales: Scales, fluid: Fluid, conditions: Conditions) -> tuple[
 
     In a point contact the minimum over the central film is that of Hamrock and Dowson (1977).
     """
-    return contact_films(scales.geometry, scales.E, scales.radius_ratio, fluid, conditions)
+    return contact_films(scales.geometry, scales.E, scales.extent, fluid, conditions)
 
 
 def contact_films(
-    geometry: Geometry, modulus: float, radius_ratio: float, fluid: Fluid, conditions: Conditions
+    geometry: Geometry, modulus: float, extent: float, fluid: Fluid, conditions: Conditions
 ) -> tuple[float, float]:
-    """Films of :func:`smooth_films` of a kind of contact; E' [Pa] and the ratio of its radii."""
+    """Films of :func:`smooth_films` of a kind of contact; E' [Pa] and extent of its formulas."""
     from ehlpetsc.physics.oil.laws import density
 
     load, radius, speed = conditions.load, conditions.radius, abs(conditions.entrainment)
     if speed == 0.0:
         return 0.0, 0.0
     groups = fluid.viscosity, speed, fluid.pressure_viscosity, load, radius, modulus
-    incompressible, lowest, p0 = geometry.smooth_films(*groups, radius_ratio)
+    incompressible, lowest, p0 = geometry.smooth_films(*groups, extent)
     ratio = 1.0 / float(density(np.array([p0]), fluid)[0][0])
     return incompressible * ratio, incompressible * min(ratio, lowest * ratio**0.25)
 
@@ -174,9 +174,9 @@ def rolling_outside(scales: Scales, inlet: float, half_width: float) -> float:
     inlet, half_width
         Distances of the first node and of the edges from the middle [m].
     """
-    side_leakage, load = rigid_factors(scales.radius_ratio)
+    side_leakage, load = rigid_factors(scales.extent)
     angle = np.pi * ((np.arange(ROLLING_ANGLES) + 0.5) / ROLLING_ANGLES - 0.5)
-    stretch = math.sqrt(scales.radius_ratio)
+    stretch = math.sqrt(scales.extent)
     mesh = np.minimum(inlet / np.cos(angle), half_width / stretch / np.abs(np.sin(angle)))
     reach = np.log(np.maximum(OIL_REACH * scales.R / mesh, 1.0))
     integral = float((np.cos(angle) ** 2 * reach).mean()) * np.pi
@@ -196,5 +196,5 @@ def expected_film(case: Case, scales: Scales) -> float:
     if case.fluid is None:
         return 1.0
     two_u = 2.0 * scales.eta0 * abs(scales.u) / (scales.E * scales.R)
-    groups = scales.moes_m, scales.moes_l, scales.radius_ratio, two_u, scales.R / scales.a
+    groups = scales.moes_m, scales.moes_l, scales.extent, two_u, scales.R / scales.a
     return max(scales.geometry.expected_film(*groups), 1e-6)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Self
 
@@ -29,8 +28,8 @@ class Scales:
         Nodes.
     E, R, load
         E' [Pa], R along the direction of motion [m], load [N/m], of a point contact [N].
-    radius_ratio
-        Radius of curvature across over that along; infinite in a line contact.
+    extent
+        Of the contact across, in the formulas of its geometry.
     a, b, p0, h
         Half-widths of the dry contact along and across [m], maximum pressure [Pa], film scale a^2/R [m].
     u, xi, u1, u2
@@ -51,7 +50,7 @@ class Scales:
     E: float
     R: float
     load: float
-    radius_ratio: float
+    extent: float
     a: float
     b: float
     p0: float
@@ -117,7 +116,7 @@ class Scales:
         contact, mesh = case.contact, case.mesh
         modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
         geometry = KINDS[case.kind].part("geometry")
-        dry = geometry.dry(contact, modulus)
+        extent, dry = geometry.extent(contact), geometry.dry(contact, modulus)
         a, b, p0 = dry
         u, xi = (case.motion.entrainment_speed, case.motion.slide_roll_ratio) if case.motion else (0.0, 0.0)
         u1, u2 = u * (1.0 + xi / 2.0), u * (1.0 - xi / 2.0)
@@ -125,7 +124,7 @@ class Scales:
         if case.fluid:
             eta0 = case.fluid.viscosity
             moes_m, moes_l = geometry.moes(
-                eta0, u, case.fluid.pressure_viscosity, contact.load, contact.radius, modulus
+                eta0, u, case.fluid.pressure_viscosity, contact.load, contact.radius, modulus, extent
             )
         dx = a / mesh.points_per_half_width
         if case.time:
@@ -138,7 +137,7 @@ class Scales:
             E=modulus,
             R=contact.radius,
             load=contact.load,
-            radius_ratio=(contact.radius_across or math.inf) / contact.radius,
+            extent=extent,
             a=a,
             b=b,
             p0=p0,

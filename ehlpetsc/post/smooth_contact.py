@@ -10,7 +10,6 @@ The contact is that of the instant with the largest pressure; both signs of the 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -42,9 +41,10 @@ def smooth_contact(
     `count`: results (points, columns) of histories (points, components, samples), their lengths and a
     residual stress [Pa]; the first column is the damage.
     """
-    table = loads.case.post.residual_stress
-    scales, (size, p0) = loads.scales, worst_instant(loads.scales, loads.operation)
-    ratio = 0.0 if math.isinf(scales.radius_ratio) else scales.b / scales.a
+    scales, table = loads.scales, loads.case.post.residual_stress
+    # of a roller, in its row with the highest load
+    size, p0 = (scales.grid.widening * value for value in worst_instant(scales, loads.operation))
+    ratio = scales.b / scales.a if scales.geometry.is_elliptic else 0.0
     depths, unit = _unit_histories(round(mean_friction(loads), 6), poisson_ratio, ratio)
     damage = np.empty(len(depths))
     for k, history in enumerate(p0 * unit):

@@ -42,8 +42,8 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknown
     Without entrainment the solids carry the load, in oil at ambient pressure: no flow fills a cavity.
     """
     grid, balance = problem.grid, problem.balance
-    width_2 = (balance.share(inputs) * (inputs.conditions.radius / problem.scales.R)) ** grid.growth
-    p = np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0))
+    room = grid.room(balance.share(inputs), inputs.conditions.radius / problem.scales.R)
+    p = np.sqrt(np.maximum(room, 0.0))
     oil_carries = problem.fluid is not None and not inputs.rests
     if oil_carries:
         p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
@@ -57,7 +57,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknown
     raised = problem.model.start_film(START_FILM * film) - h.min()
     h += raised
     oil, w = problem.model.oil_start(p, h)
-    behind = (problem.x > 0.0) & (grid.distance > np.sqrt(width_2)) & (p < AMBIENT_PRESSURE)
+    behind = (problem.x > 0.0) & (room < 0.0) & (p < AMBIENT_PRESSURE)
     entrained = film + np.repeat(grid.rows(h).min(axis=1) - h.min(), len(grid.x))  # beside the contact more
     q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT_PRESSURE))
     return Unknowns(q, w, balance.uniform(raised))
@@ -99,9 +99,9 @@ def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarra
     """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
     limit, balance, grid = problem.model.yield_pressure, problem.balance, problem.grid
     total, phi = balance.load(inputs) / grid.cell, undeformed_gap(problem, inputs)
-    border, width_2 = balance.uniform(0.0), balance.share(inputs) ** grid.growth
+    border, room = balance.uniform(0.0), grid.room(balance.share(inputs), 1.0)
     rate = 1.0 / problem.deflection.largest_eigenvalue
-    p = ahead = project(np.sqrt(np.maximum(width_2 - grid.distance**2, 0.0)), limit, total)
+    p = ahead = project(np.sqrt(np.maximum(room, 0.0)), limit, total)
     momentum = 1.0
     for _ in range(MAX_ITERATIONS):
         new = project(ahead - rate * problem.film(ahead, border, phi), limit, total)

@@ -79,7 +79,8 @@ class Observation:
     @cached_property
     def mean_film(self) -> float:
         """See :func:`mean_film`."""
-        return mean_film(self.scene.scales, self.state.solution.nodes.film, self.size)
+        nodes = self.state.solution.nodes
+        return mean_film(self.scene.scales, nodes.film, self.size, self.loads.pressure)
 
     @property
     def smooth_film(self) -> float:
@@ -166,10 +167,10 @@ def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.
     }
 
 
-def mean_film(scales: Scales, h: np.ndarray, size: float) -> float:
+def mean_film(scales: Scales, h: np.ndarray, size: float, pressure: np.ndarray) -> float:
     """Mean film [m] of the middle half of the Hertz contact of the instant.
 
     `h`: film in a^2/R. `size`: of the contact of the instant over that of the widest contact of the run.
+    `pressure`: in p0, whose load on each row is its weight along a roller.
     """
-    middle = scales.grid.inside(0.5 * size)
-    return float(h[middle].mean() * scales.h)
+    return scales.grid.mean_inside(h, 0.5 * size, pressure) * scales.h

@@ -367,7 +367,7 @@ def test_bulk_temperature_of_smooth_flanks_takes_the_losses_of_the_oil_film():
     assert rating.roughness == 0.0 and 370.0 < rating.bulk  # of Ra 0.25 um
     at, fluid, modulus = len(path.rho) // 4, case.fluid, rating.modulus
     conditions = Conditions(path.load[at], path.radius[at], path.speed_1[at], path.speed_2[at])
-    film = contact_films(LINE, modulus, math.inf, fluid, conditions)[0]
+    film = contact_films(LINE, modulus, 1.0, fluid, conditions)[0]
     p = path.load[at] / (2.0 * hertz(path, modulus)[0][at])
     eta = fluid.viscosity * np.exp(viscosity(np.array([p]), fluid)[0][0])
     rate = abs(path.speed_1[at] - path.speed_2[at]) / film

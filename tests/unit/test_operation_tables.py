@@ -1,6 +1,5 @@
 """Tables of operating conditions: what they may hold, and their interpolation, integrals and time levels."""
 
-import math
 import re
 from functools import partial
 from pathlib import Path
@@ -138,7 +137,7 @@ def make(repeat=1, courant=0.5, **columns):
     values = {"load": 1e5, "radius": 0.01, "u1": 1.0, "u2": 1.0} | columns
     values = {name: np.broadcast_to(np.asarray(v, float), time.shape) for name, v in values.items()}
     table = ConditionsTable(time, *values.values(), repeat=repeat)
-    half_width = partial(line_half_width, modulus=227e9, ratio=math.inf)
+    half_width = partial(line_half_width, modulus=227e9, extent=1.0)
     return VariableOperation(table, courant, 1e-6, half_width, 1.0)
 
 

@@ -164,7 +164,7 @@ def test_key_page_equals_the_table_and_lists_every_key_of_the_cases():
     ("name", "words"),
     [
         ("contact.load", "load: load per length of contact, w, .*; a number >= 0.001"),
-        ("contact.load", "of a point contact its load [N]"),
+        ("contact.load", "of a point contact and a roller its load [N]"),
         ("output", "RESULT.xdmf"),
         ("grade", r"^[fluid.grade]\n  v40: .*\n  density: "),
         ("synthetic", r"[surface.1.synthetic \(ground\)]\n.*[surface.1.synthetic \(self-affine\)]"),

@@ -32,7 +32,7 @@ def test_moes_case_has_the_groups_of_its_title_which_fix_the_barus_exponent():
     assert (s.moes_m, s.moes_l) == pytest.approx((100, 11), rel=1e-9)
     # alpha p0 = L sqrt(M / 2 pi), whatever the modulus: the exponent depends on the two groups alone
     alpha, load, radius, modulus = 2e-8, 1e5, 0.01, 2e11
-    m, oil = line_groups(0.01, 1.0, alpha, load, radius, modulus)
+    m, oil = line_groups(0.01, 1.0, alpha, load, radius, modulus, 1.0)
     p0 = modulus * math.sqrt(load / (modulus * radius) / (2 * math.pi))
     assert oil * math.sqrt(m / (2 * math.pi)) == pytest.approx(alpha * p0, rel=1e-12)
 

@@ -160,9 +160,9 @@ def test_mean_film_is_over_the_central_half():
     x = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
     scales = SimpleNamespace(grid=Grid((x,), (0.5,), (1.0,), (CYLINDER,), 1.0), h=2e-6)
     films = np.array([9.0, 1.0, 2.0, 3.0, 9.0])
-    assert mean_film(scales, films, 1.0) == pytest.approx(4e-6, rel=1e-14)
-    assert mean_film(scales, films, 2.0) == pytest.approx(9.6e-6, rel=1e-14)
-    assert mean_film(scales, films, 0.1) == pytest.approx(4e-6, rel=1e-14)
+    assert mean_film(scales, films, 1.0, films) == pytest.approx(4e-6, rel=1e-14)
+    assert mean_film(scales, films, 2.0, films) == pytest.approx(9.6e-6, rel=1e-14)
+    assert mean_film(scales, films, 0.1, films) == pytest.approx(4e-6, rel=1e-14)
 
 
 LOAD, SUM_SPEED, RADIUS, VISCOSITY, RA = 637.6e3, 6.583, 8.382e-3, 0.0112, 0.25e-6

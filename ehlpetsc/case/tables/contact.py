@@ -6,8 +6,9 @@ from dataclasses import replace
 from typing import Any
 
 from ehlpetsc.base.case import Contact, Fluid
-from ehlpetsc.base.declarations import Key, KeyTable, Required
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required
 from ehlpetsc.base.materials import GRADES, STEELS
+from ehlpetsc.physics.contact.profiles import PROFILES
 from ehlpetsc.physics.oil.laws import DENSITY_LAWS, LAW_TABLES, LAWS, completed
 from ehlpetsc.physics.oil.oils import OILS
 
@@ -19,7 +20,21 @@ VARYING = ("[gears]", "[operation]")
 LAYER = "contact.asperity_height"
 
 
+PROFILE = {
+    name: KeyTable(
+        "contact.profile",
+        "profile of a roller along its length",
+        {"kind": Required("of profile", choices=(name,), equation=law.equation)} | law.keys,
+        needs=("contact.length",),
+        complete=law.check,
+    )
+    for name, law in PROFILES.items()
+}
+"""Keys of the profile of a roller by its kind."""
+
+
 def _complete(contact: Contact) -> dict[str, Any]:
+    _check_profile(contact)
     radii = contact.radius if isinstance(contact.radius, tuple) else (contact.radius, None)
     values = dict(zip(("radius", "radius_across"), radii, strict=True))
     if contact.law == "mixed":
@@ -27,6 +42,21 @@ def _complete(contact: Contact) -> dict[str, Any]:
     if contact.law == "compliant":
         values["asperity_slope"] = contact.asperity_slope or ASPERITY_SLOPE
     return values
+
+
+def _check_profile(contact: Contact) -> None:
+    """Refuse a profile that does not fit the length of its roller."""
+    if contact.profile is None or contact.length is None:
+        return
+    values = vars(contact.profile)
+    for key in ("straight", "middle"):
+        if values.get(key) is not None and values[key] >= contact.length:
+            raise Refused(f"{key} = {values[key]:g} m; allowed: less than contact.length", "profile")
+    ends = values.get("y")
+    if ends and (ends[-1] < 0.5 * contact.length or -0.5 * contact.length < ends[0] != 0.0):
+        reach = f"y from {ends[0]:g} to {ends[-1]:g} m"
+        allowed = "to half of contact.length, from 0 or from minus that"
+        raise Refused(f"{reach}; allowed: {allowed}", "profile")
 
 
 KEYS = {
@@ -38,7 +68,7 @@ KEYS = {
     ),
     "load": Required(
         "load per length of contact, `w`, the integral of `p`; `a = sqrt(8 w R/(pi E'))`, `p0 = 2 w/(pi a)`; "
-        "of a point contact its load [N]",
+        "of a point contact and a roller its load [N]",
         *("N/m", 1e-3, 1e10),
         point_unit="N",
         replaced_by=(*VARYING, "approach"),
@@ -50,18 +80,36 @@ KEYS = {
         contacts=("point",),
         equation="`h00 = -delta` in place of the balance of the load",
     ),
+    "length": Key(
+        "of a roller of one radius: a line contact with ends; load in N, `a` and `p0` of load over length",
+        *("m", 1e-6, 10),
+        contacts=("roller",),
+    ),
+    "profile": Key(
+        'of a roller along its length: { kind = "'
+        + '" | "'.join(PROFILE)
+        + '", ... }, or a table of y and z, '
+        "or a file of both [m]; left out: straight",
+        kind=dict,
+        variants=PROFILE,
+    ),
+    "end_radius": Key(
+        "of the rounds beyond both ends of a roller; left out: sharp ends, where the mesh stops",
+        *("m", 1e-6, 1),
+        contacts=("roller",),
+    ),
     "tilt": Key(
-        "misalignment of a point contact: slope of the gap across, by which the contact moves `-tilt Ry`",
+        "misalignment of a roller or point contact: slope of the gap across; it moves a point `-tilt Ry`",
         *("", -0.1, 0.1),
-        contacts=("point",),
+        contacts=("point", "roller"),
         needs=("contact.approach left out",),
         equation="`h = h00 + tilt y + g`, `g` the shapes and the elastic deflection",
     ),
     "self_aligning": Key(
-        "the solids of a point contact tilt until the moment of the pressure about y = 0 vanishes",
+        "the solids of a point contact or roller tilt until the moment of the pressure about y = 0 vanishes",
         kind=bool,
         default=False,
-        contacts=("point",),
+        contacts=("point", "roller"),
         needs=("contact.approach left out", "contact.tilt left out"),
     ),
     "material": Key("steel: elastic, fatigue and yield constants", choices=tuple(STEELS), many="both"),

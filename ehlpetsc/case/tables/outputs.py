@@ -9,6 +9,7 @@ from typing import Any
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.base.materials import MEAN_STRESSES
 from ehlpetsc.base.quantities import DEFAULT_FIELDS, FIELDS
+from ehlpetsc.case.tables.surface import AREAL
 
 DOTTED_KEY = re.compile(r"[A-Za-z_]+(\.[A-Za-z_0-9]+)+")
 MAX_MEMBERS = 10_000  # of a series
@@ -20,10 +21,10 @@ OUTPUT_KEYS = {
     "fields": Key("stored fields", choices=FIELDS, many="list", default=DEFAULT_FIELDS),
     "precision": Key("of the stored fields", choices=("float64", "float32"), default="float64"),
     "xdmf": Key(
-        "of a point or strip: RESULT.xdmf for ParaView, beside the result file",
+        "of a contact in the plane: RESULT.xdmf for ParaView, beside the result file",
         kind=bool,
         default=False,
-        contacts=("strip", "point"),
+        contacts=AREAL,
     ),
     "thin_film": Key("mixed contact: films below it count as thin", "boundary films", 1, 1000, default=2.0),
     "checkpoint": Key("time between restart files", "minutes", gt=0, le=1e5, default=10.0),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hashlib import file_digest
 from typing import Any
 
-from ehlpetsc.base.case import Case, changed_files
+from ehlpetsc.base.case import KINDS, Case, changed_files
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required, Values
 from ehlpetsc.base.errors import CaseError
 
@@ -13,7 +13,7 @@ HEIGHT_UNITS = ("m", "mm", "um", "nm", "angstrom", "inch", "microinch", "mil")  
 SIDES = ("1", "2")
 LENGTH, HEIGHT = ("m", 1e-9, 1), ("m", 1e-12, 1e-2)
 SOURCES = ("file", "synthetic", "z")
-AREAL = ("strip", "point")  # kinds of contact
+AREAL = tuple(name for name, kind in KINDS.items() if kind.is_areal)  # kinds of contact
 
 
 def _kinds(*kinds: str, text: str, keys: dict[str, Key]) -> dict[str, KeyTable]:

@@ -36,29 +36,43 @@ class Dry(NamedTuple):
 class Geometry(NamedTuple):
     """Quantities in which the kinds of contact differ.
 
+    `extent`: of the contact across in the formulas, of [contact]: the ratio of the radii of a point contact,
+        1 m of a line contact, the length of a roller [m].
     `dry`: of [contact] and E' [Pa].
-    `half_width`: along x [m], of load, radius along x, E' and the ratio of the radii; also of arrays.
-    `rows`: rows of nodes across, of [mesh] and the dry contact.
+    `half_width`: along x [m], of load, radius along x, E' and extent; also of arrays.
+    `rows`: rows of nodes across, of [contact], [mesh] and the dry contact.
     `grid`: of [contact], [mesh] and the dry contact.
-    `moes`: Moes' M and L of viscosity, mean speed, alpha, load, radius along x and E'.
-    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and the ratio of the radii:
-        central film of an incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
-    `expected_film`: central film of the smooth flooded contact in a^2/R, of M, L, the ratio of the radii, 2U
-        and R/a.
+    `moes`: Moes' M and L of viscosity, mean speed, alpha, load, radius along x, E' and extent.
+    `smooth_films`: of viscosity, mean speed, alpha, load, radius along x, E' and extent: central film of an
+        incompressible oil [m], minimum over central film, maximum dry pressure [Pa].
+    `expected_film`: central film of the smooth flooded contact in a^2/R, of M, L, extent, 2U and R/a.
+    `is_elliptic`: whether the dry contact is an ellipse; otherwise that of a line contact, in its middle.
     """
 
+    extent: Callable[[Values], float]
     dry: Callable[[Values, float], Dry]
     half_width: Callable[..., np.ndarray]
-    rows: Callable[[Values, Dry], int]
+    rows: Callable[[Values, Values, Dry], int]
     grid: Callable[[Values, Values, Dry], Grid]
     moes: Callable[..., tuple[float, float]]
     smooth_films: Callable[..., tuple[float, float, float]]
     expected_film: Callable[[float, float, float, float, float], float]
+    is_elliptic: bool = False
 
 
 def along(mesh: Values) -> np.ndarray:
     """Nodes along the direction of motion in half-widths."""
     return mesh.inlet + np.arange(mesh.nodes) / mesh.points_per_half_width
+
+
+def unit_length(contact: Values) -> float:
+    """Extent of a line contact, of a load per length: 1 m."""
+    return 1.0
+
+
+def ratio_of_radii(contact: Values) -> float:
+    """Extent of a point contact."""
+    return contact.radius_across / contact.radius
 
 
 def line(contact: Values, modulus: float) -> Dry:
@@ -72,14 +86,14 @@ def ellipse(contact: Values, modulus: float) -> Dry:
     return Dry(*hertz_ellipse(contact.load, contact.radius, contact.radius_across, modulus)[:3])
 
 
-def line_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, ratio: float) -> np.ndarray:
-    """Half-width of dry line contacts [m]."""
-    return np.sqrt(8.0 * load * radius / (np.pi * modulus))
+def line_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, extent: float) -> np.ndarray:
+    """Half-width of dry line contacts of a length [m]."""
+    return np.sqrt(8.0 * (load / extent) * radius / (np.pi * modulus))
 
 
-def point_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, ratio: float) -> np.ndarray:
+def point_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, extent: float) -> np.ndarray:
     """Semi-axis along x of dry ellipses of one shape [m]."""
-    return hertz_ellipse(1.0, 1.0, ratio, modulus).a * np.cbrt(load * radius)
+    return hertz_ellipse(1.0, 1.0, extent, modulus).a * np.cbrt(load * radius)
 
 
 def line_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
@@ -87,17 +101,17 @@ def line_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     return Grid((along(mesh),), (dry.a / mesh.points_per_half_width,), (1.0,), (CYLINDER,), 0.5 * np.pi)
 
 
-def one_row(mesh: Values, dry: Dry) -> int:
+def one_row(contact: Values, mesh: Values, dry: Dry) -> int:
     """The row of a line contact."""
     return 1
 
 
-def strip_rows(mesh: Values, dry: Dry) -> int:
+def strip_rows(contact: Values, mesh: Values, dry: Dry) -> int:
     """Rows of a strip, over its period."""
     return max(whole_near(mesh.width * (mesh.points_across or mesh.points_per_half_width)), 2)
 
 
-def point_rows(mesh: Values, dry: Dry) -> int:
+def point_rows(contact: Values, mesh: Values, dry: Dry) -> int:
     """Rows of a point contact, an odd number."""
     points = mesh.points_across or mesh.points_per_half_width * dry.b / dry.a
     return 2 * max(whole_near(0.5 * (mesh.width or POINT_WIDTH) * points), 2) + 1
@@ -105,7 +119,7 @@ def point_rows(mesh: Values, dry: Dry) -> int:
 
 def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     """Nodes of a strip: cells of equal width over the period, about the middle."""
-    n_y = strip_rows(mesh, dry)
+    n_y = strip_rows(contact, mesh, dry)
     step = mesh.width / n_y
     y = (np.arange(n_y) - 0.5 * (n_y - 1)) * step
     spacings = step * dry.a, dry.a / mesh.points_per_half_width
@@ -125,7 +139,7 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     """Nodes of a point contact, symmetric about y = 0."""
     ratio = dry.b / dry.a
     points = mesh.points_across / ratio if mesh.points_across else mesh.points_per_half_width
-    half = point_rows(mesh, dry) // 2
+    half = point_rows(contact, mesh, dry) // 2
     y = np.arange(-half, half + 1) / points
     spacings = dry.a / points, dry.a / mesh.points_per_half_width
     across = Shape(contact.radius / contact.radius_across)
@@ -142,18 +156,18 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
 
 
 def line_groups(
-    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, extent: float
 ) -> tuple[float, float]:
-    r"""Moes' load and lubricant numbers of a line contact.
+    r"""Moes' load and lubricant numbers of a line contact of a length [m].
 
     :math:`U=\eta_0u/(E'R)`, :math:`M=w'/(E'R)\,(2U)^{-1/2}`, :math:`L=\alpha E'(2U)^{1/4}`, u the mean speed.
     """
     two_u = 2.0 * viscosity * speed / (modulus * radius)
-    return load / (modulus * radius * math.sqrt(two_u)), alpha * modulus * two_u**0.25
+    return load / extent / (modulus * radius * math.sqrt(two_u)), alpha * modulus * two_u**0.25
 
 
 def point_groups(
-    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, extent: float
 ) -> tuple[float, float]:
     r"""Moes' numbers of a point contact, :math:`M=F/(E'R^2)\,(2U)^{-3/4}`; L as in a line."""
     two_u = 2.0 * viscosity * speed / (modulus * radius)
@@ -235,36 +249,50 @@ def hamrock_dowson_films(U: float, G: float, W: float, ratio: float) -> tuple[fl
 
 
 def line_films(
-    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, ratio: float
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, extent: float
 ) -> tuple[float, float, float]:
     """Films by Moes' fit, see :class:`Geometry`."""
-    M, L = line_groups(viscosity, speed, alpha, load, radius, modulus)
+    M, L = line_groups(viscosity, speed, alpha, load, radius, modulus, extent)
     unit = radius * math.sqrt(2.0 * viscosity * speed / (modulus * radius))
-    return unit * moes_central_film(M, L), MIN_OVER_CENTRAL_FILM, hertz_line(load, radius, modulus)[1]
+    return (
+        unit * moes_central_film(M, L),
+        MIN_OVER_CENTRAL_FILM,
+        hertz_line(load / extent, radius, modulus)[1],
+    )
 
 
 def point_films(
-    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, ratio: float
+    viscosity: float, speed: float, alpha: float, load: float, radius: float, modulus: float, extent: float
 ) -> tuple[float, float, float]:
     """Films by the fit of Nijenbanning, Venner and Moes, rigid limit computed, see :class:`Geometry`."""
-    M, L = point_groups(viscosity, speed, alpha, load, radius, modulus)
+    M, L = point_groups(viscosity, speed, alpha, load, radius, modulus, extent)
     two_u = 2.0 * viscosity * speed / (modulus * radius)
-    film = nijenbanning_central_film(M, L, ratio, brewe_rigid_film(M, ratio))
+    film = nijenbanning_central_film(M, L, extent, brewe_rigid_film(M, extent))
     central = radius * math.sqrt(two_u) * film
-    of_hamrock = hamrock_dowson_films(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), ratio)
-    return central, of_hamrock[1] / of_hamrock[0], hertz_ellipse(load, radius, radius * ratio, modulus).p0
+    of_hamrock = hamrock_dowson_films(0.5 * two_u, alpha * modulus, load / (modulus * radius**2), extent)
+    return central, of_hamrock[1] / of_hamrock[0], hertz_ellipse(load, radius, radius * extent, modulus).p0
 
 
-def line_film(M: float, L: float, ratio: float, two_u: float, slope: float) -> float:
+def line_film(M: float, L: float, extent: float, two_u: float, slope: float) -> float:
     """Central film by Moes' fit in a^2/R, see :class:`Geometry`."""
     return moes_central_film(M, L) * np.pi / (8.0 * M)
 
 
-def point_film(M: float, L: float, ratio: float, two_u: float, slope: float) -> float:
+def point_film(M: float, L: float, extent: float, two_u: float, slope: float) -> float:
     """Central film by the fit of Nijenbanning, Venner and Moes in a^2/R, see :class:`Geometry`."""
-    return nijenbanning_central_film(M, L, ratio) * math.sqrt(two_u) * slope**2
+    return nijenbanning_central_film(M, L, extent) * math.sqrt(two_u) * slope**2
 
 
-LINE = Geometry(line, line_half_width, one_row, line_grid, line_groups, line_films, line_film)
+LINE = Geometry(unit_length, line, line_half_width, one_row, line_grid, line_groups, line_films, line_film)
 STRIP = LINE._replace(rows=strip_rows, grid=strip_grid)
-POINT = Geometry(ellipse, point_half_width, point_rows, point_grid, point_groups, point_films, point_film)
+POINT = Geometry(
+    ratio_of_radii,
+    ellipse,
+    point_half_width,
+    point_rows,
+    point_grid,
+    point_groups,
+    point_films,
+    point_film,
+    True,
+)

@@ -35,6 +35,8 @@ class Grid:
         Whether the first axis is periodic.
     middle
         Of the dry contact across, which a tilt moves.
+    tilt
+        Slope of the gap across with which a contact that aligns itself begins.
     """
 
     axes: tuple[np.ndarray, ...]
@@ -46,6 +48,7 @@ class Grid:
     breadth: float = 1.0
     periodic: bool = False
     middle: float = 0.0
+    tilt: float = 0.0
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -115,6 +118,22 @@ class Grid:
             return np.abs(self.x)
         (y, x), (b, a) = self.coordinates, self.half_widths
         return np.sqrt(((y - self.middle) / b) ** 2 + (x / a) ** 2)
+
+    @property
+    def widening(self) -> float:
+        """Largest half-width of the dry contact in half-widths a."""
+        return 1.0
+
+    def room(self, share: float, radius: float) -> np.ndarray:
+        """Square of the dry smooth pressure in half-widths, negative outside the contact, flat.
+
+        `share`: of the load. `radius`: along x over R.
+        """
+        return (share * radius) ** self.growth - self.distance**2
+
+    def mean_inside(self, values: np.ndarray, radius: float, pressure: np.ndarray) -> float:
+        """Mean of a flat field within a multiple of the dry contact."""
+        return float(values[self.inside(radius)].mean())
 
     def inside(self, radius: float) -> np.ndarray:
         """Mask of the nodes within a multiple of the dry contact, at least of those in its middle, flat."""

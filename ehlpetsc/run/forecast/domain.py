@@ -11,37 +11,27 @@ from ehlpetsc.case.tables import Case
 from ehlpetsc.discretisation.contact import film_scale_of
 from ehlpetsc.physics.film_formulas import (
     expected_film,
-    film_left_by_inlet,
-    film_on_mesh,
     inlet_opening,
-    point_rolling_friction,
     points_for_opening,
-    rolling_left_by_inlet,
-    rolling_outside,
 )
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast.kinds import MAX_FILM_SLOPE, MESH_MARGIN
 
-MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
 MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
-MIN_ROLLING_FRICTION, PROPOSED_ROLLING_FRICTION = 0.95, 0.97  # over that of a flooded contact
-PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
-MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
-MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
 MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
-MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
-MAX_OUTSIDE, PROPOSED_OUTSIDE = 0.05, 0.02  # of the load of a point contact, outside the mesh
 CORRELATION_LENGTHS = 4.0  # across a strip of random roughness; of its variance .45 is then uniform across
 RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
 SOFT_LAYER = 0.1  # beta E* over p0: a node of a softer layer has no asperity pressure or all of it
 
 
 def domain_warnings(case: Case, scales: Scales) -> list[str]:
-    """Warnings of an inlet that is too near, or a mesh that is too coarse for the inlet, with the cure."""
+    """Warnings of an inlet that is too near, or a mesh too coarse for inlet or ends, with the cure."""
+    of_kind = KINDS[case.kind].part("forecast")
+    notes = of_kind.ends(case, scales)
     if case.fluid is None:
-        return []
-    near = _near_edges if KINDS[case.kind].is_whole else _near_inlet
-    notes = [] if case.fluid.inlet_film is not None else near(case, scales)
+        return notes
+    notes += [] if case.fluid.inlet_film is not None else of_kind.near(case, scales)
     if not resolves_inlet(case, scales):
         notes.append(_coarse(case, *_inlet(case, scales), ": the film comes out too thin"))
     return notes
@@ -102,71 +92,11 @@ def _coarse(case: Case, film: float, opening: float, consequence: str) -> str:
     )
 
 
-def _near_edges(case: Case, scales: Scales) -> list[str]:
-    """Warning of a point contact with much of its load outside the mesh; otherwise of a near inlet."""
-    inlet, half_width = -case.mesh.inlet, scales.grid.axes[0][-1]
-    share, left = film_on_mesh(case, scales, scales.a * inlet, scales.a * half_width)
-    if share < MAX_OUTSIDE and left >= MIN_FILM_RATIO:
-        return _near_inlet(case, scales)
-    factor, found = 1.0, share
-    while found > PROPOSED_OUTSIDE and factor * inlet < MAX_INLET:
-        factor = min(1.1 * factor, MAX_INLET / inlet)
-        found, _ = film_on_mesh(case, scales, *(factor * scales.a * size for size in (inlet, half_width)))
-    width = 2.0 * half_width * scales.a / scales.b
-    return [
-        f"mesh.inlet = {case.mesh.inlet:g} and mesh.width = {width:.3g} are too near for this light contact, "
-        f"M = {scales.moes_m:.2g}: flooded, it carries about {100 * share:.0f} % of its load outside them; "
-        f"they leave {100 * left:.0f} % of its film, under a higher pressure; "
-        f"mesh.inlet = {-math.ceil(factor * inlet):g} and mesh.width = {math.ceil(factor * width):g} leave "
-        f"{100 * found:.0f} % of the load outside"
-    ]
-
-
-def _near_inlet(case: Case, scales: Scales) -> list[str]:
-    film, inlet = expected_film(case, scales), -case.mesh.inlet
-    ratio = film_left_by_inlet(film, inlet)
-    if ratio >= MIN_FILM_RATIO:
-        return []
-    proposed = inlet
-    while proposed < MAX_INLET and film_left_by_inlet(film, proposed) < PROPOSED_FILM_RATIO:
-        proposed += 0.1
-    return [
-        f"mesh.inlet = {case.mesh.inlet:g} is too near: by Grubin's integral it leaves {100 * ratio:.0f} % "
-        f"of the film of a flooded contact; mesh.inlet = {-math.ceil(10.0 * proposed) / 10.0:g} leaves "
-        f"{100 * PROPOSED_FILM_RATIO:g} %"
-    ]
-
-
 def rolling_warnings(case: Case, scales: Scales) -> list[str]:
     """Rolling friction that the oil before and beside the mesh would add, where no sliding hides it."""
     if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
         return []
-    return (_point_rolling if KINDS[case.kind].is_whole else _line_rolling)(case, scales)
-
-
-def _line_rolling(case: Case, scales: Scales) -> list[str]:
-    film, inlet = expected_film(case, scales), -case.mesh.inlet
-    left = rolling_left_by_inlet(film, inlet)
-    if left >= MIN_ROLLING_FRICTION:
-        return []
-    while inlet < MAX_INLET and rolling_left_by_inlet(film, inlet) < PROPOSED_ROLLING_FRICTION:
-        inlet *= 1.05
-    return [
-        f"mesh.inlet = {case.mesh.inlet:g}: up to {100.0 * (1.0 - left):.0f} % of the rolling friction arise "
-        f"before it and are not computed; mesh.inlet = {-math.ceil(inlet)} computes all but "
-        f"{100.0 * (1.0 - PROPOSED_ROLLING_FRICTION):.0f} %"
-    ]
-
-
-def _point_rolling(case: Case, scales: Scales) -> list[str]:
-    inlet, half_width = -scales.a * case.mesh.inlet, scales.a * scales.grid.axes[0][-1]
-    outside, total = rolling_outside(scales, inlet, half_width), point_rolling_friction(scales)
-    if outside < (1.0 - MIN_ROLLING_FRICTION) * total:
-        return []
-    return [
-        f"mesh.inlet = {case.mesh.inlet:g} and mesh.width: the oil outside them, as far as a third of the "
-        f"radius, would add {outside:.2g} N to the rolling friction of each surface, of about {total:.2g} N"
-    ]
+    return KINDS[case.kind].part("forecast").rolling(case, scales)
 
 
 def strip_warnings(case: Case, scales: Scales) -> Iterator[str]:

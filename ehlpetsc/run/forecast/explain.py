@@ -35,7 +35,6 @@ RIDGES = (
     "Lay: in a line contact all waves are ridges across the motion; isotropic ones, as of a strip "
     "(mesh.width), carry more of the load in mixed lubrication"
 )
-POINT_FORMULAS = "Nijenbanning, Venner and Moes; Hamrock and Dowson"
 
 
 def explain(case: Case, rough: Roughness | None = None) -> str:
@@ -68,15 +67,8 @@ def _dry(case: Case, s: Scales) -> list[str]:
     if approach is not None:
         load = f"approach {1e6 * approach:g} um, dry {load}"
     load, pressure = f"{load}, reduced modulus {s.E / 1e9:.4f} GPa", f"p0 = {s.p0 / 1e9:.6f} GPa"
-    if KINDS[case.kind].is_whole:
-        widths = f"half-widths a = {s.a * 1e3:.6f} mm along, b = {s.b * 1e3:.6f} mm across"
-        shape = f"a point, radii {s.R:g} m along, {s.R * s.radius_ratio:g} m across"
-    else:
-        widths, shape = f"half-width a = {s.a * 1e3:.6f} mm", f"radius {s.R:g} m"
-    lines = [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}"]
-    if s.grid.periodic:
-        lines.append(f"Strip: {1e3 * s.grid.breadth * s.a:.4g} mm of its length, periodic across")
-    return lines
+    shape, widths, more = KINDS[case.kind].part("forecast").shape(s)
+    return [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}", *more]
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:
@@ -103,7 +95,7 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     if case.fluid is None:
         return ["Film: none, dry contact"]
     central, minimum = smooth_films(s, case.fluid, s.conditions)
-    formulas = POINT_FORMULAS if KINDS[case.kind].is_whole else "Moes"
+    formulas = KINDS[case.kind].part("forecast").formulas
     oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
         *oil,

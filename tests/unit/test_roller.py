@@ -1,0 +1,184 @@
+"""Rollers of finite length: profiles, nodes, dry contact against conjugate gradients, what is said before."""
+
+import copy
+
+import numpy as np
+import pytest
+from support.dry_half_space import HalfSpaces, dry_pressure
+
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.loading import load, stored_case
+from ehlpetsc.physics.contact.profiles import Design, drop_of
+from ehlpetsc.physics.contact.roller import gap_across
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast.explain import explain
+from ehlpetsc.run.simulation import Simulation
+
+L, R, W, D = 12e-3, 6e-3, 2400.0, 12e-3
+STEEL = {"youngs_modulus": 207e9, "poisson_ratio": 0.3}
+DRY = {
+    "title": "a roller",
+    "contact": {"radius": R, "length": L, "load": W, **STEEL},
+    "mesh": {"inlet": -1.6, "outlet": 1.6, "points_per_half_width": [10, 30]},
+}
+OIL = {
+    "fluid": {
+        "viscosity": 0.02,
+        "law": "roelands",
+        "pressure_viscosity": 2e-8,
+        "density": "dowson-higginson",
+    },
+    "motion": {"entrainment_speed": 3.0},
+    "mesh": {"inlet": -2.5, "outlet": 1.5, "points_per_half_width": [20, 100]},
+}
+ISO = {"kind": "iso", "diameter": D}
+BLEND = {"kind": "circular", "radius": 0.02, "straight": 0.011}
+
+
+def roller(profile=None, **contact):
+    tables = copy.deepcopy(DRY)
+    tables["contact"] |= ({"profile": profile} if profile else {}) | contact
+    return tables
+
+
+def drop_at(y, profile, length=L):
+    case = load(roller(profile, length=length))
+    design = Design(length, W, R, Scales.of(case).E)
+    return drop_of(np.array([y]), case.contact.profile, design)[0]
+
+
+LOG = 4.2e-6 * -np.log1p(-0.25)  # of the height 4.2 um, half way to the end
+HEIGHT = 0.5597334e-6  # of Lundberg, 2 w/(pi E')
+
+
+@pytest.mark.parametrize(
+    ("profile", "y", "expected"),
+    [
+        ({"kind": "logarithmic", "height": 4.2e-6}, 3e-3, LOG),
+        ({"kind": "logarithmic", "height": 4.2e-6, "straight": 4e-3}, 4e-3, LOG),
+        ({"kind": "logarithmic", "height": 4.2e-6, "drop": 20e-6}, 6e-3, 20e-6),
+        (ISO, 3e-3, LOG),
+        ({"kind": "iso", "diameter": D, "tapered": True}, 3e-3, LOG * 45 / 35),
+        ({"kind": "iso", "diameter": 2e-3}, 3.4e-3, 0.0),
+        ({"kind": "iso", "diameter": 2e-3}, 4.75e-3, 1e-6 * -np.log1p(-0.25)),
+        ({"kind": "lundberg"}, 3e-3, HEIGHT * -np.log1p(-0.25)),
+        ({"kind": "lundberg", "load": 2 * W}, 3e-3, 2 * HEIGHT * -np.log1p(-0.25)),
+        ({"kind": "johns-gohar"}, 6e-3, 2.877e-6),
+        ({"kind": "ntn", "k1": 2.0, "k2": 0.5, "drop": 8e-6}, 6e-3, 8e-6),
+        ({"kind": "ntn", "k1": 2.0, "k2": 0.5, "drop": 1e-3}, 4.5e-3, 2 * HEIGHT * -np.log1p(-0.25)),
+        (BLEND, 6e-3, 6.25e-6),
+        (BLEND, 5.4e-3, 0.0),
+        ({"kind": "circular", "drop": 8e-6}, -3e-3, 2e-6),
+        ({"kind": "two-radii", "radius": [8.0, 0.1], "middle": 8e-3}, 6e-3, 1e-6 + 1e-6 + 20e-6),
+        ({"y": [0, 3e-3, 6e-3], "z": [0, 1e-6, 5e-6]}, -3e-3, 1e-6),
+        ({"y": [-6e-3, 0, 6e-3], "z": [3e-6, 0, 5e-6]}, -6e-3, 3e-6),
+    ],
+)
+def test_drop_of_profiles(profile, y, expected):
+    assert drop_at(y, profile) == pytest.approx(expected, rel=2e-4, abs=1e-12)
+
+
+def test_round_ends_begin_at_the_ends_of_the_roller():
+    case = load(roller(BLEND, end_radius=0.3e-3))
+    y = np.array([-6e-3, 6e-3, 6.1e-3, 7e-3])
+    found = gap_across(y, case.contact, Design(L, W, R, 2e11))
+    round_end = 0.3e-3 - np.sqrt(0.3e-3**2 - 0.1e-3**2)
+    np.testing.assert_allclose(found, [6.25e-6, 6.25e-6, 6.25e-6 + round_end, 200e-6], rtol=1e-9)
+
+
+def test_profile_of_a_file_is_stored_with_its_points(tmp_path):
+    (tmp_path / "crown.csv").write_text("y [mm]; z [um]\n-6; 8\n0; 0\n6; 4\n")
+    text = "\n".join(
+        [
+            'title = "a roller"',
+            f"contact = {{ radius = {R}, length = {L}, load = {W}, material = '100Cr6', profile = "
+            '{ file = "crown.csv" } }',
+            "mesh = { inlet = -1.6, outlet = 1.6, points_per_half_width = [10, 30] }",
+        ]
+    )
+    (tmp_path / "case.toml").write_text(text)
+    case = load(tmp_path / "case.toml")
+    assert (case.contact.profile.y, case.contact.profile.z) == ([-6e-3, 0.0, 6e-3], [8e-6, 0.0, 4e-6])
+    assert stored_case(case.text).contact.profile == case.contact.profile
+
+
+@pytest.mark.parametrize(
+    ("contact", "message"),
+    [
+        ({"radius": [R, R]}, "contact.length: of roller contacts, and this is a point; leave it out"),
+        ({"length": None, "profile": ISO}, "contact.profile: needs contact.length"),
+        ({"profile": {"kind": "circular"}}, "contact.profile: needs either radius or drop"),
+        ({"profile": BLEND | {"straight": 13e-3}}, "profile"),
+        ({"profile": {"y": [0, 5e-3], "z": [0, 1e-6]}}, "y from 0 to 0.005 m; allowed: to half of"),
+        ({"profile": {"y": [0, 0], "z": [0, 1e-6]}}, "increasing distances"),
+        ({"profile": {"y": [0, 6e-3], "z": [0]}}, "contact.profile.z"),
+        ({"profile": {"file": "no.csv"}}, 'contact.profile.file = "no.csv": cannot be read'),
+        ({"profile": {"file": "no.csv", "y": [0, 1]}}, "contact.profile: y; allowed: file, its name"),
+        ({"profile": {"kind": "crowned"}}, "contact.profile"),
+        ({"load": None, "approach": 1e-6}, "contact.approach"),
+        ({"load": "20 N/mm"}, "allowed: one of N in a roller, of one radius and a length"),
+    ],
+)
+def test_faults_of_a_roller_are_named(contact, message):
+    tables = roller()
+    tables["contact"] = {k: v for k, v in (tables["contact"] | contact).items() if v is not None}
+    with pytest.raises(CaseError, match="(?s).*") as error:
+        load(tables)
+    assert message in str(error.value)
+
+
+def test_scales_and_nodes_of_a_roller():
+    scales = Scales.of(load(roller(ISO)))
+    assert (scales.a, scales.b, scales.p0) == pytest.approx((0.115903e-3, 6e-3, 1.098535e9), rel=1e-5)
+    y, step = scales.grid.axes[0] * scales.a, scales.grid.spacings[0]
+    assert len(y) == 60 and step == pytest.approx(0.2e-3)
+    assert (y[0] - 0.5 * step, y[-1] + 0.5 * step) == pytest.approx((-6e-3, 6e-3))
+    assert scales.grid.load * scales.p0 * scales.a**2 == pytest.approx(W)
+    assert set(scales.grid.edges()) == {"inlet", "outlet"}
+    rounded = Scales.of(load(roller(ISO, end_radius=0.3e-3))).grid
+    assert set(rounded.edges()) == {"inlet", "outlet", "width"}
+    assert len(rounded.axes[0]) == 62  # 110 um beyond each end
+
+
+@pytest.mark.parametrize("more", [{}, {"tilt": 0.5e-3}], ids=["aligned", "tilted"])
+@pytest.mark.parametrize("profile", [ISO, BLEND], ids=["iso", "blend"])
+def test_dry_pressure_equals_that_of_conjugate_gradients(profile, more):
+    case = load(roller(profile, **more))
+    state, scales = Simulation(case).advance(), Scales.of(case)
+    grid = scales.grid
+    y, x = (c.reshape(grid.shape) * scales.a for c in grid.coordinates)
+    gap = x**2 / (2 * R) + gap_across(y, case.contact, Design(L, W, R, scales.E))
+    gap += more.get("tilt", 0.0) * y
+    half_spaces = HalfSpaces(grid.shape, grid.spacings, scales.E)
+    expected = dry_pressure(gap, W, np.prod(grid.spacings), half_spaces)
+    np.testing.assert_allclose(state.pressure / scales.p0, expected / scales.p0, atol=1e-4)
+    moments = [(p * y).sum() * np.prod(grid.spacings) for p in (state.pressure, expected)]
+    assert moments[0] == pytest.approx(moments[1], rel=1e-4, abs=1e-4)
+
+
+def test_self_aligning_roller_finds_the_slope_hidden_in_its_profile():
+    y = np.linspace(-6e-3, 6e-3, 61)
+    hidden = {"y": y.tolist(), "z": (5e-6 * (y / 6e-3) ** 2 + 0.3e-3 * y).tolist()}
+    tilt = Simulation(load(roller(hidden, self_aligning=True))).advance().tilt
+    assert tilt == pytest.approx(-0.3e-3, rel=1e-6)
+
+
+def said(profile, **contact):
+    tables = roller(profile, **contact) | OIL
+    return explain(load(tables))
+
+
+def test_ends_and_highest_load_are_said_before_the_run():
+    text = said(ISO)
+    assert "a roller, radius 0.006 m, length 12 mm, load 2400 N" in text
+    assert "contact from y = -5.3" in text and "highest load per length 1.4" in text
+    assert "reaches the end" not in text and "rows are too far apart" not in text
+    text = said(BLEND)
+    assert "beside it the gap opens by 1.6 films from one row to the next" in text
+    assert "try mesh.points_per_half_width = [20, 338], 17.8 um" in text
+    text = said({"kind": "lundberg"})
+    assert "the contact reaches the end of the roller, y = -6 mm and y = 6 mm" in text
+    text = said(BLEND, tilt=0.5e-3)
+    assert "mesh.outlet = 1.5 is near the highest load" in text
+    finer = copy.deepcopy(OIL) | {"mesh": OIL["mesh"] | {"points_per_half_width": [20, 400]}}
+    assert "rows are too far apart" not in explain(load(roller(BLEND) | finer))
