@@ -24,8 +24,9 @@ from ehlpetsc.discretisation.balance import balance_of
 from ehlpetsc.discretisation.contact import contact_model, face_gap, film_scale_of
 from ehlpetsc.discretisation.contact.model import ContactModel
 from ehlpetsc.discretisation.contact.node_state import NodeState, SurfaceLoads
+from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
-from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
+from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
 from ehlpetsc.discretisation.unknowns import Share, Unknowns, border_of, n_dofs, q_of, w_of
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales

@@ -13,7 +13,8 @@ import numpy as np
 from ehlpetsc.base.case import Fluid
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.contact.model import ContactModel
-from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, extrapolated, fill_mass
+from ehlpetsc.discretisation.film_history import FilmHistory
+from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIES, fill_mass
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.physics.oil.laws import density_law, ln_viscosity, viscosity_law
 from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
@@ -116,34 +117,6 @@ def last_before(beyond: int, nodes: int, at: np.ndarray) -> int:
 Watch = Callable[[], object] | None  # called in every iteration; an exception that it raises ends the solve
 
 
-class FilmHistory:
-    r"""Masses per area of the film at the previous time levels, carried to the new one, for BDF2.
-
-    `m`, `m_older`: :math:`\rho h(1-\theta)` one and two steps ago where the film that is now at each node
-        was then, see :mod:`.transport`, shape (nodes,).
-    `dt`, `dt_older`: current and previous time step, in units of a/u; `dt_older` None starts with backward
-        Euler.
-    `moved`: distance of the film in the step, in nodes. `before`: mass one step ago at the nodes themselves.
-
-    `k`: factor of the extrapolation from the two levels of the current step.
-    `extrapolated`: extrapolation from the two older levels, shape (nodes,).
-    """
-
-    def __init__(
-        self,
-        m: np.ndarray,
-        m_older: np.ndarray,
-        dt: float,
-        dt_older: float | None = None,
-        moved: float = 0.0,
-        before: np.ndarray | None = None,
-    ):
-        self.m, self.m_older, self.dt, self.dt_older = m, m_older, dt, dt_older
-        self.moved, self.before = moved, m if before is None else before
-        self.k = 0.0 if dt_older is None else dt / (dt + dt_older)
-        self.extrapolated = m if dt_older is None else extrapolated(m, m_older, self.k * dt / dt_older)
-
-
 @dataclass(frozen=True)
 class StepInputs:
     """Data of a solve, without its initial guess.
@@ -202,8 +175,9 @@ def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, f
     flow, now = inputs.flow, inputs.conditions
     stress = np.inf if flow.kind == NEWTON else flow.stress
     rise = scales.p0 * stress_pressure(inputs.fluid)
-    # in a time step the mean speed carries the history along, see :mod:`.transport`
-    moved = 0.0 if inputs.history else now.entrainment / scales.u
+    # a history that follows the film's path holds what the mean speed moves, see :mod:`.film_history`
+    is_carried = inputs.history is not None and inputs.history.follows_path
+    moved = 0.0 if is_carried else now.entrainment / scales.u
     return stress, stress * rise if rise else 0.0, abs(now.sliding), moved
 
 

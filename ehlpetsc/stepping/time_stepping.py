@@ -13,8 +13,8 @@ import numpy as np
 from ehlpetsc.base.counts import COUNT_TOLERANCE, whole_up
 from ehlpetsc.base.errors import NoSteadyStart, NotConverged, SolveFailed
 from ehlpetsc.discretisation.ehl_problem import Solution
-from ehlpetsc.discretisation.step_inputs import FilmHistory, StepInputs, mirrored
-from ehlpetsc.discretisation.transport import carried
+from ehlpetsc.discretisation.film_history import FilmHistory, FilmLevels, film_history
+from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.scene import Scene
@@ -83,7 +83,8 @@ class TimeStepping:
         time = scene.case.time
         self._starts_rough = time is not None and time.start == "rough" and self.problem.fluid is not None
         # the baseline is the steady solution of the start, which holds for constant conditions only
-        self._advected = any(effect.moves_with_surfaces for effect in effects) and not self.operation.varies
+        self._is_rough = any(effect.moves_with_surfaces for effect in effects)
+        self._advected = self._is_rough and not self.operation.varies
 
     def start(
         self, records: dict, watch: Watch = None, guess: Unknowns | None = None, begun: State | None = None
@@ -238,16 +239,15 @@ class TimeStepping:
         return step, inputs
 
     def history(self, state: State, dt: float) -> FilmHistory:
-        """Masses of the film at the level of a state and before, carried along over a step of `dt` [s]."""
+        """Masses per area of the film at the level of a state and before, for a step of `dt` [s]."""
         rows, unit = self.problem.grid.rows, self.scales.u / self.scales.a
-        moved = self._nodes_moved(state.time, dt)
-        m = carried(rows(state.m), moved).ravel()
-        if state.m_older is None:
-            return FilmHistory(m, None, dt * unit, None, moved, state.m)
         dt_older = state.dt or dt  # before a steady start the film was as it is
-        before = moved + self._nodes_moved(state.time - dt_older, dt_older)
-        m_older = carried(rows(state.m_older), before).ravel()
-        return FilmHistory(m, m_older, dt * unit, dt_older * unit, moved, state.m)
+        moved = self._nodes_moved(state.time, dt), self._nodes_moved(state.time - dt_older, dt_older)
+        masses = rows(state.m), None if state.m_older is None else rows(state.m_older)
+        levels = FilmLevels(*masses, dt * unit, dt_older * unit, *moved)
+        has_smooth = levels.is_long and self._advected and self.baseline is not None
+        smooth = rows(self.problem.mass_per_area(*self.baseline)) if has_smooth else None
+        return film_history(levels, self._is_rough, smooth)
 
     def _nodes_moved(self, time: float, dt: float) -> float:
         """Distance of the film from a time [s] on in a step of `dt` [s], in nodes."""

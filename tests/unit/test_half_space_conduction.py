@@ -73,12 +73,12 @@ def test_moving_flux_in_time(peclet):
     one = body(speed, dx, nodes)
     record = one.cold()
     for step in range(1, 1000 if peclet < 5.0 else 500):
-        moved = one.advance(record, 0.5 * step * dx, 0.5 * dx / speed, speed)
+        moved = one.advance(record, 0.5 * step * dx, 0.5 * dx / speed, speed, flux)
         record = one.accept(moved, flux)
         rise = moved.history + moved.response * flux
     np.testing.assert_allclose(rise, exact, atol=0.01 * exact.max())
     begun = one.record(flux, one.steady(flux, speed)[1])
-    moved = one.advance(begun, 0.5 * dx, 0.5 * dx / speed, speed)
+    moved = one.advance(begun, 0.5 * dx, 0.5 * dx / speed, speed, flux)
     np.testing.assert_allclose(moved.history + moved.response * flux, exact, atol=0.01 * exact.max())
 
 
@@ -113,14 +113,14 @@ def test_shifted_distance_origin_moves_no_heat():
     one, flux = body(speed, dx, 60), np.full(60, FLUX)
     begun = one.record(flux, one.steady(flux, speed)[1])
     dt = 0.5 * dx / speed
-    rises = [one.advance(begun, start + 0.5 * dx, dt, speed).history for start in (0.0, -40 * dx)]
+    rises = [one.advance(begun, start + 0.5 * dx, dt, speed, flux).history for start in (0.0, -40 * dx)]
     np.testing.assert_allclose(rises[1], rises[0], rtol=1e-12)
 
 
 @pytest.mark.parametrize("fraction", [0.0, 0.3])
 def test_cells_of_the_body_take_all_heat(fraction):
     one = body(5.0, 2e-6, 60)
-    moved = one.advance(one.cold(), -fraction * 2e-6, 2e-7, 5.0)
+    moved = one.advance(one.cold(), -fraction * 2e-6, 2e-7, 5.0, np.zeros(60))
     flux = np.random.default_rng(1).uniform(0.0, FLUX, 60)
     assert one.accept(moved, flux).flux.sum() == pytest.approx(flux.sum(), rel=1e-14)
 
@@ -163,7 +163,7 @@ def test_moving_point(peclet, rows):
     rise, terms = one.steady(flux, speed)
     record = one.record(flux, terms)
     for step in range(1, 6):
-        moved = one.advance(record, step * speed * dt, dt, speed)
+        moved = one.advance(record, step * speed * dt, dt, speed, flux)
         record = one.accept(moved, flux)
     after = moved.history + moved.response * flux
     for at_x, at_y in ((0.0, 0.0), (0.5, 0.0), (-0.5, 0.0), (0.5, 0.5), (0.0, -0.75)):
@@ -180,7 +180,7 @@ def test_rows_alike_are_the_row_alone():
     for one, flux in ((Body(STEEL, speed, line, dt), row), (Body(STEEL, speed, grid, dt), np.tile(row, 5))):
         record = one.record(flux, one.steady(flux, speed)[1])
         for step in range(1, 4):
-            moved = one.advance(record, step * speed * dt, dt, speed)
+            moved = one.advance(record, step * speed * dt, dt, speed, flux)
             record = one.accept(moved, flux)
         rises.append(moved.history)
     np.testing.assert_allclose(rises[1].reshape(5, -1), np.tile(rises[0], (5, 1)), rtol=1e-12)
@@ -196,7 +196,7 @@ def test_a_sinusoid_across_a_strip():
     one = Body(STEEL, 0.0, grid, dt)
     record = one.cold()
     for _ in range(steps):
-        moved = one.advance(record, 0.0, dt, 0.0)
+        moved = one.advance(record, 0.0, dt, 0.0, flux)
         record = one.accept(moved, flux)
     rise, k = moved.history + moved.response * flux, wave / grid.spacings[0]
     middle = grid.shape[1] // 2

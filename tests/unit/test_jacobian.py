@@ -12,8 +12,8 @@ petsc4py.init([])
 from petsc4py import PETSc
 
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.line.curvature_product import BLOCK
-from ehlpetsc.discretisation.step_inputs import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns, q_of, w_index, w_of
 from ehlpetsc.nonlinear.line.banded_jacobian import FILMS, GROUP, TERMS
 from ehlpetsc.nonlinear.line.block_lu import (

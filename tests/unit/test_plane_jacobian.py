@@ -13,7 +13,7 @@ from support.points import point
 from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import limit_cavitation, open_cavity
-from ehlpetsc.discretisation.step_inputs import FilmHistory
+from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.elasticity.half_space import free_kernel
 from ehlpetsc.nonlinear.newton import NewtonSolver

@@ -11,9 +11,10 @@ petsc4py.init([])
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
+from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.finite_volumes import face_film, face_mean, flux_through
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
-from ehlpetsc.discretisation.step_inputs import FilmHistory, IsothermalOil, StepInputs
+from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
 from ehlpetsc.discretisation.transport import carried, carried_with
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import reynolds_columns

@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.effects.heat.record import Across, BodyHeat
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.flash_temperature import Solid
@@ -30,6 +31,7 @@ FASTEST_RESPONSE = 30.0  # rate of the fastest term times the time step
 SLOWEST_RESPONSE = 0.2  # rate of the slowest term but the lumped one times the longest time
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
+MAX_NODES = 2.04  # that a body moves in one part of a step: those of a Courant number of 1, rounded up
 RENUMBERED = 2.0  # cells between the distance travelled and the step by the speed
 DIFFUSION_LENGTHS = 3.0  # of the longest history, across, beyond the mesh
 MAX_DIFFUSION_AREA = 1e-3  # m^2: over the diffusivity the longest history of a body [s]
@@ -306,19 +308,36 @@ class Body:
         zeros = np.zeros((cells, len(self.rates)))
         return BodyHeat(-self.padding, zeros, np.zeros(cells), self.rates, self.weights)
 
-    def advance(self, body: BodyHeat, travelled: float, dt: float, speed: float) -> BodyStep:
-        """The body at the end of a step.
+    def advance(
+        self, body: BodyHeat, travelled: float, dt: float, speed: float, flux: np.ndarray
+    ) -> BodyStep:
+        """The body at the end of a step, in parts of at most `MAX_NODES` nodes.
+
+        The flux in a part is linear in time at each point of the body, which passes the contact within some
+        parts of a long step. Up to the last part the contact has the flux of the begin.
 
         `body`: at its begin.
         `travelled`: distance travelled at the end [m].
         `dt`: [s]
         `speed`: [m/s], signed.
+        `flux`: at the nodes at its begin [W/m^2], shape (nodes,).
         """
-        position = -travelled / self.dx
+        end, begin = -travelled / self.dx, body.first + self._padding_of(body)
+        by_speed = -speed * dt / self.dx
+        # the distance may be counted from another place now
+        is_counted = abs(np.floor(end) - begin - by_speed) <= max(RENUMBERED, 0.5 * abs(by_speed))
+        distance = end - begin if is_counted else by_speed
+        parts = max(whole_up(abs(by_speed) / MAX_NODES), 1)
+        for part in range(1, parts):
+            position = end - distance * (1.0 - part / parts)
+            body = self.accept(self._advance(body, position, dt / parts, by_speed / parts), flux)
+        return self._advance(body, end, dt / parts, by_speed / parts)
+
+    def _advance(self, body: BodyHeat, position: float, dt: float, moved: float) -> BodyStep:
+        """The body at the end of a part of a step; `position`: of the first node in the body, in cells."""
         base, padding = int(np.floor(position)), self._padding_of(body)
         shift = base - padding - body.first
-        moved = -speed * dt / self.dx
-        if abs(shift - moved) > RENUMBERED:  # the distance is counted from another place now
+        if abs(shift - moved) > RENUMBERED:
             shift = int(np.floor(moved))
         step = StepWeights.of(body.rates, dt, self.solid.effusivity)
         area = self.solid.diffusivity * dt

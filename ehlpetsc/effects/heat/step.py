@@ -9,8 +9,8 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact import face_gap, smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
+from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.step_inputs import (
-    FilmHistory,
     IsothermalOil,
     StepInputs,
     mirrored,
@@ -87,16 +87,18 @@ class HeatStep:
             walls = [w - r * q for (w, q), r in zip(pairs, responses, strict=True)]
         else:
             records, speeds = (record.body_1, record.body_2), (step.conditions.u1, step.conditions.u2)
-            movements = zip(self.bodies, records, step.travelled, speeds, strict=True)
+            fluxes = record.flux_1, record.flux_2
+            movements = zip(self.bodies, records, step.travelled, speeds, fluxes, strict=True)
             bodies = tuple(
-                body.advance(body_heat, travelled, step.dt, speed)
-                for body, body_heat, travelled, speed in movements
+                body.advance(body_heat, travelled, step.dt, speed, flux)
+                for body, body_heat, travelled, speed, flux in movements
             )
             walls = [bulk + body.history for bulk, body in zip(self.bulk, bodies, strict=True)]
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-                old, flow = self._carried(record.film, inputs.history), np.zeros_like(flow)
+                old = self._carried(record.film, inputs.history)
+                flow = np.zeros_like(flow) if inputs.history.follows_path else flow
         balance = explicit_transport(self.rows, stored, flow, old, self.inlet)
         rows = *balance, record.source, record.spread
         law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
@@ -138,7 +140,7 @@ class HeatStep:
             left, history = 1.0 + np.minimum(q, 0.0), solution.inputs.history
             old, last_step = record.film, (blank, blank)
             if history is not None:
-                in_rows, moved = s.grid.rows, history.moved
+                in_rows, moved = s.grid.rows, history.nodes_carried
                 old = self._carried(old, history)
                 rate, beyond = (
                     carried(in_rows(v), moved, 0.0).ravel() for v in (record.rate, record.extrapolated)
@@ -180,7 +182,7 @@ class HeatStep:
     def _carried(self, temperatures: np.ndarray, history: FilmHistory) -> np.ndarray:
         """Temperatures of the film one step ago where the oil was that is now at each node [K]."""
         rows = self.scales.grid.rows
-        given = rows(history.before), rows(temperatures), history.moved, self.inlet
+        given = rows(history.before), rows(temperatures), history.nodes_carried, self.inlet
         return carried_with(*given).ravel()
 
     def _face_law(self, inputs: StepInputs, spacing: float) -> tuple:

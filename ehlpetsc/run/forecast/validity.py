@@ -9,6 +9,7 @@ import numpy as np
 
 from ehlpetsc.base.quantities import STEP_SCALARS, unit_in
 from ehlpetsc.case.checking import attribute
+from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.oil.laws import LAW_TABLES, names_in_use, reference_temperature
 from ehlpetsc.physics.oil.oils import OIL_SHEAR, OILS
@@ -31,12 +32,13 @@ def warnings(case: Case, scales: Scales, rough: Roughness | None = None) -> list
     """Warnings before a run, one message each; `rough`: surfaces of the case, None: read here."""
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case), *domain_warnings(case, scales)]
     if case.surface.body_1 or case.surface.body_2:
-        from ehlpetsc.surfaces.motion.profile_checks import entry_warnings, mesh_warnings
+        from ehlpetsc.surfaces.motion.profile_checks import entry_warnings, mesh_warnings, step_warnings
         from ehlpetsc.surfaces.motion.roughness import Roughness
 
         profiles = rough or Roughness.of(case, scales)
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
         notes += [*mesh_warnings(profiles, scales), *strip_warnings(case, scales)]
+        notes += step_warnings(case, profiles, scales, operation_of(case, scales).varies)
     return notes + rolling_warnings(case, scales) + heat_warnings(case, scales)
 
 

@@ -89,6 +89,36 @@ def mesh_warnings(rough: Roughness | None, scales: Scales, limit: float = MAX_UN
     return notes
 
 
+def step_warnings(
+    case: Case, rough: Roughness, scales: Scales, varies: bool, limit: float = MAX_UNRESOLVED
+) -> list[str]:
+    """Warnings of time steps of more than a node in which roughness passes, or conditions vary, too fast.
+
+    `varies`: whether the conditions do.
+    """
+    courant = case.time.courant if case.time and case.fluid else 0.0
+    if courant <= 1.0:
+        return []
+    notes = []
+    for side, profile in rough.sides.items():
+        in_step = abs(profile.speed) * scales.dt
+        fraction, shorter = profile.given.unresolved_variance(in_step), courant
+        while shorter > 1.0 and profile.given.unresolved_variance(in_step * shorter / courant) > limit:
+            shorter = max(0.8 * shorter, 1.0)
+        if fraction > limit:
+            notes.append(
+                f"surface.{side}: {100 * fraction:.0f} % of its height variance lies in waves that pass in "
+                f"fewer than {WAVE_NODES} time steps, in which the film follows them too little; "
+                f"time.courant = {shorter:.2g}"
+            )
+    if varies:
+        notes.append(
+            f"time.courant = {courant:g}: with moving roughness under conditions that vary, the film comes "
+            f"out as on a mesh {courant:.3g} times coarser; time.courant = 1"
+        )
+    return notes
+
+
 def _needed_points(profile: RoughSurface, scales: Scales, limit: float) -> int | list[int]:
     """Nodes per half-width that leave at most a share `limit` of the height variance unresolved.
 
