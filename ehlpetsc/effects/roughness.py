@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class RoughSurfaces(Effect[NoRecord]):
-    """Heights of both profiles, means over the cells of the mesh, subtracted from the gap."""
+    """Heights of both profiles at the nodes, subtracted from the gap."""
 
     name = "roughness"
     moves_with_surfaces = True

@@ -317,6 +317,24 @@ class ContinuedSpline:
         return integral if deviation.ndim == 2 else PolynomialsOfRows(integral)
 
 
+def cell_faces(centres: np.ndarray, width: float) -> np.ndarray:
+    """Faces of cells of one width around their centres, and of one cell more at each end, shape (n + 3,)."""
+    first, last = centres[0] - 1.5 * width, centres[-1] + 0.5 * width
+    return np.concatenate([[first], centres - 0.5 * width, [last, last + width]])
+
+
+def centre_values(means: np.ndarray) -> np.ndarray:
+    r"""Heights at the centres of cells of one width, by means over them.
+
+    :math:`\bar z_i-(\bar z_{i+1}-2\bar z_i+\bar z_{i-1})/24`, of fourth order: eight cells to a wave keep
+    99.8 % of its amplitude, their means alone 97.4 %. Waves shorter than a cell are damped and keep their
+    volume; the heights at the centres would alias or miss them.
+
+    `means`: one cell more at each end, along the first axis, shape (n + 2, ...).
+    """
+    return means[1:-1] - np.diff(means, 2, axis=0) / 24.0
+
+
 class PolynomialsOfRows:
     """Piecewise polynomials of many rows, one product for each point: a quarter of the time of scipy's."""
 

@@ -108,14 +108,18 @@ def test_surface_keys_are_applied_in_order_and_ground_heights_depend_on_the_seed
     assert np.abs(np.corrcoef(first, other)[0, 1]) < 0.2
 
 
-def test_cell_means_of_a_polynomial_a_ridge_and_a_ramp():
+def test_heights_of_a_polynomial_a_ridge_and_a_ramp_at_nodes():
     # a clamped cubic spline is exact for a cubic level at both ends; beside x = 0 and l it is mirrored
     X = np.linspace(0.0, 1.0, 6) * A
     p = profile(X, 1e-7 * (3 * (X / A) ** 2 - 2 * (X / A) ** 3), moving=False)
-    faces = np.array([-0.2, -0.05, 0.1, 0.101, 0.37, 0.93, 1.02, 1.4, 2.0, 3.7]) * A
+    faces = np.arange(-0.2, 3.8, 0.11) * A
     integral = np.vectorize(_cubic_integral)(faces / A)
-    expected = 1e-7 * np.diff(integral) / np.diff(faces / A)
-    np.testing.assert_allclose(p.mean_height(faces - 2.5 * A), expected, rtol=1e-12)
+    means = 1e-7 * np.diff(integral) / np.diff(faces / A)
+    expected = means[1:-1] - (means[2:] - 2 * means[1:-1] + means[:-2]) / 24
+    np.testing.assert_allclose(p.node_height(faces - 2.5 * A), expected, rtol=1e-11)
+    inside = (faces[2:-1] > 0.2 * A) & (faces[2:-1] < 0.9 * A)  # three cells on one cubic
+    nodes = 0.5 * (faces[2:-1] + faces[1:-2])[inside] - 2.5 * A
+    np.testing.assert_allclose(expected[inside], p.height(nodes), rtol=1e-11)
     X = np.linspace(0.4, 0.6, 101) * A
     z = 1e-7 * np.exp(-(((X / A - 0.5) / 0.02) ** 2))
     p = profile(X, z, speed=1.0, repeats=False)
@@ -127,10 +131,27 @@ def test_cell_means_of_a_polynomial_a_ridge_and_a_ramp():
     for speed in (2.0, -2.0):
         p = profile(X, z, speed=speed)
         s = (-2.5 * A - np.linspace(-0.05, 0.3, 701) * A) if speed > 0 else np.linspace(1.4, 1.8, 801) * A
-        narrow = np.stack([s - 1e-9, s + 1e-9], axis=1)
-        means = np.array([p.mean_height(pair)[0] for pair in narrow])
-        np.testing.assert_allclose(means, p.height(s), atol=1e-12)
-    assert (profile(X, z).mean_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
+        narrow = s[:, np.newaxis] + 2e-9 * np.array([-1.5, -0.5, 0.5, 1.5])
+        heights = np.array([p.node_height(cell)[0] for cell in narrow])
+        np.testing.assert_allclose(heights, p.height(s), atol=1e-12)
+    assert (profile(X, z).node_height(np.linspace(-2.45, 1.5, 50) * A) == 0.0).all()
+
+
+@pytest.mark.parametrize(("nodes", "error"), [(8, 0.002), (16, 1.5e-4), (32, 1e-5)])
+def test_waves_keep_their_heights_on_the_mesh_and_shorter_ones_alias_little(nodes, error):
+    wavelength, x = 0.1 * A, np.arange(-2.0, 1.0, 0.1 / nodes) * A
+    waves = profile(*wave(wavelength, 1e-7), moving=False)
+    surface = Roughness(waves, None)
+    heights, exact = (surface.phi_after(x, (0.0, 0.0), cell) for cell in (x[1] - x[0], None))
+    np.testing.assert_allclose(heights, exact, atol=error * 1e-7)
+    coarse = np.arange(-2.0, 1.0, 0.13) * A  # three quarters of a node a wave
+    assert np.abs(surface.phi_after(coarse, (0.0, 0.0), 0.13 * A)).max() < 0.3e-7
+
+
+def wave(wavelength, amplitude):
+    """Abscissas and heights of one wave, 201 points."""
+    X = np.linspace(0.0, wavelength, 201)
+    return X, amplitude * np.cos(2 * np.pi * X / wavelength)
 
 
 def _cubic_integral(x):

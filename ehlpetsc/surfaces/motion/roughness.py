@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.surfaces.topography import ContinuedSpline
+from ehlpetsc.surfaces.topography import ContinuedSpline, cell_faces, centre_values
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
@@ -60,11 +60,11 @@ class RoughSurface:
     A moving surface is smooth where X < 0; its heights increase over the ramp as
     :math:`r^3(10-15r+6r^2)`, so that film and its rate of change have no jump.
 
-    Heights of a map are integrated across once, over the cells of the rows, which leaves one spline along x
-    for each row. Abscissas that fall along x (U > 0) fall along y too: the map is turned, not mirrored.
+    Heights of a map are reduced across once to the rows of the mesh, which leaves one spline along x for each
+    row. Abscissas that fall along x (U > 0) fall along y too: the map is turned, not mirrored.
 
     `given`: heights as read or generated.
-    `faces`: in y, of the cells around the rows of this rank [m], shape (rows + 1,); None: a line contact.
+    `faces`: in y, :func:`cell_faces` of the rows of this rank [m], shape (rows + 3,); None: a line contact.
     `is_moving`: false if its abscissa is fixed to the domain at time 0, without a ramp.
     `enters`: whether it enters during the run; otherwise it is in the whole domain from the start.
     `ramp`, `travelled`: length of the ramp, and of the part of the profile that enters [m].
@@ -84,8 +84,10 @@ class RoughSurface:
         self.travelled = swept_length + ahead if self.is_moving else outlet - inlet
         self._ends = None if self.is_moving or reach is None else (inlet - reach[1], outlet - reach[0])
         self.given, self.X, self.repeats, self.rq = given, given.X, given.repeats, given.sq
-        self._rows = None if faces is None else len(faces) - 1
+        self._rows = None if faces is None else len(faces) - 3
         heights = given.z[0] if faces is None else given.row_means(given.middle + self._sign * faces)
+        if heights.ndim > 1:
+            heights = centre_values(heights.T).T
         self._spline = ContinuedSpline(given.X, heights, given.along)
 
     def entered(self, s: np.ndarray) -> np.ndarray:
@@ -98,23 +100,23 @@ class RoughSurface:
         return r * r * r * (10.0 - r * (15.0 - 6.0 * r))
 
     def height(self, s: np.ndarray) -> np.ndarray:
-        """Heights [m] at body points s [m], of a map means of the cells across.
+        """Heights [m] at body points s [m], of a map by :func:`centre_values` across.
 
         Returns shape (len(s),), in the plane (rows, len(s)).
         """
         X = self._sign * (s - self._origin)
         return self._on_rows(X, self._spline((np.maximum(X, 0.0) if self.is_moving else X) + self._begin))
 
-    def mean_height(self, faces: np.ndarray) -> np.ndarray:
-        r"""Mean height [m] of each cell between faces at body points s [m], of each row.
+    def node_height(self, faces: np.ndarray) -> np.ndarray:
+        """Heights [m] at the centres of cells of one width, by :func:`centre_values`, of each row.
 
-        :math:`\frac{1}{s_{i+1}-s_i}\int_{s_i}^{s_{i+1}}z\,ds`, the integral of the spline, also across its
-        continuation. The ramp is evaluated at the centre of the cell.
+        The means are integrals of the spline, also across its continuation. The ramp is evaluated at the
+        centres.
 
-        `faces`: shape (n + 1,).
+        `faces`: body points s of the faces [m], one cell more at each end, shape (n + 3,).
         """
         X = self._sign * (faces - self._origin)
-        return self._on_rows(0.5 * (X[1:] + X[:-1]), self._spline.means(X + self._begin))
+        return self._on_rows(0.5 * (X[2:-1] + X[1:-2]), centre_values(self._spline.means(X + self._begin)))
 
     def _on_rows(self, X: np.ndarray, heights: np.ndarray) -> np.ndarray:
         """Heights (n,) or (n, rows) at X, times the ramp, as (n,) of a line contact or (rows, n)."""
@@ -176,16 +178,16 @@ class Roughness:
         """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2).
 
         `x`: positions [m], with `cell` equally spaced by it, shape (nx,).
-        `cell`: cell width of the mesh [m] over which means are taken: waves shorter than a cell, which a mesh
-            does not resolve, are damped instead of aliased. Without it values at x.
+        `cell`: cell width of the mesh [m]: heights by :func:`centre_values`, which damps the waves that the
+            mesh does not resolve. Without it values of the profiles at x.
 
         Returns one value a node, x fastest.
         """
         phi = np.zeros(())
-        at = x if cell is None else np.append(x - 0.5 * cell, x[-1] + 0.5 * cell)
+        at = x if cell is None else cell_faces(x, cell)
         for surface, distance in zip((self.surface_1, self.surface_2), travelled, strict=True):
             if surface is not None:
-                heights = surface.height if cell is None else surface.mean_height
+                heights = surface.height if cell is None else surface.node_height
                 phi = phi - heights(at - distance).ravel()
         return phi
 
@@ -204,7 +206,7 @@ def rough_surface(case: Case, scales: Scales, spec: Values, given: Passage) -> R
         return RoughSurface(samples(folder, spec), given)
     y, dy = scales.a * grid.axes[0], grid.spacings[0]
     surface = areal_samples(folder, spec, dy * len(y), grid.periodic)
-    return RoughSurface(surface, given, np.append(y - 0.5 * dy, y[-1] + 0.5 * dy))
+    return RoughSurface(surface, given, cell_faces(y, dy))
 
 
 def directed_speeds(case: Case, scales: Scales) -> tuple[float, ...]:
