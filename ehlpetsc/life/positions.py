@@ -156,6 +156,10 @@ class Positions:
         x, faults = self.scales.x * self.scales.a, []
         ends = zip(*map(self._operation.travelled, (0.0, self._operation.duration)), strict=True)
         for k, travelled in enumerate(map(np.array, ends)):
+            if travelled[0] == travelled[-1]:
+                reason = "is where it began at the end of a pass; a life needs points that pass the contact"
+                faults.append(f"{self.case.path}: surface {k + 1} {reason}")
+                continue
             s = body_points(x, self.scales.spacing, [travelled])
             s = s[passage(s, x, self.scales.spacing, travelled).complete]
             if len(s[self._at_full_height(s, k)]) + (sum(self._margins) if k else 0) < 2:

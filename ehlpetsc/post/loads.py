@@ -200,7 +200,10 @@ def _warnings(prepared: Prepared) -> Iterator[str]:
         yield f"stored with output.every = {every}: peaks between frames are lost, too little damage"
     for surface, motion in prepared.motions.items():
         passed = np.count_nonzero(motion.complete)
-        if passed < MIN_REPRESENTATIVE_POINTS:
+        distance = prepared.loads.travelled[surface]
+        if distance[0] == distance[-1]:
+            yield f"surface {surface} is where it began: none of its points passed the whole contact"
+        elif passed < MIN_REPRESENTATIVE_POINTS:
             yield f"points of surface {surface} that passed the whole contact: {passed}; raise time.travel"
 
 

@@ -102,7 +102,7 @@ def test_time_limit_ends_the_steady_start(tmp_path, case, ranks):
     assert done.returncode == 4, done.stderr
     assert done.stderr == ""
     message, last = done.stdout.splitlines()[-2:]
-    assert "steady start" in message
+    assert "steady start, with no restart file; the same command begins anew" in message
     assert last.startswith("ehlpetsc: stopped steps=0 ")
     assert list(tmp_path.iterdir()) == []
 

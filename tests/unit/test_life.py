@@ -380,6 +380,15 @@ def test_travel_too_short_is_named_before_a_pass_is_solved(tmp_path, keys, side)
     assert shown == [] and not list(tmp_path.glob("*pass*"))
 
 
+@pytest.mark.parametrize("ratio, side", [(2.0, 2), (-2.0, 1)])
+def test_a_surface_at_rest_has_no_life(tmp_path, ratio, side):
+    with pytest.raises(
+        CaseError, match=f"surface {side} is where it began .* needs points that pass"
+    ) as refusal:
+        run_life(short_case({"motion.slide_roll_ratio": ratio}), tmp_path / "a.h5", unresolved=True)
+    assert len(refusal.value.faults) == 1 and not list(tmp_path.glob("*pass*"))
+
+
 def test_travel_that_is_allowed_is_enough():
     for shift, travel in ((0.0, 6.5), (3e-4, 6.6)):
         case = short_case({"time.travel": travel, "time.pass_shift": shift})

@@ -1,6 +1,7 @@
 """Points and strips: units, refusals, explain, templates, limits; contacts at an approach or tilted."""
 
 import copy
+import math
 import re
 import tomllib
 
@@ -17,6 +18,7 @@ from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_load
 from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast.cost import file_size, work_time
+from ehlpetsc.run.forecast.domain import domain_faults
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.forecast.limits import limits
 from ehlpetsc.run.forecast.validity import heat_warnings, warnings
@@ -323,6 +325,21 @@ def test_given_tilt_moves_the_dry_ellipse_and_a_free_one_evens_out_a_wedge():
     assert problem.balance.tilt(solution.border) == pytest.approx(-slope, rel=1e-9)
     pressure = problem.model.state(solution.q, solution.w).pressure
     np.testing.assert_allclose(pressure, state.p, rtol=0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("tilt", [0.1, -0.1, 0.0113])
+@pytest.mark.parametrize("in_oil", [True, False])
+def test_a_tilt_that_moves_the_contact_beside_the_mesh_is_refused_with_the_width_that_holds_it(tilt, in_oil):
+    tables = point(50.0, 5.0, 8) if in_oil else ROLLER
+    s = Scales.of(load(tables))
+    limit = (0.5 * np.ptp(s.grid.axes[0]) - s.b / s.a) * s.a / load(tables).contact.radius_across
+    case = load(tables, {"contact.tilt": math.copysign(max(abs(tilt), 1.05 * limit), tilt)})
+    (fault,) = domain_faults(case, Scales.of(case))
+    assert "moves the contact" in fault and "\n" not in fault
+    wide = case.copy({"mesh": case.mesh.copy({"width": float(re.search("mesh.width = (\\d+)", fault)[1])})})
+    assert domain_faults(wide, Scales.of(wide)) == []
+    within = load(tables, {"contact.tilt": 0.95 * limit})
+    assert domain_faults(within, Scales.of(within)) == []
 
 
 def test_restart_continues_a_tilted_contact_whose_film_is_that_of_the_moved_one(tmp_path):

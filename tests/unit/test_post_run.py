@@ -123,6 +123,13 @@ def test_steady_one_frame_and_short_travel_are_refused_and_thinned_frames_warned
     assert "output.every = 4: peaks between frames are lost" in message
 
 
+def test_a_surface_at_rest_is_named_and_a_longer_travel_not_advised(tmp_path, capsys):
+    assert main([str(write(tmp_path / "a.h5", Scene(per_width=10, travel=11.0, ratio=2.0)))]) == 0
+    message = capsys.readouterr().err
+    assert "surface 2 is where it began: none of its points passed" in message
+    assert "time.travel" not in message
+
+
 def test_surface_that_did_not_pass_is_nan(scene, tmp_path, capsys):
     frames = int(1.1 * 4 * 40 / 0.5)  # surface 1 has passed, the slow one not
     assert main([str(write(tmp_path / "a.h5", scene, frames=frames))]) == 0

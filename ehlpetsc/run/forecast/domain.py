@@ -9,6 +9,7 @@ from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.case.tables import Case
 from ehlpetsc.discretisation.contact import film_scale_of
+from ehlpetsc.physics.contact.geometry import POINT_WIDTH
 from ehlpetsc.physics.film_formulas import (
     expected_film,
     inlet_opening,
@@ -55,6 +56,8 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
             'of a point contact or a strip with time.start = "rough", without heat, wear and yield_pressure'
         )
         return [f'{case.path}: time.ramp = "coarse": allowed: in steps {allowed}']
+    if fault := _beside_mesh(case, scales):
+        return [f"{case.path}: {fault}"]
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
     film, opening = _inlet(case, scales)
@@ -62,6 +65,19 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
         return []
     where = f"{case.path}: mesh.points_per_half_width = {case.mesh.points_per_half_width}"
     return [f"{where}: {_coarse(case, film, opening, ', which leaves no film')}"]
+
+
+def _beside_mesh(case: Case, scales: Scales) -> str:
+    """Fault of a tilt that moves the dry contact across, beyond a side of the mesh; "": it does not."""
+    grid = scales.grid
+    half, b, moved = grid.axes[0][-1], grid.half_widths[0], abs(grid.middle)
+    if not moved or moved + b <= half:
+        return ""
+    needed = math.ceil(2.0 * moved / b + POINT_WIDTH)  # with the same room beside it
+    return (
+        f"contact.tilt = {case.contact.tilt:g}: moves the contact {moved / b:.3g} b across, beyond the mesh; "
+        f"allowed: a smaller one, or mesh.width = {needed} or more"
+    )
 
 
 def refusals(case: Case, scales: Scales) -> list[str]:
