@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, Protocol, Self, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self, TypeVar
 
 import numpy as np
 
-from ehlpetsc.base.declarations import Field, KeyTable, Required, StepScalar
+from ehlpetsc.base.declarations import Field, Key, KeyTable, Refused, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Count
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.scene import Scene
@@ -153,13 +153,33 @@ class PlasticDeformation(BodyDepth[PlasticRecord]):
         return PlasticRecord(depth, total, record.hidden)
 
 
-COEFFICIENT = Required(
-    "wear rate `k`, `dz/dt = k p_c |u1 - u2|`, `z` the depth worn off a surface",
-    *("m^2/N", 0, 1e-10),
-    many="both",
-)
+WEAR_KEYS = {
+    "coefficient": Key(
+        "wear rate `k` of the load of the solids, `dz/dt = k p_c |u1 - u2|`, `z` the depth worn off",
+        *("m^2/N", 0, 1e-10),
+        many="both",
+    ),
+    "load_coefficient": Key(
+        "instead of it: wear rate of the whole load, `k` times the share of the solids",
+        *("m^2/N", 0, 1e-10),
+        many="both",
+    ),
+}
+
+
+def _one_of_both(wear: Values) -> dict[str, Any]:
+    """No further values; Refused unless one of both rates is given."""
+    if (wear.coefficient is None) == (wear.load_coefficient is None):
+        raise Refused("needs either coefficient or load_coefficient: one of them")
+    return {}
+
+
 WEAR = KeyTable(
-    "wear", "left out: no wear", {"coefficient": COEFFICIENT}, needs=('contact.model = "mixed"', "[time]")
+    "wear",
+    "left out: no wear",
+    WEAR_KEYS,
+    needs=('contact.model = "mixed"', "[time]"),
+    complete=_one_of_both,
 )
 
 
@@ -189,6 +209,9 @@ class Wear(BodyDepth[WearRecord]):
     (Archard, J. Appl. Phys. 24 (1953) 981: worn volume per sliding distance in proportion to the load), p_c
     the pressure of the solids in mixed contact and :math:`k_i` the specific wear rate of surface i, the wear
     coefficient over the hardness. Implicit in time: a step wears with the pressure at its end.
+
+    A rate of the whole load, `load_coefficient`, is divided by the share of the solids in it at the end of
+    each step: the worn volume is then that of the whole load, its place where the solids carry.
     """
 
     name = "wear"
@@ -199,8 +222,11 @@ class Wear(BodyDepth[WearRecord]):
 
     def accept(self, record: WearRecord, solution: Solution, step: Step) -> WearRecord:
         """Wear both surfaces where the solids carry."""
-        if step.dt is None or self.scene.case.wear is None:
+        wear, solids = self.scene.case.wear, solution.loads.contact_pressure
+        if step.dt is None or wear is None or not solids.any():
             return record
-        pressure, sliding = self.scene.scales.p0 * solution.loads.contact_pressure, step.conditions.sliding
-        depths = [wear_depth(k, pressure, sliding, step.dt) for k in self.scene.case.wear.coefficient]
+        share = solids.sum() / solution.loads.pressure.sum()
+        coefficients = wear.coefficient or [k / share for k in wear.load_coefficient]
+        pressure, sliding = self.scene.scales.p0 * solids, step.conditions.sliding
+        depths = [wear_depth(k, pressure, sliding, step.dt) for k in coefficients]
         return record._replace(depth=self.scene.mesh_on_bodies.add(record.depth, step.travelled, depths))

@@ -242,20 +242,6 @@ class LifeBody(NamedTuple):
         depths = laws.cell_depths(self.edges, self.recession)
         return wear, laws.damage_at(of_pass.depths, columns, depths)
 
-    def damage_ahead(self, wear: np.ndarray, added: np.ndarray) -> float:
-        """Largest damage that a cell will have when wear has brought the surface down to it.
-
-        Of a cell at the depth z its damage so far and the integral of D over the depths to come, over the
-        wear of a pass; the columns recede by their mean. inf without wear, 0 without damage.
-
-        `wear`, `added`: as of `rates`.
-        """
-        tops = np.maximum(laws.below(self.edges[:-1], self.height), self.recession)
-        thickness = np.maximum(laws.below(self.edges[1:], self.height) - tops, 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            to_come = np.nan_to_num(np.cumsum(added * thickness, axis=0) / wear.mean(), posinf=np.inf)
-        return float(np.max(self.damage + to_come, initial=0.0, where=self.is_there))
-
     def passes_to(self, rates: Rates, wear: float, damage: float) -> float:
         """Passes after which a column has worn by a depth [m], or an intact cell has got so much damage."""
         intact = self.is_there & (self.damage < 1.0)

@@ -20,7 +20,14 @@ from ehlpetsc.life.history import LifeFile, LifeHistory, stored_or_new
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import Pass, band, lines_of, passes_to_failure, run_pass, smooth_contacts_of
 from ehlpetsc.life.positions import Positions, number_of_positions, with_shift
-from ehlpetsc.life.remarks import SMOOTH_FIGURES, depth_lines, limits, smooth_figures, smooth_lines
+from ehlpetsc.life.remarks import (
+    SMOOTH_FIGURES,
+    depth_lines,
+    limits,
+    smooth_figures,
+    smooth_lines,
+    wear_lines,
+)
 from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
@@ -181,7 +188,7 @@ class _Life:
             self.file.close("done" if self.history.done >= self.jumps.passes else "stopped")
         if self.history.done < self.jumps.passes and self.history.solved >= self.case.life.max_solved:
             self.show(f"note: life.max_solved = {self.case.life.max_solved} reached before life.passes")
-        for line in limits(self.history):
+        for line in (*limits(self.history), *wear_lines(self.history, self.case)):
             self.show(line)
         return self.history
 
@@ -266,7 +273,6 @@ class _Life:
         row |= smooth | solved_round.figures(bodies) | {"yielded": solved_round.yielded, "broken_out": 0}
         for k, (body, rate, old) in enumerate(zip(after, rates, bodies, strict=True), 1):
             row["broken_out"] += int(np.count_nonzero(body.pit > old.pit))
-            row[f"damage_ahead_{k}"] = body.damage_ahead(rate.wear, rate.damage)
             row |= {f"pits_{k}": body.pits, f"pitted_share_{k}": body.pitted_share, f"ra_{k}": body.ra}
             row |= {f"wear_volume_{k}": body.volume, f"damage_{k}": body.largest_damage}
             row |= {f"wear_rate_{k}": float(rate.wear.max()), f"damage_rate_{k}": float(rate.damage.max())}

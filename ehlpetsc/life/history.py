@@ -147,6 +147,17 @@ class LifeHistory:
             return np.array([bodies[int(k) - 1].damaged_share(row["passes"]) for row, bodies in rows])
         return np.array([row[name] for row in self.rows])
 
+    def limiting_wear(self, surface: int) -> float:
+        """Least wear rate, over that of the life, which keeps cells of a surface from failing.
+
+        Without break-outs wear and damage are proportional to the passes, so that a life serves every rate k,
+        :math:`D(N;k)=F(kN)/k`: at this rate the largest D of cells that are left is 1 at its maximum. It is a
+        lower bound while D still rises.
+
+        `surface`: 1 or 2.
+        """
+        return float(self(f"damage_{surface}").max())
+
     def add(self, row: dict, bodies: tuple[LifeBody, ...], plastic: dict[str, np.ndarray]) -> None:
         """Append a solved round."""
         self.rows.append(row)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
+    from ehlpetsc.case.tables import Case
     from ehlpetsc.life.body import LifeBody
     from ehlpetsc.life.history import LifeHistory
     from ehlpetsc.life.one_pass import OfBody
@@ -68,6 +69,26 @@ def limits(life: LifeHistory) -> Iterator[str]:
             yield (
                 f"limit: a pit of surface {k} reaches the last cell, {body.edges[-1]:.3g} m deep: its depth "
                 "is that of post.depths"
+            )
+
+
+def wear_lines(life: LifeHistory, case: Case) -> Iterator[str]:
+    """Lines on the wear rates of a life: of the load of the solids and of the whole load; limiting ones."""
+    if not life.rows or case.wear is None:
+        return
+    share = life.rows[0]["contact_share"]
+    of_solids = case.wear.coefficient or [k / share for k in case.wear.load_coefficient]
+    for k, coefficient in enumerate(of_solids, 1):
+        yield (
+            f"wear, surface {k}: k = {coefficient:.3g} m^2/N of the load of the solids, "
+            f"{coefficient * share:.3g} of the whole load; the solids carry {100 * share:.3g} % of it"
+        )
+        if case.life.break_out == "none" and len(life.rows) > 1:
+            before, last = life(f"damage_{k}")[-2:]
+            limit = coefficient * life.limiting_wear(k)
+            yield (
+                f"wear keeps surface {k} from failing from k = {limit:.3g} m^2/N on; D changed by "
+                f"{100 * (last / before - 1):.2g} % in the last round"
             )
 
 

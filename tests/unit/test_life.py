@@ -193,7 +193,7 @@ def of_pass(damage, depth=0.01, columns=8):
     return OfBody(np.arange(columns) * 1.0, np.array([0.0, 4.0]), rows, np.zeros(columns), (none, worn))
 
 
-def test_cells_worn_before_failure_do_not_fail_and_damage_is_expected_at_wear_out():
+def test_cells_worn_before_failure_do_not_fail():
     """A cell at Z fails before it is gone where the sum over its way to the surface reaches 1."""
     ends = {}
     for depth in (0.01, 0.2):
@@ -209,14 +209,6 @@ def test_cells_worn_before_failure_do_not_fail_and_damage_is_expected_at_wear_ou
     pitted, counted = (slow.after(rates, 100, 12, breaks) for breaks in ("above", "none"))
     assert pitted.is_pitted.all() and pitted.pits == 1 and pitted.pit.min() > 0.0
     assert counted.is_pitted.all() and not counted.pit.any(), "failed cells are counted alone"
-    one = body()
-    wear, added = np.full(8, 0.5), np.array([[0.1], [0.05], [0.025]]) * np.ones(8)
-    # over the edges 0, 1, 2, 4: (0.1 + 0.05 + 2 * 0.025)/0.5
-    assert one.damage_ahead(wear, added) == pytest.approx(0.4)
-    worn = one._replace(wear=np.full(8, 1.0), damage=np.array([[9.0], [0.2], [0.1]]) * np.ones(8))
-    assert worn.damage_ahead(wear, added) == pytest.approx(0.1 + 0.1 / 0.5)
-    assert one.damage_ahead(0.0 * wear, added) == np.inf and one.damage_ahead(wear, 0.0 * added) == 0.0
-    assert one.damage_ahead(0.0 * wear, 0.0 * added) == 0.0
 
 
 def test_surfaces_outside_the_computed_length_have_mean_wear_and_stretches_whole_columns():
@@ -310,7 +302,7 @@ def test_solver_meets_pits_without_waves_below_the_short_cutoff():
     assert coarse.sum() == pytest.approx(100.0)
 
 
-def made_life(pits=0, ahead=0.5, rows=2):
+def made_life(pits=0, rows=2):
     """A life of a body that is worn from row to row."""
     found = LifeHistory('contact = { material = ["100Cr6", "16MnCr5"] }', "title")
     for row in range(1, rows + 1):
@@ -321,7 +313,7 @@ def made_life(pits=0, ahead=0.5, rows=2):
         figures = {"passes": 10 * row, "jump": 10, "solved": 1, "friction": 0.1}
         for k in (1, 2):
             figures |= {f"pits_{k}": pits, f"pitted_share_{k}": 0.05 * k * pits, f"ra_{k}": one.ra}
-            figures |= {f"damage_{k}": 0.1 * row, f"damage_ahead_{k}": 0.5 * k * ahead}
+            figures[f"damage_{k}"] = 0.1 * row
             figures[f"wear_volume_{k}"] = 1e-12 * row
         found.add(figures, (one._replace(failed=2.0 * one.failed), one), {})  # the first one fails later
     return found
@@ -431,6 +423,32 @@ def test_columns_of_body_2_are_met_in_every_round_and_have_the_mean_of_the_passe
             rates = Round(passes, 1.0, drifts=True).rates((two, two))[1]
             assert rates.damage == pytest.approx(3e-6, rel=1e-6), "of every column, whoever meets it"
             assert rates.wear == pytest.approx(2e-9, rel=1e-6)
+
+
+def aged(k, passes):
+    """History of a surface whose wear smooths it: dw/dt = k exp(-w), dD/dt = exp(-3 w)/100."""
+
+    def rates(one):
+        smooth = np.exp(-one.wear)
+        return Rates(k * smooth, np.tile(0.01 * smooth**3, (3, 1)), 0.0)
+
+    history, bodies, done, before = LifeHistory("", ""), (body(), body()), 0, 0
+    one = jumps(0.02, 0.01, passes=passes, break_out="none")
+    while done < passes:
+        bodies, before, _ = one.jump(bodies, round_of(rates), done, before)
+        done += before
+        history.add({"passes": done, "damage_1": bodies[0].largest_damage}, bodies, {})
+    return history
+
+
+def test_a_life_without_break_outs_serves_every_wear_rate():
+    """D(N; k) = F(kN)/k, and the limiting rate is that at which the largest D is 1."""
+    slow, fast = aged(1e-3, 4000), aged(2e-3, 2000)
+    assert 2.0 * fast.rows[-1]["damage_1"] == pytest.approx(slow.rows[-1]["damage_1"], rel=5e-3)
+    limit = 1e-3 * slow.limiting_wear(1)
+    assert limit == pytest.approx((1.0 - 5.0**-2) * 0.01 / 2, rel=5e-3)  # D = (1 - (1 + kN)^-2) 0.01/(2 k)
+    ends = aged(limit, round(4.0 / limit)).rows[-1]["damage_1"]
+    assert ends == pytest.approx(1.0, rel=5e-3)
 
 
 def solved(broken_out=0, count=1, yielded=0.0, jump=40):

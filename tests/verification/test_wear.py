@@ -32,6 +32,16 @@ def test_worn_volume_is_the_integral_of_the_solids_pressure_times_sliding(scale)
     assert one.volume == pytest.approx(K * work, rel=1e-10)
 
 
+def test_wear_of_the_whole_load_is_worn_where_the_solids_carry():
+    """As worn by a rate of the solids' load, in each step over their share of the load."""
+    simulation, states = worn(f"wear={{load_coefficient=[{K}, {3 * K}]}}")
+    sliding, load = simulation.scales.u1 - simulation.scales.u2, simulation.case.contact.load
+    distances = [sliding * state.dt for state in states[1:] if state.contact_share > 0.0]
+    assert states[-1].wear_volume == pytest.approx(4.0 * K * load * sum(distances), rel=1e-6)
+    share = np.mean([state.contact_share for state in states[1:]])
+    assert 0.001 < share < 0.9, "the solids carry a part"
+
+
 def test_wear_is_passed_on_to_the_next_pass():
     first, states = worn(f"wear.coefficient={K}", "time.passes=2")
     second, again = worn(f"wear.coefficient={K}", "time.passes=2", after=first)
@@ -53,6 +63,14 @@ RAMP = {
     "wear": {"coefficient": K},
 }
 RAMP["contact"] |= {"boundary_friction": 0.1, "yield_pressure": 1.2e9}
+
+
+@pytest.mark.parametrize("rates", [{}, {"coefficient": K, "load_coefficient": K}])
+def test_wear_rate_is_either_of_the_solids_or_of_the_whole_load(rates):
+    with pytest.raises(CaseError, match="wear: needs either coefficient or load_coefficient"):
+        load(RAMP | {"wear": rates})
+
+
 AT_REST = {"motion.slide_roll_ratio": -2.0, "time.start": "smooth"}
 
 
