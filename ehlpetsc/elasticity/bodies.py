@@ -24,10 +24,12 @@ class Bodies(NamedTuple):
 
     `modulus`: E' of both [Pa].
     `shares`: of the compliance :math:`2/E'`, :math:`\frac{E'}2(1-\nu_i^2)/E_i`, of each body.
+    `free_ends`: Poisson's ratio of body 1, a roller whose end faces are free; None: no such ends.
     """
 
     modulus: float
     shares: tuple[float, float]
+    free_ends: float | None = None
 
     @classmethod
     def of(cls, contact: Contact) -> Bodies:
@@ -35,4 +37,5 @@ class Bodies(NamedTuple):
         constants = contact.youngs_modulus, contact.poisson_ratio
         modulus = reduced_modulus(*constants)
         first, second = (0.5 * modulus * (1.0 - nu * nu) / e for e, nu in zip(*constants, strict=True))
-        return cls(modulus, (first, second))
+        has_ends = contact.length is not None and contact.free_ends
+        return cls(modulus, (first, second), contact.poisson_ratio[0] if has_ends else None)

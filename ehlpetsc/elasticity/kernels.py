@@ -26,9 +26,10 @@ from collections.abc import Callable
 
 from ehlpetsc.elasticity.bodies import Bodies
 from ehlpetsc.elasticity.half_space import free_kernel, periodic_kernel
+from ehlpetsc.elasticity.images import free_ends
 from ehlpetsc.elasticity.kernel import Kernel, Mesh
 
-TERMS: tuple[Callable[[Bodies, Mesh], Kernel | None], ...] = ()
+TERMS: tuple[Callable[[Bodies, Mesh], Kernel | None], ...] = (free_ends,)
 
 
 def kernel_of(bodies: Bodies, mesh: Mesh) -> Kernel:

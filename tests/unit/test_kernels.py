@@ -43,6 +43,13 @@ def test_a_term_is_added_to_the_half_spaces(monkeypatch):
     assert both.softening(np.array([1.0, 4.0])) == pytest.approx([2.0, 1.25], rel=1e-15)
 
 
+def test_free_ends_are_images_on_the_share_of_the_roller():
+    kernel, alone = kernel_of(STEEL._replace(free_ends=0.3), MESH), kernel_of(STEEL, MESH)
+    np.testing.assert_array_equal(kernel.direct, alone.direct)
+    np.testing.assert_allclose(kernel.mirrored, 0.5 * 1.39 * images(MESH), rtol=1e-14)
+    assert kernel.softening(np.array([5.0])) == alone.softening(np.array([5.0]))
+
+
 def test_sparse_form_is_as_compliant_as_short_waves():
     of_both = fitted_term(0.2, MESH.spacings, kernel_of(STEEL, MESH))
     of_soft = fitted_term(0.2, MESH.spacings, Kernel(np.zeros(MESH.shape), softening=lambda k: 3.0 + 0.0 * k))
@@ -51,7 +58,7 @@ def test_sparse_form_is_as_compliant_as_short_waves():
 
 def test_shares_of_the_compliance_are_those_of_the_bodies():
     class Contact:
-        youngs_modulus, poisson_ratio = (2e11, 6e10), (0.3, 0.2)
+        youngs_modulus, poisson_ratio, length = (2e11, 6e10), (0.3, 0.2), None
 
     bodies = Bodies.of(Contact)
     assert sum(bodies.shares) == pytest.approx(1.0, rel=1e-15)

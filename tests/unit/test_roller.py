@@ -8,6 +8,7 @@ from support.dry_half_space import HalfSpaces, dry_pressure
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
+from ehlpetsc.elasticity.images import image_factor
 from ehlpetsc.physics.contact.profiles import Design, drop_of
 from ehlpetsc.physics.contact.roller import gap_across
 from ehlpetsc.physics.scales import Scales
@@ -140,16 +141,29 @@ def test_scales_and_nodes_of_a_roller():
     assert len(rounded.axes[0]) == 62  # 110 um beyond each end
 
 
-@pytest.mark.parametrize("more", [{}, {"tilt": 0.5e-3}], ids=["aligned", "tilted"])
-@pytest.mark.parametrize("profile", [ISO, BLEND], ids=["iso", "blend"])
-def test_dry_pressure_equals_that_of_conjugate_gradients(profile, more):
-    case = load(roller(profile, **more))
+HELD, FREE = (False, 0.0), (True, 0.5 * image_factor(0.3))  # half of the compliance is the roller's
+
+
+@pytest.mark.parametrize(
+    ("profile", "more", "ends"),
+    [
+        (ISO, {}, HELD),
+        (ISO, {"tilt": 0.5e-3}, HELD),
+        (BLEND, {"tilt": 0.5e-3}, HELD),
+        (BLEND, {"tilt": 0.5e-3}, FREE),
+        (None, {}, FREE),
+    ],
+    ids=["iso", "iso tilted", "blend tilted", "blend with free ends", "straight with free ends"],
+)
+def test_dry_pressure_equals_that_of_conjugate_gradients(profile, more, ends):
+    free_ends, mirrored = ends
+    case = load(roller(profile, free_ends=free_ends, **more))
     state, scales = Simulation(case).advance(), Scales.of(case)
     grid = scales.grid
     y, x = (c.reshape(grid.shape) * scales.a for c in grid.coordinates)
     gap = x**2 / (2 * R) + gap_across(y, case.contact, Design(L, W, R, scales.E))
     gap += more.get("tilt", 0.0) * y
-    half_spaces = HalfSpaces(grid.shape, grid.spacings, scales.E)
+    half_spaces = HalfSpaces(grid.shape, grid.spacings, scales.E, mirrored)
     expected = dry_pressure(gap, W, np.prod(grid.spacings), half_spaces)
     np.testing.assert_allclose(state.pressure / scales.p0, expected / scales.p0, atol=1e-4)
     moments = [(p * y).sum() * np.prod(grid.spacings) for p in (state.pressure, expected)]

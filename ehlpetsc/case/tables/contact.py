@@ -98,6 +98,14 @@ KEYS = {
         *("m", 1e-6, 1),
         contacts=("roller",),
     ),
+    "free_ends": Key(
+        "the end faces of a roller, body 1, are free and the ring is longer; false: both are half-spaces",
+        kind=bool,
+        default=True,
+        contacts=("roller",),
+        equation="deflection of the roller also by pressures mirrored about its end faces, times "
+        "`1.29 - (0.08 - 0.5 nu)/(1 - nu)`",
+    ),
     "tilt": Key(
         "misalignment of a roller or point contact: slope of the gap across; it moves a point `-tilt Ry`",
         *("", -0.1, 0.1),

@@ -158,7 +158,7 @@ PROFILES = {
         "`A = 2 w/(pi E')`, `s = 0`, `k = 1`, `w` load per length", {"load": LOAD}, _lundberg
     ),
     "johns-gohar": Profile(
-        "`A = 2 w/(pi E')`, `s = 0`, `drop = A ln(L/(2 0.3033 a))`", {"load": LOAD}, _johns_gohar
+        "`A = 2 w/(pi E')`, `s = 0`, `drop = A ln(L/(0.6066 a))`", {"load": LOAD}, _johns_gohar
     ),
     "ntn": Profile(
         "modified logarithmic profile of Fujiwara and Kawase: `A = 2 k1 w/(pi E')`, `s = (1 - k2) L`",
