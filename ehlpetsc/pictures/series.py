@@ -65,50 +65,80 @@ def curves(results: list[Result], key: str) -> dict[str, tuple[np.ndarray, list[
 
 
 def draw_stribeck(results: list[Result], _options: argparse.Namespace | None) -> Figure:
-    """Friction, load on the solids and mean gap ratio over the speed.
+    """Friction over the speed, and load on the solids and mean gap ratio where the results have them.
 
     If results also differ in other keys, the longest curve is drawn with its scatter, the others as means.
     """
     (main, (speeds, members)), *others = curves(results, SPEED).items()
-    figure, axes = style.new_figure(3, 1, STRIBECK_SIZE, sharex=True)
-    for panel, (name, label) in zip(axes, QUANTITIES.items(), strict=True):
-        average, low, high = time_statistics(members, name)
-        band = dict(color=style.SINGLE, alpha=0.2, lw=0, label=f"{BAND[0]:g} to {BAND[1]:g} % of the time")
-        panel.fill_between(np.abs(speeds), low, high, **band)
-        line = dict(color=style.SINGLE, ms=3.5, lw=1.2, label=_lines(f"mean over time, {main}"))
-        panel.plot(np.abs(speeds), average, "o-", **line)
+    known = {name: time_statistics(members, name) for name in QUANTITIES}
+    known = {
+        n: found for n, found in known.items() if n == "friction_coefficient" or np.isfinite(found[0]).any()
+    }
+    width, height = STRIBECK_SIZE
+    size = width, height * (1 + len(known)) / (1 + len(QUANTITIES))
+    figure, axes = style.new_figure(len(known), 1, size, sharex=True, squeeze=False)
+    panels = dict(zip(known, axes[:, 0], strict=True))
+    for name, panel in panels.items():
+        _curve(panel, np.abs(speeds), known[name], main)
         for number, (other, (at, compared)) in enumerate(others, 1):
             dashed = dict(color=f"C{number}", ms=3.0, lw=0.9, label=_lines(other))
             panel.plot(np.abs(at), time_statistics(compared, name)[0], "s--", **dashed)
-        panel.set(ylabel=label, xscale="log")
+        panel.set(ylabel=QUANTITIES[name], xscale="log")
         panel.grid(lw=0.3)
-    boundary = [result.case.contact.boundary_friction for result in members]
-    smooth = [result.steps("friction_coefficient")[0] for result in members]
-    axes[0].plot(np.abs(speeds), boundary, "k-.", lw=0.9, label="solids alone\n(boundary_friction)")
-    axes[0].plot(np.abs(speeds), smooth, ":", color="0.35", lw=0.9, label="smooth contact")
-    axes[0].set_ylim(bottom=0.0)
-    style.legend_beside(axes[0], axes[0].get_legend_handles_labels()[0][2:])
-    style.legend_beside(axes[1], axes[1].get_legend_handles_labels()[0][:2])
-    for panel in axes[1:]:
-        panel.set_yscale("log" if panel.dataLim.y1 > 0.0 else "linear")
-    axes[2].yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes[1].set_ylim(bottom=max(axes[1].get_ylim()[0], MIN_SHOWN_SHARE))
-    loads = [Scales.of(r.case).load_per_length for r in results]
-    conditions = {
-        (r.case.fluid and r.case.fluid.viscosity, load) for r, load in zip(results, loads, strict=True)
-    }
-    if len(conditions) == 1 and results[0].case.fluid:
-        [(viscosity, load)] = conditions
-        hersey = "Hersey number: viscosity × speed over load per length"
-        style.scale_above(axes[0], viscosity / load, hersey)
-    axes[2].set_xlabel(style.LABELS[SPEED])
+    first, *below = panels.values()
+    _references(first, np.abs(speeds), members)
+    first.set_ylim(bottom=0.0)
+    handles = first.get_legend_handles_labels()[0]
+    of_curve = len(handles) - len(first.lines) + 1  # its line, and its band if any
+    style.legend_beside(first, handles[of_curve if below else 0 :])
+    if below:
+        style.legend_beside(below[0], handles[:of_curve])
+    for panel in (panel for panel in below if panel.dataLim.y1 > 0.0):
+        panel.set_yscale("log")
+    if gap := panels.get("mean_gap_ratio"):
+        gap.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    if (share := panels.get("contact_share")) and share.get_yscale() == "log":
+        share.set_ylim(bottom=max(share.get_ylim()[0], MIN_SHOWN_SHARE))
+    _hersey_numbers(first, results)
+    last = axes[-1, 0]
+    last.set_xlabel(style.LABELS[SPEED])
     early = ", ".join(result.path.name for result in results if not filled_weights(result).any())
     note = f"not shown, ended too early: {early}" if early else ""
     style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results), note)
-    for axis in (axes[2].xaxis, axes[1].yaxis, axes[2].yaxis):
+    for axis in (last.xaxis, *(panel.yaxis for panel in below)):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter("")
     return figure
+
+
+def _curve(panel: Axes, speeds: np.ndarray, statistics: np.ndarray, name: str) -> None:
+    """Curve of the means, with the scatter over time as a band, if there is any."""
+    average, low, high = statistics
+    varies = bool((high > low).any())
+    if varies:
+        band = dict(color=style.SINGLE, alpha=0.2, lw=0, label=f"{BAND[0]:g} to {BAND[1]:g} % of the time")
+        panel.fill_between(speeds, low, high, **band)
+    label = _lines(f"{'mean over time' if varies else 'steady'}, {name}")
+    panel.plot(speeds, average, "o-", color=style.SINGLE, ms=3.5, lw=1.2, label=label)
+
+
+def _references(panel: Axes, speeds: np.ndarray, results: list[Result]) -> None:
+    """Friction of the solids alone and, of runs that begin with it, of the smooth contact."""
+    boundary = [result.case.contact.boundary_friction for result in results]
+    panel.plot(speeds, boundary, "k-.", lw=0.9, label="solids alone\n(boundary_friction)")
+    if all(result.case.time and result.case.time.start == "smooth" for result in results):
+        smooth = [result.steps("friction_coefficient")[0] for result in results]
+        panel.plot(speeds, smooth, ":", color="0.35", lw=0.9, label="smooth contact")
+
+
+def _hersey_numbers(panel: Axes, results: list[Result]) -> None:
+    """Axis of Hersey numbers above, if all results have the same load and viscosity."""
+    loads = {Scales.of(result.case).load_per_length for result in results}
+    fluids = {result.case.fluid and result.case.fluid.viscosity for result in results}
+    if len(loads) == len(fluids) == 1 and results[0].case.fluid:
+        where = " in the middle of the dry contact" if KINDS[results[0].case.kind].is_whole else ""
+        hersey = f"Hersey number: viscosity × speed over load per length{where}"
+        style.scale_above(panel, fluids.pop() / loads.pop(), hersey)
 
 
 def draw_traction(results: list[Result], _options: argparse.Namespace | None) -> Figure:

@@ -174,6 +174,32 @@ def test_stribeck_axes_are_hersey_number_and_logarithmic_fraction(tmp_path, shar
     assert figure.axes[1].get_yscale() == ("log" if share else "linear")
 
 
+@pytest.mark.parametrize("share", [None, 0.0, 1e-3])
+def test_every_entry_of_a_stribeck_legend_has_a_visible_line(tmp_path, share):
+    """Also of smooth steady results, without solids, without a gap ratio, without scatter."""
+    paths = [member(tmp_path / f"u{u:g}.h5", 0.25, 0.05, {"time": {}}, u) for u in (1.0, 10.0)]
+    for path in paths if share is not None else ():
+        with_solids(path, share, 0.05)
+    figure = drawing.draw_stribeck([read_result(path) for path in paths], None)
+    figure.draw_without_rendering()
+    legends = filter(None, (axes.get_legend() for axes in figure.axes))
+    entries = [text.get_text() for legend in legends for text in legend.get_texts()]
+    assert "solids alone\n(boundary_friction)" in entries and "steady" in entries
+    assert not {"smooth contact", "mean over time"} & set(entries) and "%" not in "".join(entries)
+    for axes in figure.axes:
+        low, high = axes.get_ylim()
+        for line in axes.lines:
+            assert low <= np.min(line.get_ydata()) <= np.max(line.get_ydata()) <= high, line.get_label()
+
+
+def test_hersey_numbers_of_a_point_say_whose_load_per_length(tmp_path):
+    paths = [make_result(tmp_path / f"u{u:g}.h5", speed=u, nodes=41, steps=1) for u in (1.0, 10.0)]
+    for path in paths:
+        change_case(path, {"contact.radius": [0.02, 0.02], "contact.load": 50.0, "time": {}})
+    (above,) = drawn("stribeck", paths).axes[0].child_axes
+    assert above.get_xlabel().endswith("over load per length in the middle of the dry contact")
+
+
 def test_stribeck_means_start_when_the_contact_is_filled(tmp_path):
     """The slower surface, 0.88 u, from -2.5 a to a, and the ramp: 40 us are too short for 5 m/s."""
     speeds = (5.0, 40.0, 50.0)
