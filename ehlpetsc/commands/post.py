@@ -16,6 +16,7 @@ from ehlpetsc.base.compiled import announce_compilation
 from ehlpetsc.base.errors import ExitStatus, OutputError, UsageError
 from ehlpetsc.base.materials import MEAN_STRESSES
 from ehlpetsc.post.criteria import CRITERIA
+from ehlpetsc.post.level import standard_line
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of
 from ehlpetsc.results.output_guard import check_output_path
@@ -145,6 +146,7 @@ def _summary(output: str, wall: float) -> None:
                 f"smooth contact, surface {surface}, {name or 'D'}: smooth_life={life:.4g} passes "
                 f"smooth_depth={depth:.3g} m"
             )
+    print(standard_line(result.attrs["smooth_pressure"]))
     for surface in surfaces:
         if surface in result.temperatures and result.complete[surface].any():
             highest, mean, flash = result.temperatures[surface]

@@ -30,6 +30,7 @@ from ehlpetsc.life.remarks import (
 )
 from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.post.smooth_contact import worst_instant
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
 from ehlpetsc.run.forecast.cost import work_time
 from ehlpetsc.run.ranks import StopRequest, on_root
@@ -217,7 +218,8 @@ class _Life:
         """Bodies as made, and figures of the smooth contact; shows lines on it and on the criteria."""
         file = pass_file(self.path, 0, self.positions.count)
         contacts = on_root(self.comm, smooth_contacts_of, file)
-        figures = smooth_figures(contacts, self.positions.passes_2)
+        pressure = worst_instant(self.scales, self._scene.operation)[1]
+        figures = smooth_figures(contacts, self.positions.passes_2, pressure)
         for line in (*smooth_lines(figures), *depth_lines(first.bodies, figures)):
             self.show(line)
         if self._show:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.post.level import standard_line
+
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
     from ehlpetsc.life.body import LifeBody
@@ -14,15 +16,15 @@ if TYPE_CHECKING:
     from ehlpetsc.life.one_pass import OfBody
     from ehlpetsc.results.post_result import SmoothContact
 
-SMOOTH_FIGURES = tuple(f"{name}_{k}" for k in (1, 2) for name in ("smooth_life", "smooth_depth"))
+SMOOTH_FIGURES = ("smooth_pressure", *(f"smooth_{name}_{k}" for k in (1, 2) for name in ("life", "depth")))
 
 
-def smooth_figures(contacts: Sequence[SmoothContact], passes_2: float) -> dict[str, float]:
-    """Passes of body 1 after which the smooth contact fails in each body, and where [m].
+def smooth_figures(contacts: Sequence[SmoothContact], passes_2: float, pressure: float) -> dict[str, float]:
+    """Passes of body 1 after which the smooth contact fails in each body, where [m], and its pressure [Pa].
 
     `passes_2`: passes of body 2 for each one of body 1.
     """
-    found: dict[str, float] = {}
+    found = {"smooth_pressure": pressure}
     for k, (contact, factor) in enumerate(zip(contacts, (1.0, passes_2), strict=True), 1):
         found |= {f"smooth_life_{k}": contact.life / factor, f"smooth_depth_{k}": contact.depth}
     return found
@@ -33,6 +35,7 @@ def smooth_lines(figures: dict[str, float]) -> Iterator[str]:
     for k in (1, 2):
         life, depth = (figures[f"smooth_{name}_{k}"] for name in ("life", "depth"))
         yield f"smooth contact: smooth_life_{k}={life:.4g} passes smooth_depth_{k}={depth:.3g} m"
+    yield standard_line(figures["smooth_pressure"])
 
 
 def depth_lines(bodies: Sequence[OfBody], figures: dict[str, float]) -> Iterator[str]:

@@ -20,6 +20,7 @@ from ehlpetsc.post.fatigue.statistics import (
     weibull_likelihood,
 )
 from ehlpetsc.post.loads import Loads, Passage, Prepared
+from ehlpetsc.post.smooth_contact import worst_instant
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import UPPER_FIRST, PointTemperatures, WeibullFit, stored_names
 
@@ -129,6 +130,7 @@ def attributes_of(prepared: Prepared) -> dict[str, Any]:
         "inlet": loads.x[0],
         "outlet": loads.x[-1],
         "p0": loads.p0,
+        "smooth_pressure": worst_instant(loads.scales, loads.operation)[1],
         "slide_roll_ratio": (loads.speeds["1"] - loads.speeds["2"]) / mean if mean else 0.0,
         **({} if ratios is None else {"slide_roll_ratios": ratios}),
         "every": case.output.every,

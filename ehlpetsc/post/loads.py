@@ -19,6 +19,7 @@ from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.criteria.planes import Criteria
 from ehlpetsc.post.fatigue.strain_life import Material
+from ehlpetsc.post.level import scaled_to_test
 from ehlpetsc.post.stresses.body_stress import limited_slopes
 from ehlpetsc.post.stresses.half_plane import spacing
 from ehlpetsc.results.post_result import UPPER_FIRST
@@ -159,7 +160,11 @@ def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]
     criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
     loads.check(surfaces)
     depths = np.unique(post.depths or DEPTHS).astype(float)
-    prepared = Prepared(loads, *_motions(loads, surfaces), materials_of(loads.case), criteria, depths)
+    materials = {
+        surface: scaled_to_test(loads.case, material, criteria)
+        for surface, material in materials_of(loads.case).items()
+    }
+    prepared = Prepared(loads, *_motions(loads, surfaces), materials, criteria, depths)
     for warning in _warnings(prepared):
         report(f"warning: {warning}")
     return prepared

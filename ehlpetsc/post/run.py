@@ -19,8 +19,8 @@ from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.base.version import __version__
 from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
+from ehlpetsc.post.counting import count_of
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.fatigue.accumulate import count_damage
 from ehlpetsc.post.loads import Loads, Passage, Prepared, prepare
 from ehlpetsc.post.smooth_contact import smooth_contact
 from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, offset_weights
@@ -28,6 +28,7 @@ from ehlpetsc.results.post_result import UPPER_FIRST, PostResult, SmoothContact
 
 MAX_HISTORY_NUMBERS = 2.5e8  # of histories in memory; frames are read several times if they need more
 FRAMES_PER_READ = 144
+PLANE_COLUMNS = ("damage", "inclination", "tilt")  # of `criteria.critical_plane.PlaneDamage`
 DEPTHS_AT_ONCE = 16  # with common reading and transforms of the loads
 
 
@@ -270,16 +271,11 @@ def _block_stress(
 def _counts(prepared: Prepared, surface: str, job: Job) -> list[tuple[list[str], Callable]]:
     """Names of results and function of histories of the paper's damage and of each criterion."""
     material, constants, case = prepared.materials[surface], prepared.criteria, prepared.loads.case
-    common = {"material": material, "strain": case.post.strain, "cycle_residual": case.post.residual}
     names = [f"damage/{surface}", f"damage/{surface}_cycles", f"damage/{surface}_peak_range"]
-    count = partial(count_damage, mean_stress=case.post.mean_stress, **common)
-    counts: list[tuple[list[str], Callable]] = [(names, count)]
-    if "fatemi-socie" in _criteria(job, case):  # slow to compile: only if requested
-        from ehlpetsc.post.criteria.critical_plane import PlaneDamage, count_on_planes
-
-        names = [f"criteria/fatemi_socie/{surface}_{column}" for column in PlaneDamage._fields]
-        count = partial(count_on_planes, constants=constants, share=job.share, **common)
-        counts.append((names, count))
+    counts: list[tuple[list[str], Callable]] = [(names, count_of(case, material, constants, "von-mises"))]
+    if "fatemi-socie" in _criteria(job, case):
+        names = [f"criteria/fatemi_socie/{surface}_{column}" for column in PLANE_COLUMNS]
+        counts.append((names, count_of(case, material, constants, "fatemi-socie", job.share)))
     if "dang-van" in _criteria(job, case):
         from ehlpetsc.post.criteria.dang_van import count_utilisation
 

@@ -33,7 +33,7 @@ def life(passes, damage):
         cells = np.zeros((2, 2, 10))
         cells[1, :, : round(10 * share)] = 0.2
         body = one._replace(damage=cells)
-        row = {"passes": done, "jump": 1, "friction": 0.05, "solved": 1}
+        row = {"passes": done, "jump": 1, "friction": 0.05, "solved": 1, "smooth_pressure": 1.7e9}
         for k in (1, 2):
             row |= {f"pitted_share_{k}": 0.0, f"pits_{k}": 0, f"wear_volume_{k}": 1e-12 * done}
             row |= {f"smooth_life_{k}": 5.0, f"smooth_depth_{k}": 1e-5}

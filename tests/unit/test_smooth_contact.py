@@ -14,6 +14,8 @@ from ehlpetsc.life import laws, run_life
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.remarks import depth_lines, limits
 from ehlpetsc.post.fatigue.strain_life import Material, cycles_to_failure
+from ehlpetsc.post.level import standard_line
+from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.post_result import DAMAGED, PostResult, SmoothContact, is_damaged, post_path
 
 NU, P0 = 0.3, 0.999455e9
@@ -70,6 +72,21 @@ def test_life_and_depth_are_those_of_static_stresses(processed, capsys):
     assert float(found["smooth_depth"]) == pytest.approx(-0.5 * a * bends[1] / bends[0], rel=0.02)
     for name, unit in (("smooth_life", 1e-3), ("smooth_depth", 1e-2)):
         assert scalars[f"{name}_2"] == pytest.approx(float(found[name]), rel=unit)
+
+
+def test_constants_are_scaled_to_the_life_of_a_test(processed, tmp_path):
+    """At its pressure the smooth contact lives as in the test."""
+    lives = []
+    for settings in ((), (f"post.life_at=[{P0}, 3e7]", "post.criterion=fatemi-socie")):
+        run(Job(str(processed), str(tmp_path / "a.h5"), settings=settings, surfaces=("1",)))
+        lives.append(PostResult(tmp_path / "a.h5").smooth)
+    assert lives[1]["fatemi-socie"]["1"].life == pytest.approx(3e7, rel=0.03)  # with friction, of 0.05
+    assert lives[1][None]["1"].life > 2.0 * lives[0][None]["1"].life, "of both criteria"
+    assert "1.1e+07 load cycles" in standard_line(1.682e9) and "above the fatigue limit" in standard_line(
+        1.7e9
+    )
+    assert "over 5e+07" in standard_line(1.4e9) and "below" in standard_line(1.4e9)
+    assert "under 100000 load" in standard_line(2.5e9)
 
 
 MIRROR = {

@@ -97,6 +97,12 @@ POST_KEYS = {
     "fatigue_strength": Key("`sigma_f'`", *STRENGTH),
     "fatigue_ductility": Key("`eps_f'`", "", 1e-6, 100),
     "cyclic_strength": Key("`K'`; left out: `sigma_f'/eps_f'^n'`", *STRENGTH),
+    "life_at": Key(
+        "pressure [Pa] and passes at which a smooth line contact fails, in a test or by a standard: "
+        "`sigma_f'` and `K'` are scaled to them",
+        many="two",
+        gt=0,
+    ),
     "strain": Key(
         "rule from elastic stress ranges to strains; direct: none, as in the paper",
         choices=("neuber", "glinka", "direct"),
