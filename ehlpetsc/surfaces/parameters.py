@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled
+from ehlpetsc.base.counts import whole_down
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations
 
 SECTIONS = 5  # section lengths of a profile without a cut-off
@@ -111,7 +112,7 @@ def equally_spaced(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 def mean_maximum_height(z: np.ndarray, dx: float, section: float | None = None) -> float:
     """Rz: mean over sections of maximum minus minimum, by default five; `section`: their length [m]."""
-    count = SECTIONS if section is None else max(int(z.size * dx / section * (1 + 1e-9)), 1)
+    count = SECTIONS if section is None else max(whole_down(z.size * dx / section), 1)
     return float(np.mean([np.ptp(part) for part in np.array_split(z, min(count, z.size))]))
 
 
@@ -221,7 +222,7 @@ def correlation_lengths(z: np.ndarray, dx: float, dy: float) -> tuple[float, flo
     """
     correlation, step = autocorrelation(z), 0.5 * min(dx, dy)
     half = [n // 2 * spacing for n, spacing in zip(correlation.shape, (dy, dx), strict=True)]
-    lag = step * np.arange(int(np.hypot(*half) / step) + 1)
+    lag = step * np.arange(whole_down(np.hypot(*half) / step) + 1)
     followed = _in_all_directions(correlation, lag, (dy, dx), np.nan)
     below = followed < CORRELATION_THRESHOLD
     fallen, falls = np.full(LAY_DIRECTIONS, np.nan), np.flatnonzero(below.any(axis=0))
@@ -269,7 +270,7 @@ def texture_direction(z: np.ndarray, dx: float, dy: float) -> float:
     window = np.multiply.outer(*(np.hanning(n + 2)[1:-1] for n in z.shape))
     power = np.fft.fftshift(np.abs(np.fft.fft2(z * window)) ** 2)
     steps = [1.0 / (n * step) for n, step in zip(z.shape, (dy, dx), strict=True)]  # of frequencies
-    radius = min(steps) * np.arange(1, int(0.5 / max(dx, dy) / min(steps)) + 1)
+    radius = min(steps) * np.arange(1, whole_down(0.5 / max(dx, dy) / min(steps)) + 1)
     along = radius @ _in_all_directions(power, radius, steps, 0.0)
     return float(np.degrees(LAY_ANGLES[along.argmax()]) + 90.0) % 180.0
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_down
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.files import areal, profiles
 from ehlpetsc.surfaces.files.areal import Map, is_map, read_map
 from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, UNITS, Layout, read_profile
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations, levelled, smoothed, without_form
+from ehlpetsc.surfaces.random_maps import RANDOM_MAPS, random_map
 from ehlpetsc.surfaces.synthetic import POINTS_PER_WAVE
 from ehlpetsc.surfaces.topography import Topography
 
@@ -176,7 +178,10 @@ def turned(z: np.ndarray, dx: float, dy: float, direction: float) -> tuple[np.nd
         raise ProfileError(
             f"direction = {direction:g}: the turned map holds {length:g} x {width:g} m; use a larger one"
         )
-    x, y = (step * (np.arange(n) - 0.5 * (n - 1)) for n in (int(length / step) + 1, int(width / step) + 1))
+    x, y = (
+        step * (np.arange(n) - 0.5 * (n - 1))
+        for n in (whole_down(length / step) + 1, whole_down(width / step) + 1)
+    )
     along = 0.5 * size[0] + c * x + s * y[:, np.newaxis]
     across = 0.5 * size[1] - s * x + c * y[:, np.newaxis]
     return map_coordinates(z, [across / dy, along / dx], order=3, mode="mirror"), step, step
@@ -192,29 +197,21 @@ def inscribed(length: float, width: float, c: float, s: float) -> tuple[float, f
     return (length * c - width * s) / cos_2, (width * c - length * s) / cos_2
 
 
-LAY_POINTS, LAY_LENGTH = 5, 60  # points a correlation length, correlation lengths along x
-CUTOFF_POINTS, MAP_ROLL_OFFS = 6, 20  # points of the shortest wave, longest self-affine waves along x
-MAX_MAP_POINTS = 16_000_000  # of a map
-RANDOM = ("ground", "self-affine")  # may have any direction
-
-
 def synthetic_map(spec: Values, direction: float, width: float, is_strip: bool) -> Topography:
     """Map of a synthetic surface.
 
-    A random surface is periodic over the width; all others have their middle at y = 0.
+    A crest, the middle of a bump and the first row of a random map are at y = 0.
 
     `direction`: of the rows of a random surface against x [degrees].
     `width`: of the mesh across [m].
     `is_strip`: whether the contact is periodic over the width.
     """
-    if spec.kind == "self-affine":
-        return _self_affine(spec, direction, width)
-    if spec.kind == "ground" and spec.correlation_across is not None:
-        return _ground(spec, direction, width)
+    if spec.kind == "self-affine" or spec.kind == "ground" and spec.correlation_across is not None:
+        return random_map(spec, direction, width if is_strip else None)
     if direction:
         raise ProfileError(
             f"direction = {direction:g}: of a map in a file or of a random surface; leave it out, or write "
-            "kind = " + " or ".join(f'"{kind}"' for kind in RANDOM)
+            "kind = " + " or ".join(f'"{kind}"' for kind in RANDOM_MAPS)
         )
     if spec.kind == "sine" and spec.wavelength_across is not None:
         return _waves(spec, width, is_strip)
@@ -247,54 +244,3 @@ def _bump(spec: Values, width: float, is_strip: bool) -> Topography:
     distances = np.subtract.outer(Y, images if is_strip else np.zeros(1))
     profile = np.exp(-((2 * distances / across) ** 2)).sum(axis=1)
     return Topography(X, Y, np.multiply.outer(profile, along), "zero", "periodic" if is_strip else "zero")
-
-
-def _self_affine(spec: Values, direction: float, width: float) -> Topography:
-    spectrum = synthetic.Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff, spec.peklenik)
-    finest = np.array([spec.short_cutoff, spec.short_cutoff / spec.peklenik]) / CUTOFF_POINTS
-    shape, steps = _grid(
-        finest, MAP_ROLL_OFFS * spec.roll_off / spec.short_cutoff * CUTOFF_POINTS, direction, width
-    )
-    return _periodic(synthetic.random_heights(shape, steps, spectrum, spec.seed, direction), steps)
-
-
-def _ground(spec: Values, direction: float, width: float) -> Topography:
-    r"""Random map with autocorrelation :math:`\exp[-(\xi/l)^2-(\eta/l_\eta)^2]` before it is skewed.
-
-    Along and across the rows; otherwise as :func:`.synthetic.ground`.
-    """
-    lengths = np.array([spec.correlation, spec.correlation_across])
-    shape, steps = _grid(lengths / LAY_POINTS, LAY_LENGTH * LAY_POINTS, direction, width)
-    along, across = synthetic.turned_wavenumbers(shape, steps, direction)
-    noise = np.fft.rfft2(np.random.default_rng(spec.seed).standard_normal(shape))
-    # the square root of the transform of the autocorrelation
-    noise *= np.exp(-((along * lengths[0]) ** 2 + (across * lengths[1]) ** 2) / 8.0)
-    noise[0, 0] = 0.0
-    z = synthetic.with_skewness(np.fft.irfft2(noise, s=shape), spec.skewness)
-    return _periodic(z * (spec.ra / np.abs(z).mean()), steps)
-
-
-def _grid(
-    finest: np.ndarray, columns: float, direction: float, width: float
-) -> tuple[tuple[int, int], tuple[float, float]]:
-    """Points (ny, nx) and spacings (dy, dx) [m] of a periodic map over a width.
-
-    `finest`: spacings along and across its rows [m].
-    `columns`: along its rows.
-    """
-    turn = np.abs([np.cos(np.radians(direction)), np.sin(np.radians(direction))])
-    dx, dy = finest if turn[1] < 1e-9 else finest[::-1] if turn[0] < 1e-9 else np.full(2, finest.min())
-    length = columns * np.hypot(finest[0] * turn[0], finest[1] * turn[1])
-    shape = max(int(np.ceil(width / dy)), 4), int(np.ceil(length / dx))
-    if shape[0] * shape[1] > MAX_MAP_POINTS:
-        raise ProfileError(
-            f"{shape[1]} x {shape[0]} points; allowed: at most {MAX_MAP_POINTS} in all, so make its shortest "
-            "waves longer, its longest shorter, or mesh.width smaller"
-        )
-    return shape, (width / shape[0], dx)
-
-
-def _periodic(z: np.ndarray, steps: tuple[float, float]) -> Topography:
-    """Map of periodic heights, closed by their first row and column."""
-    Y, X = (step * np.arange(n + 1) for n, step in zip(z.shape, steps, strict=True))
-    return Topography(X, Y, np.pad(z, (0, 1), mode="wrap"), "periodic", "periodic")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.errors import ProfileError
 
 if TYPE_CHECKING:
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
 
 POINTS_PER_WAVE = 64  # per wavelength: a cubic spline through them is exact to 3e-7 of the amplitude
+SKEWED_POINTS = 2001  # of the map of heights to skewed ones
 GROUND_POINTS, GROUND_LENGTH = 10, 1000  # points a correlation length, correlation lengths
 SHORTEST_WAVE_POINTS = 10  # of a self-affine profile, per short_cutoff
 ROLL_OFFS = 200  # length of a self-affine profile, in roll_off
@@ -48,7 +50,7 @@ def self_affine(spec: Values) -> tuple[np.ndarray, np.ndarray]:
     """Random profile with a self-affine spectrum, see :class:`.synthetic.Spectrum`: X, z [m]."""
 
     spacing = spec.short_cutoff / SHORTEST_WAVE_POINTS
-    n = int(min(ROLL_OFFS * spec.roll_off / spacing, MAX_POINTS))
+    n = min(whole_up(ROLL_OFFS * spec.roll_off / spacing), MAX_POINTS)
     spectrum = Spectrum(spec.sq, spec.hurst, spec.roll_off, spec.short_cutoff)
     return spacing * np.arange(n), random_heights((n,), (spacing,), spectrum, spec.seed)
 
@@ -86,11 +88,20 @@ def ground(ra: float, correlation: float, skewness: float, seed: int) -> tuple[n
 
 
 def with_skewness(heights: np.ndarray, skewness: float) -> np.ndarray:
-    """Normal heights mapped by their rank to Pearson III ones with this skewness exactly, of mean 0."""
+    """Normal heights mapped by their rank to Pearson III ones with this skewness exactly, of mean 0.
+
+    The map from height to height is a spline through `SKEWED_POINTS` of its points, exact to 1e-10.
+    """
+    from scipy.interpolate import CubicSpline
     from scipy.optimize import brentq
 
     normal = (heights - heights.mean()) / heights.std()
-    z = _pearson3(normal, brentq(lambda s: _skewness(_pearson3(normal, s)) - skewness, -8.0, 8.0, xtol=1e-10))
+    at = np.linspace(normal.min(), normal.max(), SKEWED_POINTS)
+
+    def skewed(parameter: float) -> np.ndarray:
+        return CubicSpline(at, _pearson3(at, parameter))(normal)
+
+    z = skewed(brentq(lambda parameter: _skewness(skewed(parameter)) - skewness, -8.0, 8.0, xtol=1e-10))
     return z - z.mean()
 
 
@@ -137,15 +148,21 @@ class Spectrum(NamedTuple):
 
 
 def random_heights(
-    shape: Sequence[int], spacing: Sequence[float], spectrum: Spectrum, seed: int, direction: float = 0.0
+    shape: Sequence[int],
+    spacing: Sequence[float],
+    spectrum: Spectrum,
+    seed: int,
+    direction: float = 0.0,
+    rows: float | None = None,
 ) -> np.ndarray:
     """Periodic heights [m] of one realisation, Gaussian, of mean 0 and root mean square `sq` exactly.
 
-    White noise, filtered in Fourier space by the square root of the spectrum.
+    White noise, see :func:`white_noise`, filtered in Fourier space by the square root of the spectrum.
 
     `shape`: points, (nx,) or (ny, nx).
     `spacing`: their distances [m], (dx,) or (dy, dx).
     `direction`: of the stretch against x, towards y [degrees].
+    `rows`: of :func:`white_noise`.
 
     ProfileError where the points resolve no wave of the spectrum: `short_cutoff` below two spacings or
     above the period.
@@ -160,7 +177,7 @@ def random_heights(
         )
     along, *across = turned_wavenumbers(shape, spacing, direction)
     q = np.sqrt(sum(np.square(component / spectrum.peklenik) for component in across) + along**2)
-    noise = np.fft.rfftn(np.random.default_rng(seed).standard_normal(shape))
+    noise = white_noise(shape, seed, rows)
     power = spectrum.density(q, len(shape))
     if across and not direction:
         power *= _same_along(along[0], spectrum, spacing[0] * shape[0])
@@ -168,6 +185,35 @@ def random_heights(
     noise.flat[0] = 0.0
     z = np.fft.irfftn(noise, s=shape, axes=range(len(shape)))
     return z * (spectrum.sq / np.sqrt(np.mean(z**2)))
+
+
+def white_noise(shape: Sequence[int], seed: int, rows: float | None = None) -> np.ndarray:
+    """Real transform of standard normal numbers on a lattice, each a function of seed and place alone.
+
+    Every row of the lattice has its own stream of random numbers, that a longer row continues; the rows are
+    those around y = 0. Where a period holds no whole number of them, the outermost have the weight of their
+    cells' parts within it, so that the transform is continuous in the period.
+
+    `shape`: points of one period, (nx,) or (ny, nx).
+    `rows`: rows of the lattice in the period, at most ny; None: ny.
+    """
+    if len(shape) == 1:
+        return np.fft.rfft(np.random.default_rng(seed).standard_normal(shape))
+    ny, nx = shape
+    row = np.fft.fftfreq(ny, 1.0 / ny)
+    if rows is None:
+        return np.fft.rfft2(_noise_of_rows(row, nx, seed))
+    reach = 0.5 * (rows + 1.0)
+    at = np.arange(1 - np.ceil(reach), np.ceil(reach))
+    weights = np.sqrt(np.minimum(reach - np.abs(at), 1.0))
+    noise = np.fft.rfft(weights[:, np.newaxis] * _noise_of_rows(at, nx, seed))
+    return np.exp(-2j * np.pi / rows * np.multiply.outer(row, at)) @ noise
+
+
+def _noise_of_rows(rows: np.ndarray, columns: int, seed: int) -> np.ndarray:
+    """Standard normal numbers in rows of a lattice, row 0 at y = 0."""
+    streams = np.where(rows < 0, -2 * rows - 1, 2 * rows).astype(int)
+    return np.stack([np.random.default_rng((seed, stream)).standard_normal(columns) for stream in streams])
 
 
 def _same_along(q: np.ndarray, spectrum: Spectrum, period: float) -> np.ndarray:
@@ -182,7 +228,7 @@ def _same_along(q: np.ndarray, spectrum: Spectrum, period: float) -> np.ndarray:
         return np.ones_like(q)
 
     def along(peklenik: float) -> np.ndarray:
-        count = np.ceil(peklenik * period / spectrum.short_cutoff)
+        count = whole_up(peklenik * period / spectrum.short_cutoff)
         across = 2 * np.pi / (peklenik * period) * np.arange(-count, count + 1)
         return spectrum.density(np.hypot.outer(across, q), 2).sum(axis=0)
 

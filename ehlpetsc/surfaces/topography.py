@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE
 from ehlpetsc.surfaces.parameters import areal_parameters, moments, rms_gradient
@@ -146,7 +147,7 @@ class Topography:
         if self.across != "mirrored" or self.is_ridge:
             return self
         extent = float(self.Y[-1] - self.Y[0])
-        part = width / (2 * np.ceil(width / (2 * extent) * (1 - 1e-9)))
+        part = width / (2 * whole_up(width / (2 * extent)))
         begin = np.clip(self.middle - 0.5 * part, self.Y[0], max(self.Y[-1] - part, self.Y[0]))
         Y = np.linspace(begin, begin + part, max(round(part / self.dy), 3) + 1)
         z = np.concatenate([spline(Y) for spline in self._splines_across()], axis=1)

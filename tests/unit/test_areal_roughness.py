@@ -11,6 +11,7 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.surfaces.motion.roughness import Passage, Roughness, RoughSurface
 from ehlpetsc.surfaces.samples import areal_samples
+from ehlpetsc.surfaces.synthetic import white_noise
 from ehlpetsc.surfaces.topography import ContinuedSpline, Topography, cell_faces
 
 A = 100e-6  # half-width, m
@@ -24,9 +25,9 @@ BACKWARD = FORWARD._replace(speed=-2.0)
 ENTERED = 40 * A  # far beyond the ramp
 
 
-def made(is_strip=False, scale=1.0, direction=None, **synthetic):
+def made(is_strip=False, scale=1.0, direction=None, width=WIDTH, **synthetic):
     keys = {"synthetic": synthetic, "scale": scale} | ({"direction": direction} if direction else {})
-    return areal_samples(None, values_of(PROFILE, keys), WIDTH, is_strip)
+    return areal_samples(None, values_of(PROFILE, keys), width, is_strip)
 
 
 def random_map(shape=(41, 61), step=5e-6, **options):
@@ -153,7 +154,7 @@ def test_waves_that_do_not_fit_are_refused_and_those_not_resolved_counted():
     assert ridge.unresolved_variance(7e-6, 1.0) < 1e-3 < 0.999 < ridge.unresolved_variance(8e-6, 1.0)
     with pytest.raises(ProfileError, match="^direction = 30: .*ground.*self-affine"):
         made(kind="sine", amplitude=1e-7, wavelength=30e-6, direction=30.0)
-    with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 16000000 "):
+    with pytest.raises(ProfileError, match="^[0-9]+ x [0-9]+ points; allowed: at most 4000000 "):
         made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=1e-3, short_cutoff=1e-6, seed=1)
 
 
@@ -182,7 +183,8 @@ def test_self_affine_and_ground_surfaces_have_their_heights_stretch_and_period()
     stretched = made(**keys, seed=1, peklenik=4.0).parameters
     assert stretched["Str"] == pytest.approx(0.25, abs=0.06)
     assert made(**keys, seed=1, scale=-2.0).sq == pytest.approx(4e-7, rel=1e-12)
-    surface = made(kind="self-affine", sq=2e-7, hurst=0.8, roll_off=40e-6, short_cutoff=10e-6, seed=1)
+    surface = made(is_strip=True, **keys, seed=1)
+    assert surface.sq == pytest.approx(2e-7, rel=1e-12)
     assert surface.Y[-1] - surface.Y[0] == pytest.approx(WIDTH, rel=1e-12)
     assert surface.across == surface.along == "periodic"
     keys = {"kind": "ground", "ra": 1e-7, "correlation": 10e-6, "correlation_across": 30e-6, "seed": 2}
@@ -193,6 +195,54 @@ def test_self_affine_and_ground_surfaces_have_their_heights_stretch_and_period()
     # exp(-(lag/l)^2) falls to 0.2 at l sqrt(ln 5)
     assert normal["Sal"] == pytest.approx(10e-6 * np.sqrt(np.log(5.0)), rel=0.08)
     assert normal["Str"] == pytest.approx(1.0 / 3.0, abs=0.06)
+
+
+AFFINE = {"kind": "self-affine", "sq": 2e-7, "hurst": 0.8, "roll_off": 40e-6, "short_cutoff": 10e-6}
+GROUND = {"kind": "ground", "ra": 1e-7, "correlation": 30e-6, "correlation_across": 10e-6, "skewness": -1.0}
+RANDOM = [AFFINE, AFFINE | {"peklenik": 0.5, "direction": 30.0}, GROUND]
+
+
+def heights_around_the_middle(surface, half=0.25 * WIDTH):
+    rows = surface.row_means(np.linspace(-half, half, 65)).T
+    return ContinuedSpline(surface.X, rows.T, surface.along)(np.arange(0.0, 8 * A, 2e-6))
+
+
+@pytest.mark.parametrize("keys", RANDOM)
+def test_a_random_surface_of_a_point_is_one_at_any_width(keys):
+    narrow, wide = (made(**keys, seed=1, width=factor * WIDTH) for factor in (1.0, 1.7))
+    np.testing.assert_array_equal(narrow.z, wide.z)
+    assert np.abs(narrow.z - made(**keys, seed=2).z).max() > narrow.sq
+
+
+@pytest.mark.parametrize("keys", RANDOM)
+def test_strips_of_two_widths_have_one_surface_around_their_middle(keys):
+    strip = heights_around_the_middle(made(True, **keys, seed=1))
+    for factor, least in ((1.0 + 1e-6, 0.999999), (1.06, 0.98), (1.7, 0.98)):
+        other = heights_around_the_middle(made(True, **keys, seed=1, width=factor * WIDTH))
+        assert np.corrcoef(strip.ravel(), other.ravel())[0, 1] > least
+    point = heights_around_the_middle(made(**keys, seed=1))
+    assert np.corrcoef(strip.ravel(), point.ravel())[0, 1] > 0.98
+
+
+@pytest.mark.parametrize("keys", RANDOM)
+def test_the_last_digits_of_a_length_do_not_change_a_random_surface(keys):
+    surface = made(True, **keys, seed=1)
+    lengths = {"roll_off", "short_cutoff", "correlation", "correlation_across"} & set(keys)
+    for changes in ({name: keys[name] * (1 + 4e-16)} for name in lengths):
+        other = made(True, **keys | changes, seed=1, width=WIDTH * (1 + 4e-16))
+        assert other.z.shape == surface.z.shape
+        np.testing.assert_allclose(other.z, surface.z, rtol=0, atol=1e-9 * surface.sq)
+
+
+def test_a_longer_period_of_a_surface_extends_a_shorter_one():
+    noise = [np.fft.irfft2(white_noise(shape, 7), shape) for shape in ((20, 30), (31, 44))]
+    rows = np.arange(-10, 10)  # around y = 0
+    np.testing.assert_allclose(noise[0][rows], noise[1][rows, :30], atol=1e-13)
+    part = white_noise((20, 30), 7, 19.0)  # of a period of 19 rows
+    np.testing.assert_allclose(
+        np.fft.irfft(part[0], 30), noise[1][np.arange(-9, 10), :30].sum(axis=0), atol=1e-12
+    )
+    np.testing.assert_allclose(white_noise((20, 30), 7, 19.0 + 1e-9), part, atol=1e-3)
 
 
 @pytest.mark.parametrize(

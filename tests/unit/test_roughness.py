@@ -16,6 +16,7 @@ from ehlpetsc.surfaces.filters import levelled, mean_line, without_form
 from ehlpetsc.surfaces.motion.profile_checks import entry_times, mesh_warnings
 from ehlpetsc.surfaces.motion.roughness import RAMP_LENGTH, Passage, Roughness, RoughSurface, directed_speeds
 from ehlpetsc.surfaces.samples import samples
+from ehlpetsc.surfaces.synthetic import self_affine
 from ehlpetsc.surfaces.topography import Topography
 
 ALICONA = CASES / "profiles" / "alicona_meander_profile.csv"
@@ -261,6 +262,15 @@ def test_self_affine_profile_has_its_height_and_waves():
     falling = (1.0 - 10.0**-1.6) / 1.6  # of the variance, beside 1 of the plateau
     shorter = (0.5 + falling) / (1.0 + falling)  # than twice roll_off
     assert profile.given.unresolved_variance(40e-6) == pytest.approx(shorter, abs=0.03)
+
+
+def test_the_last_digit_of_roll_off_does_not_change_a_self_affine_profile():
+    keys = {"sq": 2e-7, "hurst": 0.8, "short_cutoff": 25e-6, "seed": 3}
+    first, second = (
+        self_affine(SimpleNamespace(**keys, roll_off=roll_off)) for roll_off in (150e-6, 150e-6 * (1 + 4e-16))
+    )
+    assert len(first[0]) == len(second[0]) == 12_000
+    np.testing.assert_allclose(first[1], second[1], rtol=0, atol=1e-18)
 
 
 @pytest.mark.parametrize(

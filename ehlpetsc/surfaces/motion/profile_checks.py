@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_up
 from ehlpetsc.surfaces.topography import WAVE_NODES
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ def _needed_points(profile: RoughSurface, scales: Scales, limit: float) -> int |
     while profile.given.unresolved_variance(*(spacing / factor for spacing in spacings)) > limit:
         factor *= 1.1
     needed = [
-        int(np.ceil(factor * (size if np.isfinite(size) else scales.a) / spacing))
+        whole_up(factor * (size if np.isfinite(size) else scales.a) / spacing)
         for size, spacing in zip(half_widths, spacings, strict=False)
     ]
     return needed[0] if np.ptp(spacings) < 1e-9 * spacings[0] else needed

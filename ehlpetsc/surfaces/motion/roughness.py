@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
+from ehlpetsc.base.counts import whole_down
 from ehlpetsc.surfaces.topography import ContinuedSpline, cell_faces, centre_values
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ class RoughSurface:
     def s(self) -> np.ndarray:
         """Body points [m] that enter during the run, at least two, with the spacing of the columns."""
         length = self._ends[1] - self._ends[0] if self._ends else self.travelled * (1 + 1e-12)
-        X = np.arange(min(max(int(length / self.given.dx) + 1, 2), MAX_SAMPLES)) * self.given.dx
+        X = np.arange(min(max(whole_down(length / self.given.dx) + 1, 2), MAX_SAMPLES)) * self.given.dx
         return self._ends[0] + X if self._ends else np.sort(self._origin + self._sign * X)
 
     @cached_property
