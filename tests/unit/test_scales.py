@@ -1,20 +1,22 @@
 """Hertz scales, speeds and mesh; Hertz' gap, and film formulas against films computed independently."""
 
 import math
+import tomllib
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from support import CASES, published_values
+from support import CASES, one_fault, published_values
 from support.exact_solutions import hertz_gap
 from support.published_values import Film
 
 from ehlpetsc.case import loading as case
+from ehlpetsc.case.keys import template
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.physics.contact import geometry
 from ehlpetsc.physics.contact.geometry import line_groups
-from ehlpetsc.physics.contact.hertz import hertz_line, hertz_pressure
+from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line, hertz_pressure
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.physics.scales import Scales, reduced_modulus
 
@@ -35,6 +37,24 @@ def test_moes_case_has_the_groups_of_its_title_which_fix_the_barus_exponent():
     m, oil = line_groups(0.01, 1.0, alpha, load, radius, modulus, 1.0)
     p0 = modulus * math.sqrt(load / (modulus * radius) / (2 * math.pi))
     assert oil * math.sqrt(m / (2 * math.pi)) == pytest.approx(alpha * p0, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [1e5, 1e9, 1e11])
+def test_ellipse_of_radii_in_any_ratio_that_the_keys_allow(ratio):
+    """Of a slender ellipse K = ln(4/k), E = 1: the ratio of the radii is 1/(k^2 (ln(4/k) - 1))."""
+    along, across = (
+        hertz_ellipse(20.0, 1e-9 * ratio, 1e-9, 2e11),
+        hertz_ellipse(20.0, 1e-9, 1e-9 * ratio, 2e11),
+    )
+    k = along.b / along.a
+    assert 1.0 / (k**2 * (math.log(4.0 / k) - 1.0)) == pytest.approx(ratio, rel=1e-4)
+    assert 2.0 / 3.0 * math.pi * along.p0 * along.a * along.b == pytest.approx(20.0, rel=1e-12)
+    assert across == along._replace(a=along.b, b=along.a)
+
+
+def test_point_with_radii_of_a_ratio_of_a_thousand_million_is_refused_for_its_nodes():
+    tables = tomllib.loads(template("point"))
+    assert "000 in all" in one_fault(case.load, tables, {"contact.radius": [1e-7, 100.0]})
 
 
 @pytest.mark.parametrize(("xi", "u1", "u2"), [(0.25, 5.625, 4.375), (2, 10, 0), (-4, -5, 15), (0, 5, 5)])
