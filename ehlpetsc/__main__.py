@@ -112,11 +112,13 @@ def _start_ranks(words: list[str]) -> int:
         return refuse(f"ehlpetsc: -n {ranks}: allowed: a whole number of ranks, at least 1")
     if any(name in os.environ for name in packages.MPIRUN_VARIABLES):
         return refuse(f"ehlpetsc: -n {ranks} under mpirun, which has started the ranks; leave it out")
-    # a virtual environment that is not activated has its mpirun beside its Python
-    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    path, of_python = os.environ.get("PATH", ""), str(Path(sys.executable).parent)
     if packages.SCRIPT.exists():
+        os.environ["PATH"] = os.pathsep.join([of_python, path])
         os.execv(packages.SCRIPT, [str(packages.SCRIPT), "-n", *words])
-    mpirun = shutil.which("mpirun")
+    if sys.prefix != sys.base_prefix:  # a virtual environment, which need not be activated
+        path = os.pathsep.join([of_python, path])
+    mpirun = shutil.which("mpirun", path=path)
     if mpirun is None:
         return refuse(f"ehlpetsc: -n {ranks}: there is no mpirun on the PATH; install that of mpi4py's MPI")
     os.execv(mpirun, [mpirun, "-n", ranks, sys.executable, "-m", "ehlpetsc", *words[1:]])

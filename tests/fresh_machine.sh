@@ -2,8 +2,9 @@
 # The README's two commands on a Debian that has nothing yet, in a folder that is removed afterwards:
 #   tests/fresh_machine.sh bookworm|trixie             as root: the commands as they are there
 #   tests/fresh_machine.sh bookworm|trixie TESTS ...   the first 100 steps of the case, these tests and those of MPI
-# The release comes by debootstrap from the mirror that this machine's apt uses, the project from its last commit.
-# Its tests wait for a lock on the file FRESH_TURN, where the environment names one.
+# Where its Python suits them, then PETSc and MPICH as wheels of PyPI in a virtual environment, which must print the
+# digits of Debian's. The release comes by debootstrap from the mirror that this machine's apt uses, the project from
+# its last commit. Its tests wait for a lock on the file FRESH_TURN, where the environment names one.
 # Exit status: 0 as the README says, 1 not, 77 cannot be tried here.
 set -eu
 
@@ -31,6 +32,8 @@ if [ "${FRESH_ROOT-}" = "" ]; then # the outer half: what must be undone, whatev
     exit $status
 fi
 root=$FRESH_ROOT
+# what runs by PETSc: starts, Newton's method, its options, contacts in the plane
+of_petsc="tests/unit/test_newton.py tests/verification/test_starts.py"
 
 mirror() {
     local VERSION_CODENAME=""
@@ -57,6 +60,31 @@ expect() { # STATUS USER COMMAND WORDS ...: what it ends with and prints
     for words in "$@"; do
         grep -qE -- "$words" "$root/said" || fail "did not print: $words"
     done
+}
+
+install_wheels() { # in the virtual environment ~/wheels of the guest; whether they are there
+    local python="python3 -c 'import sys; sys.exit(sys.version_info < (3, 12))'"
+    in_root root "$python" || { say "$release: no wheels for its Python"; return 1; }
+    in_root root 'apt-get install -y -qq --no-install-recommends python3-venv' >/dev/null 2>&1 &&
+        in_root guest "python3 -m venv ~/wheels && ~/wheels/bin/pip install -q --retries 1 '.[wheel,test]'" ||
+        { say "$release: PyPI cannot be reached: the wheels are not tried"; return 1; }
+}
+
+try_wheels() { # imports in both orders, one case on one and two ranks, post, two MPIs, tests
+    local run="cd /tmp && ~/wheels/bin/ehlpetsc" case="~/ehlpetsc/${first#*run_mpi.sh }" python="~/wheels/bin/python"
+    local solver="import ehlpetsc; ehlpetsc.Simulation" petsc="from petsc4py import PETSc" mpi="from mpi4py import MPI"
+    local what="print('PETSc', *PETSc.Sys.getVersion(), MPI.Get_library_version())"
+    expect 0 guest "$python -c \"$solver; $petsc; $mpi; $what\"" '^PETSc 3 [0-9 ]+MPICH'
+    expect 0 guest "$python -c \"$mpi; $petsc; $solver; $what\"" '^PETSc 3 [0-9 ]+MPICH'
+    expect 0 guest "$run $case -o one.h5" ' 1 rank;' "$finished"
+    expect 0 guest "$run -n 2 $case -o two.h5" ' 2 ranks;' "$finished"
+    expect 0 guest "$run compare one.h5 two.h5"
+    expect 0 guest "$run post one.h5 --depths 0.1 && ~/wheels/bin/ehlpetsc plot one.h5" 'one.post.h5' '^one.png$'
+    expect 2 guest "PYTHONPATH=/usr/lib/python3/dist-packages; export PYTHONPATH; $run $case -o three.h5" \
+        '^ehlpetsc: petsc4py in .* needs libmpi.so.12, mpi4py in .* uses libmpi.so.40: '
+    expect 0 guest "$python -m pytest -q -p no:cacheprovider $of_petsc" '[0-9]+ passed'
+    expect 0 guest "~/wheels/bin/mpirun -n 2 $python -m pytest -q -p no:cacheprovider tests/mpi/test_ranks.py" \
+        '[0-9]+ passed'
 }
 
 from=$(mirror)
@@ -101,9 +129,16 @@ expect 0 guest "$first" ' 1 rank;' "$finished"
 expect 0 guest './run_mpi.sh --commands ~/.local/bin' 'in /home/guest/.local/bin: ehlpetsc$'
 picture='cd /tmp && PATH=$HOME/.local/bin:$PATH && ehlpetsc plot ~/ehlpetsc/mixed.h5'
 expect 0 guest "$picture" '^/home/guest/ehlpetsc/mixed.png$'
+has_wheels=0
+install_wheels || has_wheels=$?
 [ -z "${FRESH_TURN-}" ] || flock "$FRESH_TURN" true
 began=$SECONDS
 expect 0 root "./run_mpi.sh test $*" '[0-9]+ passed' 'tests on 3 rank'
 ! grep -E '^(FAILED|ERROR)|[0-9]+ failed' "$root/said" || fail "tests failed"
 say "$release: tests in $((SECONDS - began)) s"
+if [ $has_wheels = 0 ]; then
+    began=$SECONDS
+    try_wheels
+    say "$release: wheels in $((SECONDS - began)) s"
+fi
 say "$release: all as the README says"

@@ -25,7 +25,7 @@ def test_a_rounded_whole_number_counts_as_itself(number, rounding):
 def test_ramp_of_a_rough_start_has_the_same_steps_at_any_load_radius_and_speed():
     random, counts = np.random.default_rng(1), set()
     for _ in range(100):
-        load_given, radius, speed = 10.0 ** random.uniform((4.0, -3.0, -1.0), (6.0, -1.0, 1.0))
+        load_given, radius, speed = (10.0 ** random.uniform((4.0, -3.0, -1.0), (6.0, -1.0, 1.0))).tolist()
         given = f"contact.load={load_given!r}", f"contact.radius={radius!r}"
         motion = f"motion.entrainment_speed={speed!r}", "motion.slide_roll_ratio=0", "time.courant=1"
         s = Scales.of(load(CASES / "table1_rough.toml", [*given, *motion, "mesh.points_per_half_width=50"]))

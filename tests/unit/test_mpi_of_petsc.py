@@ -31,6 +31,7 @@ def installed(tmp_path, monkeypatch):
         files |= {"petsc4py/__init__.py": b"", "mpi4py/__init__.py": b""}
         if libraries:
             record = "".join(f"mpich/{name},,\n" for name in libraries).encode()
+            files |= {f"mpich/{name}": b"" for name in libraries}
             files |= {"mpich-5.dist-info/METADATA": b"Name: mpich\n", "mpich-5.dist-info/RECORD": record}
         for name, text in files.items():
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import sys
+import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -60,6 +61,20 @@ def test_notebook_prints_its_stored_outputs(monkeypatch):
         assert kinds == [output["output_type"] for output in cell["outputs"]]
         pictures += kinds.count("display_data")
     assert pictures >= 4
+
+
+def test_first_cell_installs_the_extra_of_binaries_where_the_program_is_missing(monkeypatch, tmp_path):
+    cell = code_cells(json.loads(NOTEBOOK.read_text(encoding="utf-8")))[0]
+    calls = []
+    (tmp_path / "cases").mkdir()
+    monkeypatch.chdir(tmp_path / "cases")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("subprocess.run", lambda words, check: calls.append(words[1:]))
+    assert list(run([cell])) == [[]]
+    assert calls == [["-m", "pip", "install", "--quiet", "..[wheel]"]]
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert any(name.startswith("dolfinx-solver-real") for name in extras["optional-dependencies"]["wheel"])
+    assert Path.cwd() == tmp_path / "cases"
 
 
 def test_notebook_is_small_and_in_the_current_format():

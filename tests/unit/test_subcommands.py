@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from support import CASES, ROOT, is_line_with
@@ -88,9 +89,14 @@ def test_ranks_are_started_by_the_script_of_a_clone(monkeypatch, capsys):
     main(["-n", "2", "a.toml", "-o", "a.h5"])
     assert started[0] == [str(ROOT / "run_mpi.sh"), "-n", "2", "a.toml", "-o", "a.h5"]
     monkeypatch.setattr(environment, "SCRIPT", ROOT / "none")
-    monkeypatch.setattr("shutil.which", lambda name: f"/bin/{name}")
+    words = ["-n", "3", sys.executable, "-m", "ehlpetsc", "a.toml"]
+    monkeypatch.setattr("shutil.which", lambda name, path: f"{path.split(':')[0]}/{name}")
+    monkeypatch.setenv("PATH", "/opt/bin:/bin")
     main(["-n", "3", "a.toml"])
-    assert started[-1] == ["/bin/mpirun", "-n", "3", sys.executable, "-m", "ehlpetsc", "a.toml"]
+    assert started[-1] == ["/opt/bin/mpirun", *words]
+    monkeypatch.setattr("sys.prefix", "/a/virtual/environment")
+    main(["-n", "3", "a.toml"])
+    assert started[-1] == [f"{Path(sys.executable).parent}/mpirun", *words]
     assert main(["-n", "two", "a.toml"]) == 2 and "-n two: allowed: a whole number" in capsys.readouterr().err
     monkeypatch.setenv("PMIX_RANK", "0")
     assert main(["-n", "2", "a.toml"]) == 2 and "leave it out" in capsys.readouterr().err
