@@ -51,8 +51,9 @@ class Key:
     replaced_by
         Keys of the table, or tables (``"[gears]"``), that provide the value of a required key.
     many
-        "": one value; "both": one for both surfaces or a list of one for each, stored as a pair; "two": a
-        list of two; "axes": one, or a list of two, along and across; "list"; "list or matrix", of rows.
+        "": one value; "both": one for both surfaces or a list of one for each, stored as a pair (of a table:
+        that of body 1, or a list of two, {} for none); "two": a list of two; "axes": one, or a list of two,
+        along and across; "list"; "list or matrix", of rows.
     min_items, max_items
         Length of a list, or of a text.
     needs

@@ -87,9 +87,9 @@ def _faulty_places(table: KeyTable, data: Tables, where: str) -> Iterator[str]:
     yield from (f"{where}{name}" for name in data if name not in table.keys)
     for name in table.keys.keys() & data.keys():
         key, value = table.keys[name], data[name]
-        inner = _table_of(key, value)
-        if inner and isinstance(value, dict):
-            yield from _faulty_places(inner, value, f"{where}{name}.")
+        if tables := tables_of(key, value, where + name):
+            for place, inner, one in tables:
+                yield from _faulty_places(inner, one, f"{place}.")
         elif value is not None and not (is_word(key, value) or is_allowed(key, value)):
             yield where + name
 
@@ -98,9 +98,9 @@ def entries(data: Tables, table: KeyTable, where: str) -> Iterator[tuple[Any, An
     """Values in tables: their table or list, their key in it, the key of the case, the place."""
     for name, key in table.keys.items():
         value = data.get(name)
-        inner = _table_of(key, value)
-        if inner and isinstance(value, dict):
-            yield from entries(value, inner, f"{where}{name}.")
+        if tables := tables_of(key, value, where + name):
+            for place, inner, one in tables:
+                yield from entries(one, inner, f"{place}.")
         elif value is not None:
             yield data, name, key, where + name
 
@@ -178,12 +178,17 @@ def _checked(
     place: str, table: KeyTable, key: Key, value: object, data: Tables, scope: _Scope
 ) -> tuple[Any, list[Fault]]:
     """Value of a key of a table and its faults."""
-    inner = _table_of(key, value)
-    if inner and isinstance(value, dict):
+    if tables := tables_of(key, value, place):
+        inner = tables[0][1]
         unmet = [need for need in inner.needs if not _holds(need, scope.root)]
-        result, faults = check(inner, value, f"{place}.", *scope)
         needs = [Fault(place, f"{place}: needs {' and '.join(unmet)}", not scope.is_sound)] if unmet else []
-        return result, needs + faults
+        found = [check(inner, one, f"{at}.", *scope) for at, _, one in tables if one or not key.many]
+        faults = [fault for _, of_one in found for fault in of_one]
+        if key.many:
+            given = iter(result for result, _ in found)
+            of_bodies = [next(given) if one else None for _, _, one in tables]
+            return (*of_bodies, None)[:2] if found else None, needs + faults
+        return found[0][0], needs + faults
     try:
         result = value_of(key, value)
         limit = data.get(key.below) if key.below else None
@@ -206,6 +211,16 @@ def _table_of(key: Key, value: object) -> KeyTable | None:
         kind = value.get("kind")
         return key.variants.get(kind) if isinstance(kind, str) else None
     return key.table
+
+
+def tables_of(key: Key, value: object, place: str) -> list[tuple[str, KeyTable, Tables]]:
+    """Place, declaration and keys of the table that a value is, or of those of both bodies; [] of others."""
+    inner = _table_of(key, value)
+    if inner is None or isinstance(value, dict):
+        return [(place, inner, value)] if inner and isinstance(value, dict) else []
+    both = value if isinstance(value, list | tuple) and key.many == "both" else ()
+    is_pair = len(both) == 2 and all(isinstance(one, dict) for one in both)
+    return [(f"{place}.{i}", inner, one) for i, one in enumerate(both, 1)] if is_pair else []
 
 
 def _holds(need: str, root: Tables) -> bool:

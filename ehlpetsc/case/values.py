@@ -15,7 +15,7 @@ from ehlpetsc.base.toml_file import is_plain
 
 MAX_FLOAT = 1e308
 NAMES = {bool: "true or false", int: "a whole number", float: "a number", str: "text", dict: "a table"}
-PLURALS = {int: "whole numbers", float: "numbers", str: "texts"}
+PLURALS = {int: "whole numbers", float: "numbers", str: "texts", dict: "tables"}
 
 
 class NotAllowed(Exception):

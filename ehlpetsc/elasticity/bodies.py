@@ -22,14 +22,14 @@ def reduced_modulus(youngs_modulus: Sequence[float], poisson_ratio: Sequence[flo
 class Bodies(NamedTuple):
     r"""Elastic bodies 1 and 2.
 
-    `modulus`: E' of both [Pa].
+    `modulus`: E' of both, homogeneous [Pa].
     `shares`: of the compliance :math:`2/E'`, :math:`\frac{E'}2(1-\nu_i^2)/E_i`, of each body.
-    `free_ends`: Poisson's ratio of body 1, a roller whose end faces are free; None: no such ends.
+    `contact`: the table [contact], for the terms of :mod:`.kernels`.
     """
 
     modulus: float
     shares: tuple[float, float]
-    free_ends: float | None = None
+    contact: Contact
 
     @classmethod
     def of(cls, contact: Contact) -> Bodies:
@@ -37,5 +37,4 @@ class Bodies(NamedTuple):
         constants = contact.youngs_modulus, contact.poisson_ratio
         modulus = reduced_modulus(*constants)
         first, second = (0.5 * modulus * (1.0 - nu * nu) / e for e, nu in zip(*constants, strict=True))
-        has_ends = contact.length is not None and contact.free_ends
-        return cls(modulus, (first, second), contact.poisson_ratio[0] if has_ends else None)
+        return cls(modulus, (first, second), contact)

@@ -89,7 +89,7 @@ def periodic_kernel(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
     one_side = free_kernel(near, (IMAGES + 1) * n_y + 1, dx, dy)
     for k in range(-IMAGES, IMAGES + 1):
         kernel[:, :near] += one_side[np.abs(np.arange(n_y) + k * n_y)]
-    kernel[:, :near] += dx * dy * _distant_periods(np.arange(near) * dx, y, period)
+    kernel[:, :near] += dx * dy * distant_periods(np.arange(near) * dx, y, period, IMAGES)
     kernel[:, :near] = 0.5 * (
         kernel[:, :near] + kernel[-np.arange(n_y), :near]
     )  # symmetric to the last digit
@@ -98,11 +98,11 @@ def periodic_kernel(n_x: int, n_y: int, dx: float, dy: float) -> np.ndarray:
     return kernel
 
 
-def _distant_periods(x: np.ndarray, y: np.ndarray, period: float) -> np.ndarray:
-    """Sum of 1/r over the periods beyond `IMAGES`, except for a constant over y; shape (len(y), len(x))."""
+def distant_periods(x: np.ndarray, y: np.ndarray, period: float, images: int) -> np.ndarray:
+    """Sum of 1/r over the periods beyond `images`, except for a constant over y; shape (len(y), len(x))."""
     total = np.zeros((len(y), len(x)))
     for side in (-1.0, 1.0):
-        t = (IMAGES + 0.5) * period + side * y[:, None]
+        t = (images + 0.5) * period + side * y[:, None]
         r = np.hypot(x[None, :], t)
         total += -np.log(t + r) / period + period / 24.0 * (-t / r**3)
     return total

@@ -28,9 +28,10 @@ def image_factor(poisson_ratio: float) -> float:
 
 def free_ends(bodies: Bodies, mesh: Mesh) -> Kernel | None:
     """Images of the pressures by a roller with free end faces."""
-    if bodies.free_ends is None:
+    contact = bodies.contact
+    if contact.length is None or not contact.free_ends:
         return None
-    factor = bodies.shares[0] * image_factor(bodies.free_ends)
+    factor = bodies.shares[0] * image_factor(contact.poisson_ratio[0])
     return Kernel(np.zeros(mesh.shape), factor * images(mesh), np.zeros_like)
 
 

@@ -28,8 +28,9 @@ from ehlpetsc.elasticity.bodies import Bodies
 from ehlpetsc.elasticity.half_space import free_kernel, periodic_kernel
 from ehlpetsc.elasticity.images import free_ends
 from ehlpetsc.elasticity.kernel import Kernel, Mesh
+from ehlpetsc.elasticity.layered import layers
 
-TERMS: tuple[Callable[[Bodies, Mesh], Kernel | None], ...] = (free_ends,)
+TERMS: tuple[Callable[[Bodies, Mesh], Kernel | None], ...] = (layers, free_ends)
 
 
 def kernel_of(bodies: Bodies, mesh: Mesh) -> Kernel:

@@ -17,6 +17,7 @@ from ehlpetsc.case.derived import rating_of
 from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load
 from ehlpetsc.commands.gears import main
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.gears import GearPair, path_of_contact
 from ehlpetsc.gears.faults import faults, notes
 from ehlpetsc.gears.load_sharing import (
@@ -34,7 +35,6 @@ from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.film_formulas import contact_films
 from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.physics.operation import Conditions
-from ehlpetsc.physics.scales import reduced_modulus
 from ehlpetsc.pictures.gears import draw_damage
 from ehlpetsc.post.loads import body_points, passage
 

@@ -13,7 +13,14 @@ from ehlpetsc.elasticity.kernels import kernel_of
 from ehlpetsc.nonlinear.plane.screened_poisson import fitted_term
 
 MESH = Mesh((6, 9), (0.05, 0.03), False, 1e-4)
-STEEL = Bodies(2.2e11, (0.5, 0.5))
+
+
+class Contact:
+    youngs_modulus, poisson_ratio = (2e11, 6e10), (0.3, 0.2)
+    coating = length = None
+
+
+BODIES = Bodies.of(Contact)
 
 
 def test_images_are_the_pressures_mirrored_about_both_end_planes():
@@ -34,32 +41,33 @@ def test_a_term_is_added_to_the_half_spaces(monkeypatch):
         share = bodies.shares[0]
         return Kernel(np.full(mesh.shape, share), share * images(mesh), lambda k: share / k)
 
-    alone = kernel_of(STEEL, MESH)
+    alone = kernel_of(BODIES, MESH)
     assert alone.mirrored is None and alone.softening(np.array([1.0, 7.0])) == pytest.approx(1.0, rel=0)
     monkeypatch.setattr(kernels, "TERMS", (of_first_body, lambda bodies, mesh: None, of_first_body))
-    both = kernel_of(STEEL, MESH)
-    np.testing.assert_allclose(both.direct, alone.direct + 1.0, rtol=1e-15)
-    np.testing.assert_allclose(both.mirrored, images(MESH), rtol=1e-15)
-    assert both.softening(np.array([1.0, 4.0])) == pytest.approx([2.0, 1.25], rel=1e-15)
+    both = kernel_of(BODIES, MESH)
+    np.testing.assert_allclose(both.direct, alone.direct + 2.0 * BODIES.shares[0], rtol=1e-15)
+    np.testing.assert_allclose(both.mirrored, 2.0 * BODIES.shares[0] * images(MESH), rtol=1e-15)
+    assert both.softening(np.array([1.0, 4.0])) == pytest.approx(
+        [1.0 + 2.0 * BODIES.shares[0], 1.0 + 0.5 * BODIES.shares[0]], rel=1e-15
+    )
 
 
 def test_free_ends_are_images_on_the_share_of_the_roller():
-    kernel, alone = kernel_of(STEEL._replace(free_ends=0.3), MESH), kernel_of(STEEL, MESH)
+    class Roller(Contact):
+        length, free_ends = 1e-3, True
+
+    kernel, alone = kernel_of(Bodies.of(Roller), MESH), kernel_of(BODIES, MESH)
     np.testing.assert_array_equal(kernel.direct, alone.direct)
-    np.testing.assert_allclose(kernel.mirrored, 0.5 * 1.39 * images(MESH), rtol=1e-14)
+    np.testing.assert_allclose(kernel.mirrored, 1.39 * BODIES.shares[0] * images(MESH), rtol=1e-14)
     assert kernel.softening(np.array([5.0])) == alone.softening(np.array([5.0]))
 
 
 def test_sparse_form_is_as_compliant_as_short_waves():
-    of_both = fitted_term(0.2, MESH.spacings, kernel_of(STEEL, MESH))
+    of_both = fitted_term(0.2, MESH.spacings, kernel_of(BODIES, MESH))
     of_soft = fitted_term(0.2, MESH.spacings, Kernel(np.zeros(MESH.shape), softening=lambda k: 3.0 + 0.0 * k))
     assert of_soft == pytest.approx((3.0 * of_both[0], of_both[1]), rel=1e-14)
 
 
 def test_shares_of_the_compliance_are_those_of_the_bodies():
-    class Contact:
-        youngs_modulus, poisson_ratio, length = (2e11, 6e10), (0.3, 0.2), None
-
-    bodies = Bodies.of(Contact)
-    assert sum(bodies.shares) == pytest.approx(1.0, rel=1e-15)
-    assert bodies.shares[0] / bodies.shares[1] == pytest.approx(0.91 / 0.96 * 0.3, rel=1e-14)
+    assert sum(BODIES.shares) == pytest.approx(1.0, rel=1e-15)
+    assert BODIES.shares[0] / BODIES.shares[1] == pytest.approx(0.91 / 0.96 * 0.3, rel=1e-14)

@@ -14,8 +14,9 @@ from support.made_results import A, change_case, make_result, with_solids
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.loading import load
 from ehlpetsc.commands import plot
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics.contact.hertz import hertz_line
-from ehlpetsc.physics.scales import Scales, reduced_modulus
+from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case, passing
 from ehlpetsc.pictures.frames import choice as drawing

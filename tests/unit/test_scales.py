@@ -13,12 +13,13 @@ from support.published_values import Film
 
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.keys import template
+from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics import film_formulas
 from ehlpetsc.physics.contact import geometry
 from ehlpetsc.physics.contact.geometry import line_groups
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line, hertz_pressure
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
-from ehlpetsc.physics.scales import Scales, reduced_modulus
+from ehlpetsc.physics.scales import Scales
 
 
 def scales(name, *overrides):

@@ -59,6 +59,17 @@ def _check_profile(contact: Contact) -> None:
         raise Refused(f"{reach}; allowed: {allowed}", "profile")
 
 
+COATING = KeyTable(
+    "contact.coating",
+    "layer bonded to body 1, or a list of two, of bodies 1 and 2, {} for none; `a`, `p0` and film formulas "
+    "are those of the bodies without it",
+    {
+        "thickness": Required("of the layer", "m", 1e-9, 1e-2),
+        "youngs_modulus": Required("of the layer", "Pa", 1e6, 1e14),
+        "poisson_ratio": Required("of the layer", "", 0, 0.5),
+    },
+)
+
 KEYS = {
     "radius": Required(
         "reduced radius, `1/R = 1/R1 + 1/R2`; two, along and across the motion: a point contact",
@@ -130,6 +141,7 @@ KEYS = {
         replaced_by=("material",),
     ),
     "poisson_ratio": Required("Poisson's ratio `nu`", "", 0, 0.5, many="both", replaced_by=("material",)),
+    "coating": replace(COATING.key, many="both"),
     "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.1),
     "model": Key(
         "direct: where `h = 0` the Reynolds equation is dropped; mixed: oil and solids share the load",
