@@ -24,6 +24,7 @@ from ehlpetsc.base.toml_file import (
     read_text,
     settings_of,
 )
+from ehlpetsc.case.assumptions import faults as departures
 from ehlpetsc.case.checking import Fault, check, entries, in_kind, in_si, unsound_tables
 from ehlpetsc.case.conditions import (
     approach_faults,
@@ -223,7 +224,7 @@ def _checked(
 
 
 def contact_faults(case: Case, data: Tables) -> list[Fault]:
-    """Faults of keys and effects that the kind of contact does not have, and of a plane of too many nodes."""
+    """Faults of features that the contact does not have, or that assume what it is not, and of too many nodes."""
     given = [(holder[name], key, place) for holder, name, key, place in entries(data, CASE, "") if key]
     served = {place: key.contacts for value, key, place in given if key.contacts and value != key.default}
     served |= {(e.table.name if e.table else e.name): e.contacts for e in EFFECTS if e.is_in(case)}
@@ -236,6 +237,7 @@ def contact_faults(case: Case, data: Tables) -> list[Fault]:
         for place, of in served.items()
         if case.kind not in of
     ]
+    faults += [Fault(place, text) for place, text in departures(case)]
     return faults + (_size_faults(case) if KINDS[case.kind].is_areal else [])
 
 

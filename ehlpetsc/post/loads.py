@@ -14,6 +14,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from ehlpetsc.base.errors import PostError
 from ehlpetsc.base.materials import fatigue_constants, named_steels
+from ehlpetsc.case.assumptions import COMMANDS, STRESSES, refusal
 from ehlpetsc.case.loading import Case, stored_case
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.scales import Scales
@@ -158,6 +159,8 @@ def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]
     post = loads.case.post
     constants = {name: getattr(post, name) for name in Criteria.__dataclass_fields__}
     criteria = Criteria(**{name: value for name, value in constants.items() if value is not None})
+    if fault := refusal(loads.case, STRESSES, COMMANDS[STRESSES]):
+        raise PostError(fault)
     loads.check(surfaces)
     depths = np.unique(post.depths or DEPTHS).astype(float)
     materials = {

@@ -1,0 +1,96 @@
+"""What each feature assumes of bodies, shape and motion; a case beyond it is refused in one sentence.
+
+The discrete equations hold for any kernel, shape and motion. Features that compute with more - stresses below
+the surface, heat in the bodies, asperities by the modulus of their body - assume more. A feature states here
+what, and a key that departs from it states what it breaks; neither knows the other, so that a new kind of
+body is refused by all features that do not know it from the first day on. Refused is the whole feature: this
+gives up cases in which the departure hardly matters, as of heat below a coating of 10 nm.
+
+What a kind of contact does not have at all is in `contacts` of its keys; what keys need is in `needs`. Scales
+and formulas (`a`, `p0`, expected films, Moes' groups) are not refused: they are those of the case without the
+departure, and messages say so. Held by `tests/unit/test_assumptions.py`, which walks all features over all
+bodies and shapes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+from ehlpetsc.base.case import KINDS, Case
+
+
+def _coated(case: Case) -> str:
+    return "contact.coating" if case.contact.coating else ""
+
+
+def _free_ends(case: Case) -> str:
+    return "contact.free_ends" if case.kind == "roller" and getattr(case.contact, "free_ends", False) else ""
+
+
+def _line(case: Case) -> str:
+    return "" if KINDS[case.kind].is_areal else "no mesh.width"
+
+
+def _reversal(case: Case) -> str:
+    speeds = None if case.conditions is None else case.conditions.entrainment
+    return "" if speeds is None or speeds.min() >= 0.0 else "an entrainment speed that becomes negative"
+
+
+class Departure(NamedTuple):
+    """What in a case departs from an assumption.
+
+    `of`: text of a case, "": nothing. `cure`: advice.
+    """
+
+    of: Callable[[Case], str]
+    cure: str = "leave out one of both"
+
+
+DEPARTURES = {
+    "homogeneous bodies": Departure(_coated),
+    "half-spaces": Departure(_free_ends, "contact.free_ends = false"),
+    "a contact in the plane": Departure(
+        _line, "take a strip of few rows, mesh.width = 0.5 and mesh.points_per_half_width = [50, 8]"
+    ),
+    "one direction of entrainment": Departure(_reversal),
+}
+"""By the assumption."""
+
+
+class Feature(NamedTuple):
+    """A feature: whether a case has it, and what it assumes, keys of `DEPARTURES`."""
+
+    is_in: Callable[[Case], object]
+    assumes: tuple[str, ...]
+
+
+FEATURES = {
+    "contact.coating": Feature(_coated, ("a contact in the plane", "half-spaces")),
+    "contact.yield_pressure": Feature(lambda case: case.contact.yield_pressure, ("homogeneous bodies",)),
+    "contact.asperity_height": Feature(lambda case: case.contact.asperity_height, ("homogeneous bodies",)),
+    "fluid.inlet_film": Feature(
+        lambda case: case.fluid and case.fluid.inlet_film, ("one direction of entrainment",)
+    ),
+    "[heat]": Feature(lambda case: case.heat, ("homogeneous bodies",)),
+    "[life]": Feature(lambda case: case.life, ("homogeneous bodies",)),
+}
+STRESSES = "stresses below the surface"
+COMMANDS = {STRESSES: ("homogeneous bodies",)}
+"""Assumptions of features that no key asks for."""
+
+
+def faults(case: Case) -> Iterator[tuple[str, str]]:
+    """Features of a case that assume what it does not have, with a sentence."""
+    for name, feature in FEATURES.items():
+        if feature.is_in(case) and (text := refusal(case, name, feature.assumes)):
+            yield name, text
+
+
+def refusal(case: Case, name: str, assumes: Iterable[str]) -> str:
+    """Sentence on the first assumption of a feature that a case does not meet; "": it meets all."""
+    for assumed in assumes:
+        departure = DEPARTURES[assumed]
+        if text := departure.of(case):
+            return f"{name}: assumes {assumed}, and this case has {text}; {departure.cure}"
+    return ""

@@ -1,0 +1,115 @@
+"""All features over all bodies, shapes and motions: each combination is allowed or refused in one sentence."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import ehlpetsc
+from ehlpetsc.base.case import KINDS
+from ehlpetsc.case.assumptions import COMMANDS, DEPARTURES, FEATURES, STRESSES, refusal
+from ehlpetsc.case.loading import load
+from ehlpetsc.effects import EFFECTS
+
+LAYER = {"thickness": 2e-6, "youngs_modulus": 1e11, "poisson_ratio": 0.2}
+SHAPES = {
+    "line": ({"radius": 0.01, "load": 2e5}, {}),
+    "strip": ({"radius": 0.01, "load": 2e5}, {"width": 0.5}),
+    "point": ({"radius": [0.01, 0.01], "load": 20.0}, {"width": 3.2}),
+    "roller": ({"radius": 0.01, "load": 200.0, "length": 1e-3}, {}),
+}
+BODIES = {"homogeneous": {}, "coated": {"coating": LAYER}}
+OIL = {"viscosity": 0.02, "law": "barus", "pressure_viscosity": 1.5e-8, "density": "incompressible"}
+MOVING = {"fluid": OIL, "motion": {"entrainment_speed": 1.0, "slide_roll_ratio": 0.1}}
+MIXED = {"contact": {"model": "mixed"}}
+COURSE = {"time": [0.0, 1e-4], "speed_1": [1.0, -1.0], "speed_2": [1.0, -1.0]}
+GIVEN = {  # tables of a feature, and of nothing else
+    "contact.yield_pressure": {"contact": {"model": "mixed", "yield_pressure": 2e9}},
+    "contact.asperity_height": {"contact": {"model": "mixed", "asperity_height": 2e-8}},
+    "fluid.inlet_film": MOVING | {"fluid": OIL | {"inlet_film": 1e-7}},
+    "[heat]": MOVING
+    | {"heat": {"bulk_temperature": 333.0, "conductivity": 0.14, "reference_temperature": 333.0}},
+    "[life]": MOVING | MIXED | {"time": {"travel": 1.0}, "life": {}},
+    "tilt": {"contact": {"tilt": 1e-4}},
+    "approach": {"contact": {"approach": 1e-6, "load": None}},
+    "oil": MOVING,
+    "rough": {"surface": {"1": {"synthetic": {"kind": "random", "sq": 1e-8, "correlation": 2e-5}}}},
+}
+NOT_COATED = {"contact.yield_pressure", "contact.asperity_height", "[heat]", "[life]"}
+
+
+def tables(shape, body, feature):
+    contact, mesh = SHAPES[shape]
+    case = {
+        "title": "walk",
+        "contact": {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3} | contact | BODIES[body],
+        "mesh": {"points_per_half_width": 8, "inlet": -1.6, "outlet": 1.6} | mesh,
+    }
+    for name, given in GIVEN.get(feature, {}).items():
+        case[name] = case.get(name, {}) | given
+    case["contact"] = {key: value for key, value in case["contact"].items() if value is not None}
+    return case
+
+
+def faults(case):
+    try:
+        load(case)
+    except ehlpetsc.CaseError as error:
+        return error.args[0] if isinstance(error.args[0], list) else str(error).splitlines()
+    return []
+
+
+@pytest.mark.parametrize("feature", [name for name in GIVEN])
+def test_features_of_coated_bodies_are_refused_where_they_assume_homogeneous_ones(feature):
+    for shape in SHAPES:
+        bare, coated = (faults(tables(shape, body, feature)) for body in BODIES)
+        added = [line for line in coated if line not in bare]
+        names_both = [line for line in added if feature in line and "contact.coating" in line]
+        assert len(names_both) == (feature in NOT_COATED), (shape, coated)
+        of_shape = {"line": 1, "roller": 1}.get(shape, 0)
+        assert len(added) == of_shape + len(names_both), (shape, added)
+
+
+def test_a_coated_line_is_told_of_strips_and_a_coated_roller_of_its_ends():
+    (line,), (roller,) = (faults(tables(shape, "coated", "")) for shape in ("line", "roller"))
+    assert "take a strip of few rows, mesh.width = 0.5" in line
+    assert "contact.free_ends = false" in roller
+    case = tables("roller", "coated", "")
+    case["contact"]["free_ends"] = False
+    assert faults(case) == []
+
+
+def test_oil_of_an_inlet_needs_one_direction_of_entrainment():
+    case = tables("line", "homogeneous", "fluid.inlet_film") | {"operation": COURSE}
+    case["contact"] = {key: value for key, value in case["contact"].items() if key not in ("radius", "load")}
+    case["operation"] = COURSE | {"radius": 0.01, "load": 2e5}
+    (fault,) = faults({key: value for key, value in case.items() if key != "motion"})
+    assert "fluid.inlet_film" in fault and "becomes negative" in fault
+
+
+def test_every_effect_and_assumption_has_its_line():
+    tables = {f"[{effect.table.name}]" for effect in EFFECTS if effect.table}
+    assert tables - FEATURES.keys() == {"[wear]"}  # by pressure and sliding alone
+    used = {assumed for feature in FEATURES.values() for assumed in feature.assumes}
+    assert used | set(itertools.chain(*COMMANDS.values())) == DEPARTURES.keys()
+    assert SHAPES.keys() == KINDS.keys()
+
+
+def test_stresses_below_a_coating_are_refused():
+    assert refusal(load(tables("point", "homogeneous", "")), STRESSES, COMMANDS[STRESSES]) == ""
+    text = refusal(load(tables("point", "coated", "")), STRESSES, COMMANDS[STRESSES])
+    assert text.startswith(
+        "stresses below the surface: assumes homogeneous bodies, and this case has contact"
+    )
+
+
+@pytest.mark.parametrize("shape", ("strip", "point"))
+@pytest.mark.parametrize("feature", ("", "tilt", "approach", "oil"))
+def test_allowed_features_of_coated_bodies_run(shape, feature):
+    case = tables(shape, "coated", feature)
+    if faults(case):
+        pytest.fail("refused") if feature in ("", "oil") else None
+        return
+    with ehlpetsc.solve(load(case), options={}) as result:
+        assert np.isfinite(result.pressure[-1]).all() and np.isfinite(result.film_thickness[-1]).all()
+        assert abs(result.steps("load_error")).max() < 1e-6
