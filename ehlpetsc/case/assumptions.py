@@ -25,7 +25,8 @@ def _coated(case: Case) -> str:
 
 
 def _free_ends(case: Case) -> str:
-    return "contact.free_ends" if case.kind == "roller" and getattr(case.contact, "free_ends", False) else ""
+    has_ends = case.contact.length is not None and case.contact.free_ends
+    return "free end faces of its roller" if has_ends else ""
 
 
 def _line(case: Case) -> str:

@@ -224,7 +224,7 @@ def _checked(
 
 
 def contact_faults(case: Case, data: Tables) -> list[Fault]:
-    """Faults of features that the contact does not have, or that assume what it is not, and of too many nodes."""
+    """Faults of features that the contact lacks, or that assume what it is not, and of a plane too large."""
     given = [(holder[name], key, place) for holder, name, key, place in entries(data, CASE, "") if key]
     served = {place: key.contacts for value, key, place in given if key.contacts and value != key.default}
     served |= {(e.table.name if e.table else e.name): e.contacts for e in EFFECTS if e.is_in(case)}

@@ -37,6 +37,7 @@ MIXED = {
 REVERSED = {"mesh.inlet": -2.0, "mesh.outlet": 2.0, "motion": None, "operation.time": [0.0, 1e-1]}
 REVERSED |= {"operation.load": [1.5, 1.9], "operation.speed_1": [-0.05] * 2, "operation.speed_2": [-0.03] * 2}
 APPROACH = {"contact.load": None, "contact.approach": 2e-6}
+COATED = {"contact.coating": {"thickness": 2e-6, "youngs_modulus": 1e11, "poisson_ratio": 0.2}}
 TIGHT = {"snes_atol": "1e-10"}
 CASES = {
     "point": (lambda: load(point(50.0, 5.0, 10)), 1),
@@ -45,6 +46,7 @@ CASES = {
         1,
     ),
     "point at an approach": (lambda: load(point(50.0, 5.0, 8, APPROACH), MIXED), 2),
+    "coated point": (lambda: load(point(50.0, 5.0, 8), COATED), 1),
     "rough point": (lambda: load(point(50.0, 5.0, 8), MIXED), 1),
     "rough point, reversed": (lambda: load(point(50.0, 5.0, 8), MIXED | REVERSED), 1),
     "strip": (lambda: load(CASE, STRIP), 12),

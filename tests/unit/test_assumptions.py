@@ -1,4 +1,4 @@
-"""All features over all bodies, shapes and motions: each combination is allowed or refused in one sentence."""
+"""All features over all bodies, shapes and motions: each combination is allowed, or refused in a sentence."""
 
 import itertools
 
@@ -33,7 +33,7 @@ GIVEN = {  # tables of a feature, and of nothing else
     "tilt": {"contact": {"tilt": 1e-4}},
     "approach": {"contact": {"approach": 1e-6, "load": None}},
     "oil": MOVING,
-    "rough": {"surface": {"1": {"synthetic": {"kind": "random", "sq": 1e-8, "correlation": 2e-5}}}},
+    "rough": {"surface": {"1": {"synthetic": {"kind": "sine", "amplitude": 1e-8, "wavelength": 2e-4}}}},
 }
 NOT_COATED = {"contact.yield_pressure", "contact.asperity_height", "[heat]", "[life]"}
 
@@ -63,11 +63,11 @@ def faults(case):
 def test_features_of_coated_bodies_are_refused_where_they_assume_homogeneous_ones(feature):
     for shape in SHAPES:
         bare, coated = (faults(tables(shape, body, feature)) for body in BODIES)
-        added = [line for line in coated if line not in bare]
-        names_both = [line for line in added if feature in line and "contact.coating" in line]
+        if bare:  # of another kind of contact
+            continue
+        names_both = [line for line in coated if feature in line and "contact.coating" in line]
         assert len(names_both) == (feature in NOT_COATED), (shape, coated)
-        of_shape = {"line": 1, "roller": 1}.get(shape, 0)
-        assert len(added) == of_shape + len(names_both), (shape, added)
+        assert len(coated) == (shape in ("line", "roller")) + len(names_both), (shape, coated)
 
 
 def test_a_coated_line_is_told_of_strips_and_a_coated_roller_of_its_ends():
@@ -80,9 +80,11 @@ def test_a_coated_line_is_told_of_strips_and_a_coated_roller_of_its_ends():
 
 
 def test_oil_of_an_inlet_needs_one_direction_of_entrainment():
-    case = tables("line", "homogeneous", "fluid.inlet_film") | {"operation": COURSE}
-    case["contact"] = {key: value for key, value in case["contact"].items() if key not in ("radius", "load")}
-    case["operation"] = COURSE | {"radius": 0.01, "load": 2e5}
+    case = tables("line", "homogeneous", "fluid.inlet_film")
+    contact = {key: value for key, value in case["contact"].items() if key not in ("radius", "load")}
+    operation = COURSE | {"radius": [0.01, 0.01], "load": [2e5, 2e5]}
+    case |= {"contact": contact, "operation": operation, "time": {"courant": 0.5}}
+    case["mesh"] = {"points_per_half_width": 8, "inlet": -2.0, "outlet": 2.0}
     (fault,) = faults({key: value for key, value in case.items() if key != "motion"})
     assert "fluid.inlet_film" in fault and "becomes negative" in fault
 

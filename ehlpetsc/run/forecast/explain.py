@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -68,7 +69,16 @@ def _dry(case: Case, s: Scales) -> list[str]:
         load = f"approach {1e6 * approach:g} um, dry {load}"
     load, pressure = f"{load}, reduced modulus {s.E / 1e9:.4f} GPa", f"p0 = {s.p0 / 1e9:.6f} GPa"
     shape, widths, more = KINDS[case.kind].part("forecast").shape(s)
-    return [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}", *more]
+    lines = [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}", *more]
+    return [*lines, *_coatings(case.contact)]
+
+
+def _coatings(contact: Contact) -> Iterator[str]:
+    """Coating of each body, and what does not know it."""
+    for number, coating in enumerate(contact.coating or (), 1):
+        if coating is not None:
+            layer = f"{1e6 * coating.thickness:.4g} um, {1e-9 * coating.youngs_modulus:.4g} GPa"
+            yield f"Coating of body {number}: {layer}; Hertz and film formulas are of the bodies without it"
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:
