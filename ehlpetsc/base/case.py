@@ -27,6 +27,8 @@ class Kind(NamedTuple):
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
     `sweeps`: solver by the paper's sweeps; "": none.
+
+    `has_ends`: whether the contact ends along its length, as of a roller.
     """
 
     is_whole: bool
@@ -37,6 +39,7 @@ class Kind(NamedTuple):
     system: str
     linear_solver: str
     sweeps: str = ""
+    has_ends: bool = False
 
     @property
     def mean_height(self) -> str:
@@ -79,6 +82,7 @@ KINDS["roller"] = KINDS["point"]._replace(
     radii=" in a roller, of one radius and a length",
     geometry="physics.contact.roller:ROLLER",
     forecast="run.forecast.kinds:ROLLER",
+    has_ends=True,
 )
 """Kinds of contact by name, :attr:`Case.kind`."""
 

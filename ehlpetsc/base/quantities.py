@@ -34,6 +34,8 @@ SCENES: dict[str, Callable[[Any], bool]] = {
     "mixed": lambda case: case.contact.has_contact_pressure,
     "compliant": lambda case: case.contact.asperity_height is not None,
     "tilted": lambda case: case.contact.tilt is not None or case.contact.self_aligning,
+    "roller": lambda case: KINDS[case.kind].has_ends,
+    "roller in oil": lambda case: SCENES["roller"](case) and case.fluid is not None,
     "variable": lambda case: case.conditions is not None,
     "mixed row": lambda case: SCENES["mixed"](case) and not KINDS[case.kind].is_whole,
     "mixed point": lambda case: SCENES["mixed"](case) and KINDS[case.kind].is_whole,
@@ -62,6 +64,7 @@ AtEnd = partial(StepScalar, over_run="last", summary=".4g")
 Compared = partial(StepScalar, compared=True)
 Integral = partial(StepScalar, integrated=True, compared=True)
 Condition = partial(StepScalar, only="variable")
+OfRoller = partial(StepScalar, only="roller", over_run="last", compared=True)
 
 
 def _extents(noun: str, contact: str) -> dict[str, StepScalar]:
@@ -148,6 +151,49 @@ STEP_SCALARS = {
         "slope of the gap across",
         only="tilted",
         of=lambda o: o.problem.balance.tilt(o.state.solution.unknowns.border),
+    ),
+    "edge_factor": OfRoller(
+        "1", "maximum pressure over p0 of the mean load", summary=".4g", of=lambda o: o.roller.edge_factor
+    ),
+    "edge_factor_local": OfRoller(
+        "1",
+        "maximum pressure over Hertz' of the load per length of its row",
+        of=lambda o: o.roller.local_edge_factor,
+    ),
+    "edge_factor_inside": OfRoller(
+        "1",
+        "maximum pressure over p0 at least a half-width a inside the ends",
+        of=lambda o: o.roller.edge_factor_inside,
+    ),
+    "load_per_length_middle": OfRoller("N/m", "load per length in the middle", of=lambda o: o.roller.middle),
+    "load_per_length_end_1": OfRoller(
+        "N/m", "load per length of the first row, at the lower end", of=lambda o: o.roller.ends[0]
+    ),
+    "load_per_length_end_2": OfRoller(
+        "N/m", "load per length of the last row, at the upper end", of=lambda o: o.roller.ends[1]
+    ),
+    "load_per_length_max": OfRoller("N/m", "largest load per length", of=lambda o: o.roller.w.max()),
+    "load_per_length_max_at": OfRoller(
+        "m", "y of the largest load per length", of=lambda o: o.roller.highest_at
+    ),
+    "moment": OfRoller("N m", "moment of the pressure about y = 0", of=lambda o: o.roller.moment),
+    "moment_lamina": OfRoller(
+        "N m", "the same by the lamina model of ISO/TS 16281", of=lambda o: o.roller.lamina_moment
+    ),
+    "film_of_ends": OfRoller(
+        "1",
+        "minimum film of the outer halves of the roller over that in its middle",
+        only="roller in oil",
+        of=lambda o: o.roller.film_of_ends,
+    ),
+    "life_factor": OfRoller(
+        "1",
+        "life of the line over that with the load even, (mean w^4.5)^(-8/9)",
+        summary=".4g",
+        of=lambda o: o.roller.life_factor,
+    ),
+    "life_factor_lamina": OfRoller(
+        "1", "the same by the lamina model of ISO/TS 16281", of=lambda o: o.roller.lamina_life_factor
     ),
     "friction": Integral("N", "friction force on surface 2", of=lambda o: o.friction_2),
     "friction_1": Integral("N", "friction force on surface 1, in +x", of=lambda o: o.friction_1),

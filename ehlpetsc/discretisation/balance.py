@@ -57,6 +57,10 @@ class Load:
         """Undeformed separation h00 [m]."""
         return border[0] * self.scales.h
 
+    def tilt(self, border: np.ndarray) -> float:
+        """Slope of the gap across."""
+        return 0.0
+
     def forces(self, pressure: np.ndarray, nodes: slice = slice(None)) -> np.ndarray:
         """Work of the pressures at nodes of the mesh on the gap of a unit of each unknown: the load."""
         return np.array([self.scales.grid.cell * pressure.sum()])
@@ -134,7 +138,7 @@ class Tilt(Load):
         return border[0] + border[1] * self.y[nodes]
 
     def tilt(self, border: np.ndarray) -> float:
-        """Slope of the gap across."""
+        """See :class:`Load`."""
         return border[1] * self.unit
 
     def forces(self, pressure: np.ndarray, nodes: slice = slice(None)) -> np.ndarray:

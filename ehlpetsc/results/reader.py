@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from xarray import Dataset, Variable
 
     from ehlpetsc.case.loading import Case
+    from ehlpetsc.physics.contact.roller_loads import RollerLoads
 
 FORMAT_VERSION = 1  # of the layout
 
@@ -204,6 +205,26 @@ class Result:
     def frame(self, name: str, index: int) -> np.ndarray:
         """Field `name` of one stored frame as float64; negative indices count from the end."""
         return self[name][range(len(self.time))[index]].astype(float)
+
+    def roller(self, frame: int = -1) -> RollerLoads:
+        """Loads along a roller in a stored frame; an OutputError for another contact."""
+        from ehlpetsc.base.case import KINDS
+        from ehlpetsc.physics.contact.roller_loads import RollerLoads
+        from ehlpetsc.physics.scales import Scales
+
+        if not KINDS[self.case.kind].has_ends or self.y is None:
+            raise OutputError(f"{self.path}: no load along a roller, as this is a {self.attrs['kind']}")
+        step = int(np.searchsorted(self.steps("step"), self.step[frame]))
+        radius, tilt = (
+            self.steps(name)[step] if name in self.scalars else None for name in ("radius", "tilt")
+        )
+        fields = self.frame("pressure", frame), self.frame("film_thickness", frame)
+        return RollerLoads.of(Scales.of(self.case), radius or self.case.contact.radius, tilt or 0.0, *fields)
+
+    def load_per_length(self, y: float | np.ndarray | None = None, frame: int = -1) -> np.ndarray:
+        """Load per length of a roller [N/m] at y [m], linear between the rows; None: of all rows."""
+        loads = self.roller(frame)
+        return loads.w if y is None else np.interp(y, loads.y, loads.w)
 
     def section(self, y: float = 0.0) -> Result:
         """Row of a plane nearest to y [m], as the result of a line contact; an OutputError in a line contact.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from mpi4py import MPI
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import ExitStatus, NotConverged, OutputError, OutputLost, Stopped
 from ehlpetsc.run.recorder import Output, Progress, Recorder, summary_line
 
@@ -144,6 +145,9 @@ class Run(Output):
             print(f"ehlpetsc: not converged: {failure}{saved}", file=self.err, flush=True)
         elif status is ExitStatus.STOPPED:
             self._print(f"ehlpetsc: {place_of_stop(self.simulation, recorder)}")
+        if self.simulation.state is not None:
+            case, scalars = self.simulation.case, self.simulation.state.scalars
+            self._print(*KINDS[case.kind].part("forecast").found(scalars))
         self._print(*(f"limit: {line}" for line in recorder.limits), *(f"note: {n}" for n in self._notes))
         self._print_unused()
         if state is not None:

@@ -1,8 +1,11 @@
 """Fields in SI units and scalars of an accepted time level."""
 
+from __future__ import annotations
+
 import time as clock
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +20,9 @@ from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import shear_stresses
 from ehlpetsc.stepping.state import State
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.contact.roller_loads import RollerLoads
 
 MIN_BALANCE_FILM = 1e-10  # m, size of an atom: smallest reference film of the mass error
 
@@ -75,6 +81,15 @@ class Observation:
     def approach(self) -> float:
         """Rigid-body approach from the first touch of the undeformed smooth bodies, -h00 [m]."""
         return -self.problem.balance.separation(self.state.solution.unknowns.border)
+
+    @cached_property
+    def roller(self) -> RollerLoads:
+        """Loads along a roller."""
+        from ehlpetsc.physics.contact.roller_loads import RollerLoads
+
+        tilt = self.problem.balance.tilt(self.state.solution.unknowns.border)
+        fields = self.fields["pressure"], self.fields["film_thickness"]
+        return RollerLoads.of(self.scene.scales, self.conditions.radius, tilt, *fields)
 
     @cached_property
     def mean_film(self) -> float:

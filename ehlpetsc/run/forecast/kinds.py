@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from ehlpetsc.base.counts import whole_up
 from ehlpetsc.case.tables import Case
@@ -29,6 +29,7 @@ MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
 MAX_OUTSIDE, PROPOSED_OUTSIDE = 0.05, 0.02  # of the load of a point contact, outside the mesh
 MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
+MIN_END_LOAD = 0.05  # of the largest load per length: the oil beside a contact carries less
 OUTLET_ROOM, PROPOSED_OUTLET = 1.2, 1.5  # over the widest half-width of a roller
 
 
@@ -39,6 +40,7 @@ class Forecast(NamedTuple):
     `formulas`: of the films that are expected.
     `near`, `rolling`: warnings of load, film and rolling friction outside the mesh, in oil.
     `ends`: warnings of the ends of the contact across.
+    `found`: lines at the end of a run, from the scalars of its last step.
     """
 
     shape: Callable[[Scales], tuple[str, str, list[str]]]
@@ -46,6 +48,7 @@ class Forecast(NamedTuple):
     near: Callable[[Case, Scales], list[str]]
     rolling: Callable[[Case, Scales], list[str]]
     ends: Callable[[Case, Scales], list[str]]
+    found: Callable[[dict[str, Any]], list[str]]
 
 
 def _line_shape(s: Scales) -> tuple[str, str, list[str]]:
@@ -101,6 +104,38 @@ def _roller_ends(case: Case, scales: Scales) -> list[str]:
             f"{1e6 * scales.b / rows:.3g} um"
         )
     return notes
+
+
+def _nothing(scalars: dict[str, Any]) -> list[str]:
+    return []
+
+
+def _along_roller(scalars: dict[str, Any]) -> list[str]:
+    """Load, pressure, moment, film and life along a roller."""
+    w = {name: 1e-3 * scalars[f"load_per_length_{name}"] for name in ("middle", "end_1", "end_2", "max")}
+    reaches = max(w["end_1"], w["end_2"]) > MIN_END_LOAD * w["max"]
+    lines = [
+        f"load per length {w['middle']:.4g} N/mm in the middle, {w['end_1']:.3g} and {w['end_2']:.3g} N/mm "
+        f"at the ends, largest {w['max']:.4g} N/mm at y = {1e3 * scalars['load_per_length_max_at']:.3g} mm",
+        f"maximum pressure {scalars['edge_factor']:.4g} p0, {scalars['edge_factor_local']:.4g} of Hertz' "
+        "under the load of its row",
+    ]
+    if reaches:
+        inside = scalars["edge_factor_inside"]
+        lines.append(f"it reaches an end, where pressure follows the mesh; a inside, at most {inside:.4g} p0")
+    if tilt := scalars.get("tilt"):
+        moment, of_lamina = scalars["moment"], scalars["moment_lamina"]
+        lines.append(
+            f"moment {moment:.4g} N m, by the lamina model {of_lamina:.4g} N m; tilt {1e3 * tilt:.4g} mrad, "
+            f"stiffness {abs(moment / tilt):.4g} N m/rad"
+        )
+    if "film_of_ends" in scalars:
+        lines.append(f"minimum film of the ends {scalars['film_of_ends']:.3g} of that in the middle")
+    lines.append(
+        f"life {scalars['life_factor']:.3g} of that under an even load, by the lamina model "
+        f"{scalars['life_factor_lamina']:.3g}"
+    )
+    return [f"roller: {line}" for line in lines]
 
 
 def _roller_near(case: Case, scales: Scales) -> list[str]:
@@ -183,7 +218,7 @@ def _point_rolling(case: Case, scales: Scales) -> list[str]:
     ]
 
 
-LINE = Forecast(_line_shape, "Moes", _near_inlet, _line_rolling, _no_ends)
+LINE = Forecast(_line_shape, "Moes", _near_inlet, _line_rolling, _no_ends, _nothing)
 STRIP = LINE._replace(shape=_strip_shape)
 POINT = Forecast(
     _point_shape,
@@ -191,5 +226,6 @@ POINT = Forecast(
     _near_edges,
     _point_rolling,
     _no_ends,
+    _nothing,
 )
-ROLLER = LINE._replace(shape=_roller_shape, near=_roller_near, ends=_roller_ends)
+ROLLER = LINE._replace(shape=_roller_shape, near=_roller_near, ends=_roller_ends, found=_along_roller)
