@@ -54,21 +54,6 @@ class CommandParser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}; {self.prog} -h lists the options\n" if first_rank() else None)
 
 
-def put(text: str, chosen: argparse.Namespace) -> None:
-    """Print a text on the first rank, or write it to the file of ``-o``."""
-    if not first_rank():
-        return
-    if chosen.output is None:
-        print(text, end="" if text.endswith("\n") else "\n")
-        return
-    try:
-        with open(chosen.output, "w" if chosen.overwrite else "x") as file:
-            file.write(text)
-        print(chosen.output)
-    except FileExistsError:
-        raise OutputError(f"{chosen.output}: exists; give another -o, or --overwrite to replace it") from None
-
-
 def exit_status(
     name: str,
     action: Callable[[], int | None],

@@ -5,10 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ehlpetsc.base.command_line import CommandParser, ProgressLine, exit_status, put
+from ehlpetsc.base.command_line import CommandParser, ProgressLine, exit_status
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.output_guard import inputs_of, put
 from ehlpetsc.run.forecast.domain import refusals
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.surfaces.motion.roughness import Roughness
@@ -33,6 +34,6 @@ def _explain(chosen: argparse.Namespace) -> None:
     progress.reach(2.0)
     text = explain(case, rough)
     progress.clear()
-    put(text, chosen)
+    put(text, chosen, inputs_of(case))
     if faults := refusals(case, Scales.of(case)):
         raise CaseError(faults)

@@ -16,15 +16,15 @@ from functools import partial
 from pathlib import Path
 
 from ehlpetsc.analysis.gear_run import GearRun, lines, panels
-from ehlpetsc.base.command_line import CommandParser, exit_status, put
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
 from ehlpetsc.case.derived import modulus_of, rating_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.gears.path import path_of_contact
 from ehlpetsc.gears.standards import bulk_temperatures
-from ehlpetsc.gears.table import crowned, csv, rows
+from ehlpetsc.gears.table import HEADING, crowned, csv, rows
 from ehlpetsc.results.index import files_of
-from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived
+from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived, check_table, inputs_of, put
 from ehlpetsc.results.reader import read_result
 
 MAX_RUNS = 6
@@ -59,14 +59,15 @@ def run(chosen: argparse.Namespace) -> None:
     if case.gears is None:
         raise CaseError([f"{file}: no [gears] table; allowed: a case with one"])
     if chosen.crowned:
-        return put(crowned(case, modulus_of(case), *chosen.crowned), chosen)
+        return put(crowned(case, modulus_of(case), *chosen.crowned), chosen, inputs_of(case))
     path, modulus, rating = path_of_contact(case.gears.pair), modulus_of(case), rating_of(case, file.parent)
     target = _picture(chosen, "path")
     if chosen.csv is not None:
-        check_derived(Path(chosen.csv), [file], (".csv", ".txt"), "--csv")
+        check_derived(Path(chosen.csv), inputs_of(case), (".csv", ".txt"), "--csv")
+        check_table(Path(chosen.csv), HEADING, chosen.overwrite, "--csv")
     print("\n".join(rows(path, modulus, rating)))
     if chosen.csv is not None:
-        atomic_write(chosen.csv, csv(path).encode())
+        atomic_write(Path(chosen.csv), csv(path).encode())
         print(chosen.csv)
     if target:
         from ehlpetsc.pictures.gears import draw

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from ehlpetsc.base.command_line import CommandParser, exit_status, put
+from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.case.keys import EXAMPLES, keys
 from ehlpetsc.case.keys import template as example
+from ehlpetsc.results.output_guard import put
 
 
 def main(words: list[str]) -> int:

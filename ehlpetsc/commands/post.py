@@ -19,7 +19,7 @@ from ehlpetsc.post.criteria import CRITERIA
 from ehlpetsc.post.level import standard_line
 from ehlpetsc.post.run import Job, run
 from ehlpetsc.results.index import files_of
-from ehlpetsc.results.output_guard import check_output_path
+from ehlpetsc.results.output_guard import check_new, check_output_path
 from ehlpetsc.results.post_result import UPPER_FIRST, PostResult, post_path
 
 DESCRIPTION = (
@@ -120,8 +120,7 @@ def _check_output(output: Path, inputs: Sequence[str], overwrite: bool) -> None:
     check_output_path(output, map(Path, inputs), "-o")
     if not output.parent.is_dir():
         raise OutputError(f"the folder of the output {output} does not exist")
-    if output.exists() and not overwrite:
-        raise OutputError(f"{output}: exists; give another -o, or --overwrite to replace it")
+    check_new(output, overwrite)
 
 
 def _summary(output: str, wall: float) -> None:

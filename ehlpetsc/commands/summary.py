@@ -23,7 +23,7 @@ from ehlpetsc.analysis.summary import ensemble_table, frame_table, steps_table, 
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.results.index import in_order, open_all
-from ehlpetsc.results.output_guard import atomic_write, check_derived
+from ehlpetsc.results.output_guard import atomic_write, check_derived, check_table, inputs_of_result
 from ehlpetsc.results.reader import Result
 
 
@@ -49,8 +49,9 @@ def _put_table(chosen: argparse.Namespace) -> None:
         if not chosen.output:
             print(text.getvalue(), end="")
             return
-        read = [*map(Path, chosen.results), *(result.path for result in results)]
-        check_derived(chosen.output, read, (".csv",))
+        read = [file for result in results for file in inputs_of_result(result.path, result.attrs["case"])]
+        check_derived(chosen.output, [*map(Path, chosen.results), *read], (".csv",))
+        check_table(chosen.output, text.getvalue().partition("\n")[0], chosen.overwrite)
         atomic_write(chosen.output, text.getvalue().encode())
         print(chosen.output)
 

@@ -18,14 +18,14 @@ import numpy as np
 
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.base.errors import CaseError, OutputError, ProfileError
+from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.base.toml_file import parsed, put
 from ehlpetsc.case.checking import check, in_si
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.surface import csv, draw_map, draw_profile, rows, spectra
 from ehlpetsc.results.exports import WRITERS, GridField
-from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, PICTURES, atomic_write, check_derived
+from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived, check_new, check_table
 from ehlpetsc.surfaces.motion.profile_checks import doubts
 from ehlpetsc.surfaces.parameters import MIN_PARAMETER_POINTS, equally_spaced, profile_parameters
 from ehlpetsc.surfaces.samples import measured_samples
@@ -57,6 +57,7 @@ def run(chosen: argparse.Namespace) -> None:
     """Print the parameters, write picture and spectrum."""
     path, spec = Path(chosen.file), _spec(chosen.file, chosen.set)
     inputs = [path, *([Path(chosen.minus)] if chosen.minus else [])]
+    masks = [file.parent / spec.mask for file in inputs if spec.mask]
     kind = "minus" if chosen.minus else "surface"
     target = None if chosen.no_picture else Path(chosen.output or path.with_suffix(f".{kind}.png"))
     for file, endings, option in (
@@ -64,9 +65,9 @@ def run(chosen: argparse.Namespace) -> None:
         (chosen.csv, (".csv", ".txt"), "--csv"),
     ):
         if file is not None:
-            check_derived(Path(file), inputs, endings, option)
-    if target and target.suffix.lower() in WRITERS and target.exists() and not chosen.overwrite:
-        raise OutputError(f"{target}: exists; {OVERWRITE_ADVICE}")
+            check_derived(Path(file), [*inputs, *masks], endings, option)
+    if target and target.suffix.lower() in WRITERS:
+        check_new(target, chosen.overwrite)
     surface = _used(chosen.file, spec, chosen.minus is not None)
     if chosen.minus:
         try:
@@ -77,11 +78,14 @@ def run(chosen: argparse.Namespace) -> None:
         parameters = profile_parameters(surface.z[0], surface.dx, spec.cutoff)
     else:
         parameters = surface.parameters
+    densities = spectra(surface)
+    table = csv(densities)
+    if chosen.csv is not None:
+        check_table(Path(chosen.csv), table.partition("\n")[0], chosen.overwrite, "--csv")
     notes = [*surface.notes, *doubts(surface)]
     print("\n".join([f"{chosen.file}: {surface.extent_text}", *notes, *rows(parameters)]))
-    densities = spectra(surface)
     if chosen.csv is not None:
-        atomic_write(chosen.csv, csv(densities).encode())
+        atomic_write(Path(chosen.csv), table.encode())
         print(chosen.csv)
     if target is None:
         return

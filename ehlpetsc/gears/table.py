@@ -87,13 +87,16 @@ def _shown(value: float) -> str:
     return f"{0.0 if abs(value) <= 1e-9 else value:.{min(max(digits, 0), 4)}f}"
 
 
+HEADING = "time, load, radius, speed 1, speed 2"  # of the table for [operation]
+
+
 def csv(path: Path) -> str:
     """Loaded part of the path as CSV text for ``[operation]``."""
     loaded = path.load > 0.0
     values = np.column_stack([path.time, path.load, path.radius, path.speed_1, path.speed_2])[loaded]
     values[:, 0] -= values[0, 0]
     text = io.StringIO()
-    np.savetxt(text, values, "%.12g", ", ", header="time, load, radius, speed 1, speed 2", comments="")
+    np.savetxt(text, values, "%.12g", ", ", header=HEADING, comments="")
     return text.getvalue()
 
 

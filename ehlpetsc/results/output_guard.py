@@ -1,4 +1,8 @@
-"""Checks of an output path, the lock against a second run, and atomic writes."""
+"""Checks of an output path, the lock against a second run, and atomic writes.
+
+No command replaces what it reads or what the case of a result names. A text, a table other than the one that
+is written, and any file that other programs write too are replaced with --overwrite alone.
+"""
 
 from __future__ import annotations
 
@@ -6,13 +10,17 @@ import contextlib
 import fcntl
 import os
 import socket
+import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from ehlpetsc.base.environment import first_rank
 from ehlpetsc.base.errors import OutputError, not_written
 
 if TYPE_CHECKING:
+    import argparse
+
     from ehlpetsc.case.loading import Case
 
 TEMPORARY = ".tmp.{}"  # name of the file that replaces one of this name
@@ -49,6 +57,25 @@ def check_derived(path: Path, inputs: Iterable[Path], endings: tuple[str, ...], 
     check_output_path(path, inputs, option)
     if path.suffix.lower() not in endings:
         raise OutputError(f"{path}: allowed for {option}: a name that ends in {', '.join(endings)}")
+
+
+def check_new(path: Path, overwrite: bool, option: str = "-o") -> None:
+    """Refuse an existing file without `overwrite`."""
+    if not overwrite and path.exists():
+        raise OutputError(f"{path}: exists; give another {option}, or --overwrite to replace it")
+
+
+def check_table(path: Path, heading: str, overwrite: bool, option: str = "-o") -> None:
+    """Refuse to replace a file that does not begin with the heading of the table, without `overwrite`."""
+    if overwrite or not path.exists():
+        return
+    with open(path, "rb") as file:
+        first = file.readline(len(heading.encode()) + 2).strip()
+    if first != heading.strip().encode():
+        raise OutputError(
+            f"{path}: exists, and its first line is not that of this table; give another {option}, or "
+            "--overwrite to replace it"
+        )
 
 
 class Lock:
@@ -102,6 +129,39 @@ def inputs_of(case: Case) -> list[Path]:
     files += [case.gears.load_file] if case.gears else []
     masks = [(folder / table.file).parent / table.mask for table in sides if table and table.mask]
     return [Path(case.path), *(folder / name for name in files if name), *masks]
+
+
+NAMES_OF_FILES = "file", "mask", "load_file"  # keys of a case
+
+
+def inputs_of_result(path: Path, case: str) -> list[Path]:
+    """A result file, and the files that the text of its case names, beside it or in the working folder."""
+    names = _named(tomllib.loads(case))
+    return [path, *(place for name in names for place in (path.parent / name, Path(name)))]
+
+
+def _named(table: dict) -> Iterator[str]:
+    """Names of files in the table of a case and in those within it; of a mask beside its file too."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _named(value)
+        elif key in NAMES_OF_FILES and isinstance(value, str):
+            yield value
+            if key == "mask":
+                yield str(Path(table.get("file", "")).parent / value)
+
+
+def put(text: str, chosen: argparse.Namespace, inputs: Iterable[Path] = ()) -> None:
+    """Print a text on the first rank, or write it to the file of ``-o``."""
+    if not first_rank():
+        return
+    if chosen.output is None:
+        print(text, end="" if text.endswith("\n") else "\n")
+        return
+    check_output_path(chosen.output, inputs)
+    check_new(chosen.output, chosen.overwrite)
+    atomic_write(chosen.output, text.encode())
+    print(chosen.output)
 
 
 @contextlib.contextmanager

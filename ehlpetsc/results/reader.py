@@ -15,7 +15,7 @@ import numpy as np
 from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.errors import CaseError, OutputError
 from ehlpetsc.results.hdf5_file import attributes, open_for_reading
-from ehlpetsc.results.output_guard import atomic_write, check_derived, file_path
+from ehlpetsc.results.output_guard import atomic_write, check_derived, file_path, inputs_of_result
 
 if TYPE_CHECKING:
     from xarray import Dataset, Variable
@@ -249,15 +249,20 @@ class Result:
             return None
         return self[f"{name}/s"][:], self[f"{name}/z"][:], float(self._file[name].attrs["speed"])
 
-    def export(self, path: str | PathLike, name: str, frame: int = -1) -> None:
+    def export(self, path: str | PathLike, name: str, frame: int = -1, *, overwrite: bool = False) -> None:
         """Write a field of a stored frame, or heights ``surface/1`` over s, as .gsf, .x3p (heights) or .vti.
 
-        `frame`: index; negative ones count from the end. An OutputError for other datasets, as scalars.
+        `frame`: index; negative ones count from the end. `overwrite`: replace an existing file. An
+        OutputError for other datasets, as scalars.
         """
         target = file_path(path)
         from ehlpetsc.results.exports import WRITERS, GridField
 
-        check_derived(target, [self.path], tuple(WRITERS), "export")
+        check_derived(
+            target, inputs_of_result(self.path, self.attrs.get("case", "")), tuple(WRITERS), "export"
+        )
+        if target.exists() and not overwrite:
+            raise OutputError(f"{target}: exists; give another name, or overwrite=True to replace it")
         names = [*self.fields, *(side for side in ("surface/1", "surface/2") if side in self)]
         if name not in names:
             raise OutputError(f"{self.path}: {name}: no field of a frame; allowed: {', '.join(names)}")

@@ -7,6 +7,8 @@ import resource
 import shutil
 import signal
 
+import h5py
+import numpy as np
 import pytest
 from support import CASES, COARSE_LIFE, ROOT, is_line_with, refused
 from support.made_loads import Scene, write
@@ -14,6 +16,7 @@ from support.made_results import make_result
 
 from ehlpetsc.__main__ import main as program
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.commands.explain import main as explain
 from ehlpetsc.commands.gears import main as gears
 from ehlpetsc.commands.life import main as life
 from ehlpetsc.commands.plot import main as plot
@@ -145,6 +148,69 @@ def test_commands_write_files_of_their_endings_only(tmp_path, monkeypatch, capsy
     read = CASES / "fzg.toml" if command is gears else result
     assert f"{other}: " in sentence(capsys, command, read, *option.split(), other)
     assert other.read_bytes() == before
+
+
+def table_words(folder, command):
+    """Words of a command that writes a table, without the option and name of its file."""
+    if command is gears:
+        return [CASES / "fzg.toml", "--no-picture"], "--csv"
+    if command is surface:
+        shutil.copy(CASES / "profiles" / "alicona_meander_profile.csv", folder / "other.csv")
+        return [folder / "other.csv", "--no-picture"], "--csv"
+    return [make_result(folder / "one.h5"), "--steps"], "-o"
+
+
+@pytest.mark.parametrize("command", [summary, gears, surface])
+def test_a_table_replaces_a_table_of_its_kind_alone_without_overwrite(tmp_path, monkeypatch, capsys, command):
+    monkeypatch.chdir(tmp_path)
+    words, option = table_words(tmp_path, command)
+    measured = tmp_path / "p.csv"
+    for content in (PROFILE, "X [m], z [m]\n" + PROFILE, "", "\xff\xfe"):
+        measured.write_text(content, encoding="latin-1")
+        message = sentence(capsys, command, *words, option, measured)
+        assert is_line_with(message, f"{measured}: exists", f"another {option}, or --overwrite")
+        assert measured.read_text(encoding="latin-1") == content
+    assert command([*map(str, [*words, option, measured]), "--overwrite"]) == 0
+    table = measured.read_bytes()
+    assert b"[" in table.splitlines()[0] or command is gears
+    assert command([*map(str, [*words, option, measured])]) == 0, "a table of this kind"
+    assert measured.read_bytes() == table
+
+
+@pytest.mark.parametrize("place", ["beside the result", "in the working folder"])
+@pytest.mark.parametrize("key", ["file", "mask"])
+def test_a_file_that_the_case_of_a_result_names_is_kept(tmp_path, monkeypatch, capsys, place, key):
+    """Its first line may be that of a table, as a case can read the frame of another result."""
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere" if place == "beside the result" else tmp_path)
+    names = {"file": "sub/p.csv"} if key == "file" else {"file": "sub/q.csv", "mask": "p.csv"}
+    (tmp_path / "sub").mkdir()
+    measured = tmp_path / "sub" / "p.csv"
+    folder = tmp_path if place == "beside the result" else tmp_path / "elsewhere"
+    keys = "\n".join(f'{name} = "{value}"' for name, value in names.items())
+    result = make_result(folder / "one.h5")
+    with h5py.File(result, "r+", libver="latest") as file:
+        file.attrs["case"] += f"[surface.2]\n{keys}\n"
+    assert summary([str(result), "--steps", "-o", str(measured)]) == 0
+    before = measured.read_bytes()
+    assert f"{measured}: is read by" in sentence(
+        capsys, summary, result, "--steps", "-o", measured, "--overwrite"
+    )
+    assert measured.read_bytes() == before
+
+
+def test_surface_and_case_are_kept_under_any_option(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    heights = 1e-7 * np.random.default_rng(1).standard_normal((12, 12))
+    np.savetxt("map.csv", heights, delimiter=",")
+    np.savetxt("mask.csv", heights > 1e-7, delimiter=",")
+    case = shutil.copy(CASE, tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    words = ["map.csv", "--no-picture", "--set", "spacing=1e-6", "--set", "mask=mask.csv"]
+    for name in ("map.csv", "mask.csv"):
+        assert "is read by" in sentence(capsys, surface, *words, "--csv", name, "--overwrite")
+    assert "is read by" in sentence(capsys, explain, case, "-o", case, "--overwrite")
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 NO_INPUTS = "", "sub", "a.png", "a.restart.h5", "none.h5", "/dev/zero"

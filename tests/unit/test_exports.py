@@ -123,7 +123,10 @@ def test_a_result_writes_fields_and_surfaces(tmp_path, is_plane):
         np.testing.assert_array_equal(values, np.atleast_2d(result.pressure[0]))
         assert dx == pytest.approx(1e-6) and (dy == pytest.approx(2e-6) or not is_plane)
     assert b'Origin="-3e-06 -4e-06 0"' in (tmp_path / "p.vti").read_bytes() or not is_plane
-    result.export(tmp_path / "s.x3p", "surface/1")
+    (tmp_path / "s.x3p").write_text("measured")
+    with pytest.raises(OutputError, match=r"s\.x3p: exists; give another name, or overwrite=True"):
+        result.export(tmp_path / "s.x3p", "surface/1")
+    result.export(tmp_path / "s.x3p", "surface/1", overwrite=True)
     values, dx, _ = read_x3p((tmp_path / "s.x3p").read_bytes())
     np.testing.assert_array_equal(values, np.tile(Z[0, :9], (len(values), 1)))
     assert dx == pytest.approx(3e-6)
