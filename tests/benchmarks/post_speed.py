@@ -8,6 +8,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -34,9 +35,9 @@ def heights(seed, x, y, dx):
     return HEIGHT * z / np.sqrt(WAVES / 2)
 
 
-def made(path, frames, depths):
-    """Result file of a strip."""
-    scene = Scene(per_width=32, ratio=0.5, steps=frames, courant=1.0)
+def made(path, frames, depths, points=32):
+    """Result file of a strip of 4 `points` + 1 nodes along and across."""
+    scene = Scene(per_width=points, ratio=0.5, steps=frames, courant=1.0)
     y, pressure = scene.dx * np.arange(scene.x.size), np.empty((frames, scene.x.size, scene.x.size))
     for k, now in enumerate(scene.time):
         moved = enumerate((scene.u1, scene.u2), 1)
@@ -54,7 +55,8 @@ def post(path):
     return time.process_time() - begun
 
 
-if __name__ == "__main__":
+def main(points=32, frames=300, depths=DEPTHS):
+    """Measure and print."""
     sought, search = [], critical_plane._worst_planes
 
     def counted(grid, law, work, stress, *others):
@@ -63,11 +65,15 @@ if __name__ == "__main__":
         search(grid, law, work, stress, *others)
 
     with tempfile.TemporaryDirectory() as folder:
-        post(made(Path(folder) / "small.h5", 230, DEPTHS[-1:]))  # compiles
-        critical_plane._worst_planes = counted
-        path = made(Path(folder) / "strip.h5", 300, DEPTHS)
-        seconds = post(path)
+        post(made(Path(folder) / "small.h5", (frames * 10) // 13, depths[-1:], points))  # compiles
+        path = made(Path(folder) / "strip.h5", frames, depths, points)
+        with mock.patch.object(critical_plane, "_worst_planes", counted):
+            seconds = post(path)
         result = PostResult(path.replace(".h5", ".post.h5"))
-    points = sum(passed.sum() for passed in result.complete.values()) * result.y.size
-    counts = f"{points} points, {points * len(DEPTHS)} histories, planes sought in {sum(sought)}"
+    passed = sum(passed.sum() for passed in result.complete.values()) * result.y.size
+    counts = f"{passed} points, {passed * len(depths)} histories, planes sought in {sum(sought)}"
     print(f"{counts}: {seconds:.1f} s of processor time")
+
+
+if __name__ == "__main__":
+    main()

@@ -29,11 +29,17 @@ def usage(words, output):
     return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
-if __name__ == "__main__":
+def main(more=(), repeats=5):
+    """Measure and print; `more`: words of every run."""
+    cases = (IMPORTS, *([*words, *more] for words in (STEADY, ROUGH, WITHOUT)))
     with tempfile.TemporaryDirectory() as folder:
         output = str(Path(folder) / "run.h5")
-        runs = [[usage(words, output) for words in (IMPORTS, STEADY, ROUGH, WITHOUT)] for _ in range(5)]
+        runs = [[usage(words, output) for words in cases] for _ in range(repeats)]
     imports, steady, stored, without = (statistics.median(run[k][0] for run in runs) for k in range(4))
-    memory, more = max(run[1][1] for run in runs), 100 * (stored / without - 1)
+    memory, longer = max(run[1][1] for run in runs), 100 * (stored / without - 1)
     print(f"smooth steady, a/200: {steady - imports:.2f} s after {imports:.2f} s of imports, {memory:.0f} MB")
-    print(f"rough, fields of every step {stored:.2f} s, none {without:.2f} s: {more:.1f} % more")
+    print(f"rough, fields of every step {stored:.2f} s, none {without:.2f} s: {longer:.1f} % more")
+
+
+if __name__ == "__main__":
+    main()

@@ -38,6 +38,7 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.nonlinear.line.jacobian import NearFieldMatrix
 from ehlpetsc.run.simulation import Simulation
 
+COURANT = 0.5  # nodes that the film moves in a nominal step
 FAST = 8.0  # nominal steps in one, on the way to where time is taken
 HALF_BAND = 30  # nodes
 PAIRS = 9
@@ -56,11 +57,11 @@ def advance(simulation, steps, fast=1.0):
 
 def rough(points, *overrides, comm=None, inlet=-1.4, edge=0.3):
     """The measured surfaces, roughness in the contact up to x/a = `edge`."""
-    mesh = (f"mesh.points_per_half_width={points}", f"mesh.inlet={inlet}")
-    simulation = Simulation(load(ROOT / "cases" / "table1_rough.toml", [*mesh, *overrides]), comm)
+    keys = (f"mesh.points_per_half_width={points}", f"mesh.inlet={inlet}", f"time.courant={COURANT}")
+    simulation = Simulation(load(ROOT / "cases" / "table1_rough.toml", [*keys, *overrides]), comm)
     simulation.options.__enter__()  # for good: parts of steps are solved as well
     simulation.advance()
-    advance(simulation, int((edge - inlet) * points / (0.5 * FAST)), FAST)
+    advance(simulation, int((edge - inlet) * points / (COURANT * FAST)), FAST)
     advance(simulation, 5)
     return simulation
 
