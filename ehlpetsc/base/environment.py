@@ -29,7 +29,8 @@ RANK_VARIABLES = (*MPIRUN_VARIABLES, "SLURM_PROCID")  # the last one also in the
 # of Open MPI, of MPICH and Intel MPI, of MVAPICH, of srun; not SLURM_NTASKS, which a batch script has too
 SIZE_VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SLURM_STEP_NUM_TASKS")
 OLDEST_PYTHON = (3, 11)
-MPI_LIBRARY = rb"libmpi(?:ch)?\.so\.\d+"  # name by which a module asks for MPI: .12 of MPICH, .40 of Open MPI
+MPI_LIBRARY = rb"libmpi(?:ch)?\.so\.\d+"  # name by which a module asks for MPI, .12 of MPICH
+OPEN_MPI = "libmpi.so.40"
 
 
 def prepare() -> list[str]:
@@ -55,7 +56,8 @@ def load_mpi() -> str:
     mpi4py as a wheel has modules for MPICH and for Open MPI and takes the library that is loaded. That of the
     wheel mpich, which petsc4py's wheel needs, is on no path that is searched.
 
-    Returns the fault of two MPIs in one process, of which one would end it; "" without one.
+    Returns the fault of two MPIs, in one process or of process and launcher, of which one would end it; ""
+    without one.
     """
     needed, offered = _mpi_libraries("petsc4py", "lib/**/PETSc.*.so"), _mpi_libraries("mpi4py", "MPI.*.so")
     is_loaded = "mpi4py.MPI" in sys.modules
@@ -69,6 +71,8 @@ def load_mpi() -> str:
             f"{needs}, mpi4py in {_folder('mpi4py')} uses {', '.join(used)}: {order}unset PYTHONPATH and "
             "PETSC_DIR, and install both from one source in an environment of its own"
         )
+    if "OMPI_COMM_WORLD_SIZE" in os.environ and OPEN_MPI not in needed:
+        return f"{needs}, not the Open MPI whose mpirun has started it; type: ehlpetsc -n RANKS CASE.toml"
     if not is_loaded and len(offered) > 1 and not any(map(_load, needed)):
         return f"{needs}, which is not installed; type: {sys.executable} -m pip install mpich"
     return ""

@@ -22,6 +22,7 @@ def installed(tmp_path, monkeypatch):
     for name in [*environment.SOLVER, "mpi4py.MPI"]:
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delenv("OMPI_COMM_WORLD_SIZE", raising=False)
 
     def install(petsc, mpi, libraries=(), in_use=None):
         files = {
@@ -83,6 +84,17 @@ def test_two_mpis_are_refused_in_one_sentence(installed, capsys, mpi, in_use, wo
     assert line.startswith("ehlpetsc: petsc4py in ") and "needs libmpi.so.12, " in line and words in line
     with pytest.raises(ImportError, match=words.split(":")[0]):
         environment.need_solver()
+
+
+def test_another_launcher_is_refused_before_mpi_ends_the_process(installed, monkeypatch, capsys):
+    installed(MPICH, WHEEL, ["libmpi.so.12"])
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    assert main([str(CASES / "mixed.toml")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    words = (
+        "needs libmpi.so.12, not the Open MPI whose mpirun has started it; type: ehlpetsc -n RANKS CASE.toml"
+    )
+    assert line.startswith("ehlpetsc: petsc4py in ") and line.endswith(words)
 
 
 def test_petsc_of_complex_numbers_is_refused(monkeypatch):
