@@ -64,11 +64,11 @@ def _show_lives(path: Path, draws: bool) -> None:
     lives = read_lives(path)
     print("\n".join(lines_of_ensembles(lives)))
     if draws:
-        from ehlpetsc.pictures.lives import draw_ensembles
+        from ehlpetsc.pictures.lives import draw_ensembles, smooth_label
 
         target = _picture(path, [path])
         one = next(iter(lives.values()))
-        title = f"{one[0].title}: mean of {len(one)} lives, bounds of 90 %"
+        title = f"{one[0].title}: mean of {len(one)} lives, bounds of 90 %; {smooth_label(one[0])}"
         draw_ensembles(title, {others: bands(members) for others, members in lives.items()}, target)
         print(target)
 

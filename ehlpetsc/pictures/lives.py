@@ -51,8 +51,18 @@ def draw(life: LifeHistory, path: Path) -> None:
         axes.set(xlim=(0.0, 1.05 * passes[-1]), xlabel="passes", ylabel=label)
     named = tomllib.loads(life.case)["contact"].get("material") or []
     steels = ", ".join(dict.fromkeys([named] if isinstance(named, str) else named))
-    figure.suptitle(f"{life.title} ({steels})" if steels else life.title)
+    title = f"{life.title} ({steels})" if steels else life.title
+    figure.suptitle(f"{title}\n{smooth_label(life)}")
     style.save(figure, path)
+
+
+def smooth_label(life: LifeHistory) -> str:
+    """Passes after which the smooth contact fails, and the depths."""
+    figures, texts = life.rows[-1], []
+    for k in (1, 2):
+        passes, depth = figures[f"smooth_life_{k}"], 1e6 * figures[f"smooth_depth_{k}"]
+        texts.append(f"{passes:.3g} passes {depth:.3g} µm deep")
+    return f"smooth contact: fails after {' and '.join(dict.fromkeys(texts))}"
 
 
 def draw_ensembles(title: str, ensembles: dict[str, Bands], path: Path) -> None:

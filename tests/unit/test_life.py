@@ -313,7 +313,7 @@ def made_life(pits=0, rows=2):
         figures = {"passes": 10 * row, "jump": 10, "solved": 1, "friction": 0.1}
         for k in (1, 2):
             figures |= {f"pits_{k}": pits, f"pitted_share_{k}": 0.05 * k * pits, f"ra_{k}": one.ra}
-            figures[f"damage_{k}"] = 0.1 * row
+            figures |= {f"damage_{k}": 0.1 * row, f"smooth_life_{k}": 5e5 * k, f"smooth_depth_{k}": 4e-5}
             figures[f"wear_volume_{k}"] = 1e-12 * row
         found.add(figures, (one._replace(failed=2.0 * one.failed), one), {})  # the first one fails later
     return found
@@ -334,7 +334,8 @@ def test_picture_names_the_steels_of_the_stored_case(tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(lives.style, "save", lambda figure, path: drawn.append(figure))
     lives.draw(made_life(), tmp_path / "a.png")
-    assert drawn[0]._suptitle.get_text() == "title (100Cr6, 16MnCr5)"
+    smooth = "smooth contact: fails after 5e+05 passes 40 µm deep and 1e+06 passes 40 µm deep"
+    assert drawn[0]._suptitle.get_text() == f"title (100Cr6, 16MnCr5)\n{smooth}"
     worn = next(axes for axes in drawn[0].axes if axes.get_ylabel() == "worn [µm²]")
     assert [line.get_linestyle() for line in worn.lines] == ["-", "--"], "surface 1 shows through"
 
@@ -590,6 +591,7 @@ def test_picture_of_a_strip_has_maps_of_damage_and_of_pits(tmp_path, monkeypatch
         row = {"passes": passes, "jump": 10, "friction": 0.1}
         for k, one in enumerate(bodies, 1):
             row |= {f"pitted_share_{k}": one.pitted_share, f"ra_{k}": one.ra, f"wear_volume_{k}": one.volume}
+            row |= {f"smooth_life_{k}": 1e6, f"smooth_depth_{k}": 4e-5}
         stored.add(row, bodies, {})
     drawn = []
     monkeypatch.setattr(lives.style, "save", lambda figure, path: drawn.append(figure))
