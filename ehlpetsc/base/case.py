@@ -29,6 +29,7 @@ class Kind(NamedTuple):
     `sweeps`: solver by the paper's sweeps; "": none.
 
     `has_ends`: whether the contact ends along its length, as of a roller.
+    `picture`: module of `ehlpetsc.pictures.frames` that draws its fields.
     """
 
     is_whole: bool
@@ -40,6 +41,7 @@ class Kind(NamedTuple):
     linear_solver: str
     sweeps: str = ""
     has_ends: bool = False
+    picture: str = "line"
 
     @property
     def mean_height(self) -> str:
@@ -71,6 +73,7 @@ KINDS["strip"] = KINDS["line"]._replace(
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
     sweeps="",
+    picture="plane",
 )
 KINDS["point"] = KINDS["strip"]._replace(
     is_whole=True,
@@ -83,6 +86,7 @@ KINDS["roller"] = KINDS["point"]._replace(
     geometry="physics.contact.roller:ROLLER",
     forecast="run.forecast.kinds:ROLLER",
     has_ends=True,
+    picture="roller",
 )
 """Kinds of contact by name, :attr:`Case.kind`."""
 

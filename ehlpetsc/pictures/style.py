@@ -15,7 +15,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.base.declarations import Values
 from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics.contact.geometry import Dry
 from ehlpetsc.results.index import distinguishing_names, series_values
@@ -136,8 +135,10 @@ def in_view(x: np.ndarray, window: Sequence[float]) -> slice:
 def reach_across(result: Result, window: Sequence[float]) -> float:
     """Distance from the middle of a plane to the edge of its view across [m].
 
-    Half the width of the limits of x/a, times b, of a strip times a.
+    Half the width of the limits of x/a, times b, of a strip times a; of a roller all of it.
     """
+    if KINDS[result.case.kind].has_ends:
+        return np.inf
     b = result.attrs["b"]
     return 0.5 * (window[1] - window[0]) * float(b if np.isfinite(b) else result.attrs["a"])
 
@@ -167,8 +168,13 @@ def speeds_at(result: Result, frame: int) -> tuple[float, float]:
 
 
 def hertz_at(result: Result, frame: int) -> tuple[float, float]:
-    """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame, of a section at its y."""
+    """Half-width [m] and Hertz pressure [Pa] of the conditions at a stored frame, of a section at its y.
+
+    Of a roller those of the mean load.
+    """
     a, b, p0 = _whole_hertz_at(result, frame)
+    if KINDS[result.case.kind].has_ends:
+        return a, p0
     place = getattr(result, "place", None) or 0.0
     share = float(np.sqrt(max(1.0 - (place / b) ** 2, 1e-12)))  # not 0: widths divide
     return share * a, share * p0
@@ -181,7 +187,7 @@ def _whole_hertz_at(result: Result, frame: int) -> Dry:
     modulus = reduced_modulus(contact.youngs_modulus, contact.poisson_ratio)
     load, radius = _at(result, "load_given", frame), _at(result, "radius", frame)
     across = contact.radius_across and radius * contact.radius_across / contact.radius
-    given = Values({"load": load, "radius": radius, "radius_across": across})
+    given = contact.copy({"load": load, "radius": radius, "radius_across": across})
     return KINDS[result.case.kind].part("geometry").dry(given, modulus)
 
 

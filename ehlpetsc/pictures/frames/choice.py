@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.figure import Figure
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.frames.data import Frame, common
@@ -47,8 +48,10 @@ class Choice(NamedTuple):
 
     @property
     def module(self) -> ModuleType:
-        """Module that draws the frames: of lines or, of a point contact or strip, of planes."""
-        return import_module(f"ehlpetsc.pictures.frames.{'line' if self.results[0].y is None else 'plane'}")
+        """Module that draws the frames: of lines and sections, or that of the kind of contact."""
+        first = self.results[0]
+        name = "line" if first.y is None else KINDS[first.case.kind].picture
+        return import_module(f"ehlpetsc.pictures.frames.{name}")
 
     @property
     def title(self) -> list[str]:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.physics.contact.hertz import hertz_pressure
 from ehlpetsc.pictures import style
@@ -128,8 +129,9 @@ def described(result: Result, field: str | None) -> tuple[str, str, float]:
 
 
 def aspect(result: Result) -> float:
-    """Half-width of the dry contact across over that along; infinite in a strip."""
-    return float(result.attrs["b"] / result.attrs["a"])
+    """Half-width of the dry contact across over that along; infinite in a strip and along a roller."""
+    ends = KINDS[result.case.kind].has_ends
+    return np.inf if ends else float(result.attrs["b"] / result.attrs["a"])
 
 
 def in_view(result: Result, window: Sequence[float]) -> tuple[tuple, np.ndarray, np.ndarray | None]:
