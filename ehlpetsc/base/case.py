@@ -26,7 +26,6 @@ class Kind(NamedTuple):
     `forecast`: a :class:`ehlpetsc.run.forecast.kinds.Forecast`.
     `system`: system of equations, see :func:`ehlpetsc.nonlinear.solver_of`.
     `linear_solver`: options of PETSc's linear solver, from those of the user.
-    `sweeps`: solver by the paper's sweeps; "": none.
 
     `has_ends`: whether the contact ends along its length, as of a roller.
     `picture`: module of `ehlpetsc.pictures.frames` that draws its fields.
@@ -39,7 +38,6 @@ class Kind(NamedTuple):
     forecast: str
     system: str
     linear_solver: str
-    sweeps: str = ""
     has_ends: bool = False
     picture: str = "line"
 
@@ -63,7 +61,6 @@ KINDS = {
         forecast="run.forecast.kinds:LINE",
         system="nonlinear.line.system:line_system",
         linear_solver="nonlinear.options:line_solver",
-        sweeps="nonlinear.line.gauss_seidel:GaussSeidelSolver",
     )
 }
 KINDS["strip"] = KINDS["line"]._replace(
@@ -72,7 +69,6 @@ KINDS["strip"] = KINDS["line"]._replace(
     forecast="run.forecast.kinds:STRIP",
     system="nonlinear.plane.system:plane_system",
     linear_solver="nonlinear.options:plane_solver",
-    sweeps="",
     picture="plane",
 )
 KINDS["point"] = KINDS["strip"]._replace(

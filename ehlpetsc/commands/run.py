@@ -52,7 +52,6 @@ def run_parser() -> argparse.ArgumentParser:
     add("--restart", metavar="FILE", type=Path, help="continue from FILE and append to the result")
     limit = "stop after this wall clock time [none]"
     add("--time-limit", metavar="MINUTES", type=minutes, default=0.0, help=limit)
-    add("--scheme", choices=("newton", "sweep"), help="sweep: Gauss-Seidel iteration of the paper [newton]")
     return parser
 
 
@@ -71,8 +70,6 @@ def parse(words: list[str]) -> argparse.Namespace:
     names = [_long(f"-ehl_{name}") for name in vars(chosen)]
     for before, word, value in zip(["value", *petsc], petsc, [*petsc[1:], ""], strict=False):
         _check(word, value, before, case, names)
-    if chosen.scheme:  # read by the solver, from PETSc's table
-        petsc += ["-ehl_scheme", chosen.scheme]
     return argparse.Namespace(**vars(chosen), case=case, petsc=petsc)
 
 

@@ -158,7 +158,7 @@ class Simulation:
         self.state: AcceptedState | None = None
         self.dimensionless: State | None = None
         with self.options:
-            solver: Any = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
+            solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
         before = after.dimensionless.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
         self._records = {e.name: e.start(before.get(e.name)) for e in self.stepper.effects}
@@ -241,8 +241,8 @@ class Simulation:
 
     @property
     def _linear_iterations(self) -> int:
-        """GMRES iterations so far on the mesh of the case; the paper's sweeps have none."""
-        return getattr(self.stepper.solver, "linear_iterations", 0)
+        """GMRES iterations so far on the mesh of the case."""
+        return self.stepper.solver.linear_iterations
 
     def _check_time_step(self, dt: float | None) -> None:
         """Refuse an impossible length of a time step [s], and a step after the end."""

@@ -32,11 +32,15 @@ END_NAMES = {"inlet": "inlet, x", "outlet": "outlet, x", "width": "side, y"}
 
 
 class Solver(Protocol):
-    """A nonlinear solver of one scene; `tolerance` is that of the residual in the last solve."""
+    """A nonlinear solver of one scene.
+
+    `tolerance`: of the residual in the last solve. `linear_iterations`: of all solves so far.
+    """
 
     problem: EHLProblem
     tolerance: float
     bounded: bool
+    linear_iterations: int
 
     def prepare(self, state: Unknowns, inputs: StepInputs) -> None:
         """Prepare for time steps from states near this one."""

@@ -31,7 +31,6 @@ WORDS_OF = {
     "snes_linesearch_type": "basic bt l2 cp x",
     "snes_convergence_test": "default skip correct_pressure x",
     "snes_monitor": "ascii:/no/such/f nosuch:x 5",
-    "ehl_scheme": "newton sweep x",
     "ehl_output": "o.h5 / no/o.h5 case.toml",
     "ehl_set": "fluid.viscosity=0.004 mesh.inlet=0 x=1 time={} petsc.snes_rtol='nan'",
     "ehl_restart": "none.h5 case.toml",
@@ -39,7 +38,7 @@ WORDS_OF = {
 VALUES = {name: NUMBERS for name in NUMERIC.split()} | {k: (*v.split(), "") for k, v in WORDS_OF.items()}
 FLAGS = """snes_monitor snes_view snes_mf snes_fd log_view snes_check_jacobian help snes_test_jacobian
 options_view ksp_error_if_not_converged ehl_overwrite ehl_overwrit -overwrite -nosuch""".split()
-ANOTHER = ("ehl_set", "looser than", "ehl_scheme")  # another answer is right, or announced
+ANOTHER = ("ehl_set", "looser than")  # another answer is right, or announced
 STATUSES = 0, 2, 3, 4  # done, refused, not converged, stopped
 
 

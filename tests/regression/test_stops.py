@@ -94,9 +94,7 @@ def test_time_limit_writes_a_restart_file(tmp_path, case):
     assert (tmp_path / f"{case[0].stem}.restart.h5").exists()
 
 
-@pytest.mark.parametrize(
-    "case, ranks", [(CASE, 2), ([*CASE, "--scheme", "sweep"], 0), (BALL, 0)], ids=["ranks", "sweep", "point"]
-)
+@pytest.mark.parametrize("case, ranks", [(CASE, 2), (BALL, 0)], ids=["ranks", "point"])
 def test_time_limit_ends_the_steady_start(tmp_path, case, ranks):
     done = run(*case, "--time-limit", "1e-6", cwd=tmp_path, ranks=ranks)
     assert done.returncode == 4, done.stderr

@@ -166,7 +166,7 @@ def test_heat_is_an_effect_that_the_solver_does_not_know(name):
 @pytest.mark.parametrize("kind", KINDS)
 def test_parts_of_a_kind_of_contact_exist(kind):
     parts = [value for value in KINDS[kind] if isinstance(value, str) and ":" in value]
-    assert len(parts) == 4 + (kind == "line")
+    assert len(parts) == 4
     for module, name in (part.split(":") for part in parts):
         assert defines(FILES[f"ehlpetsc.{module}"].read_text(encoding="utf-8"), name), f"{module}:{name}"
 
@@ -264,7 +264,7 @@ def test_smooth_dry_contact_loads_few_modules(tmp_path):
     assert len(modules) <= MAX_MODULES
     rooms = {name.split(".")[1] for name in modules if "." in name}
     assert not rooms & {"post", "life", "analysis", "pictures"}
-    unneeded = {"series", "passes", "explain", "gauss_seidel", "mixed", "synthetic", "path"}
+    unneeded = {"series", "passes", "explain", "mixed", "synthetic", "path"}
     assert not {name.rpartition(".")[2] for name in modules} & unneeded
 
 

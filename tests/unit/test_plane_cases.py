@@ -11,7 +11,6 @@ from support import one_fault, self_affine
 from support.points import R, point
 
 import ehlpetsc
-from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.keys import template
 from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_load
@@ -54,9 +53,6 @@ def test_load_of_a_point_is_converted_and_xdmf_is_not_of_a_line():
     assert load(copy.deepcopy(STRIP), {"contact.load": "50 N/mm"}).contact.load == 5e4
     text = fault(tomllib.loads(template("roller")), output__xdmf=True)
     assert "output.xdmf: of strip, point and roller contacts, and this is a line" in text
-    case = load(copy.deepcopy(POINT), {"contact.model": "direct"})
-    with pytest.raises(UsageError, match="the paper's sweeps solve line contacts, not a point"):
-        ehlpetsc.Simulation(case, options={"ehl_scheme": "sweep"})
 
 
 WAVE = {"kind": "sine", "amplitude": 1e-8, "wavelength": 5e-5}

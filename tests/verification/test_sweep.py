@@ -14,10 +14,12 @@ from support import CASES
 
 petsc4py.init([])
 
-from ehlpetsc.base.errors import SolveFailed, UsageError
+from support import sweeps
+from support.sweeps import swept
+
+from ehlpetsc.base.errors import SolveFailed
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.nonlinear.line import gauss_seidel as sweep
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.state import State
@@ -29,8 +31,7 @@ STEP, CONTACTS = 434, [304, 305, 319, 369]
 def simulations(name, *overrides):
     """One scene by Newton's method and by sweeps."""
     case = load(CASES / name, overrides)
-    schemes = ("newton", "sweep")
-    return [Simulation(case, options={"ehl_scheme": scheme, "snes_atol": 1e-7}) for scheme in schemes]
+    return [Simulation(case, options={"snes_atol": 1e-7}), swept(case, 1e-7)]
 
 
 def assert_same(problem, newton, swept, rtol):
@@ -74,33 +75,21 @@ def test_load_balance_at_an_exit_film_of_150_nm():
     coarse = "mesh.points_per_half_width=50"
     both = simulations("table1_smooth.toml", coarse, "contact.minimum_film=150e-9")
     states = [simulation.advance().dimensionless for simulation in both]
-    swept = both[1].stepper
-    bound = swept.solver.bound
+    other = both[1].stepper
+    bound = other.solver.bound
     assert states[1].h.min() == bound
     np.testing.assert_array_equal(states[1].h <= bound, states[0].h <= bound)
-    assert_same(swept.problem, *((state.q, state.h) for state in states), rtol=1e-5)
-    load = swept.problem.dx * states[1].p.sum()
+    assert_same(other.problem, *((state.q, state.h) for state in states), rtol=1e-5)
+    load = other.problem.dx * states[1].p.sum()
     assert load == pytest.approx(0.5 * np.pi, rel=1e-7)
 
 
 def test_sweeps_stop_at_the_evaluation_limit(monkeypatch):
-    monkeypatch.setattr(sweep, "MAX_EVALUATIONS", 2)
+    monkeypatch.setattr(sweeps, "MAX_EVALUATIONS", 2)
     stepper = simulations("table1_smooth.toml", "mesh.points_per_half_width=50")[1].stepper
     with pytest.raises(SolveFailed, match="MAX_IT after 2 "):
         ones = np.ones(stepper.problem.n)
         stepper.solver.solve(Unknowns(ones, ones, np.zeros(1)), stepper.problem.inputs())
-
-
-@pytest.mark.parametrize(
-    "name, value, message",
-    [
-        ("table1_smooth.toml", "swept", "^-ehl_scheme swept: .*newton, sweep"),
-        ("dry_hertz.toml", "sweep", "^-ehl_scheme sweep: .*dry"),
-    ],
-)
-def test_invalid_schemes_are_refused(name, value, message):
-    with pytest.raises(UsageError, match=message):
-        Simulation(load(CASES / name), options={"ehl_scheme": value})
 
 
 def store():

@@ -8,8 +8,8 @@ at the two end nodes the whole integral with the gap :math:`g_b` of the border,
 
 .. math:: \frac{1}{\Delta x}\Big(g-g_b+\frac1\pi\int p\ln|x-s|\,ds\Big),
 
-where g is the separation of the solids less that of their undeformed shapes. Residual, matrix-free product,
-assembled matrices and Gauss-Seidel sweeps use the same coefficients.
+where g is the separation of the solids less that of their undeformed shapes. Residual, matrix-free product
+and assembled matrices use the same coefficients.
 
 The pressure is piecewise linear on the uniform mesh; kernel f: :mod:`ehlpetsc.elasticity.half_plane`. The
 discrete equations in second differences equal the integral form exactly (differential deflection).

@@ -1,4 +1,4 @@
-r"""The paper's own iteration: sweeps over the nodes that update each pair (p, h) by a 2 x 2 block.
+r"""The paper's own iteration, a referee of Newton's method: sweeps that update pair by pair (p, h).
 
 At every node the Reynolds and the deflection equation are put in the form (Holmes et al. 2005, eq. (8), (9))
 
@@ -30,6 +30,8 @@ distributed: every rank computes all nodes.
 
 from __future__ import annotations
 
+from unittest import mock
+
 import numpy as np
 
 from ehlpetsc.base.case import Case
@@ -42,6 +44,7 @@ from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, q_of, w_
 from ehlpetsc.nonlinear.line.system import line_problem
 from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.simulation import Simulation
 
 # half-widths: the number of nodes in this length is the number of sweeps between two evaluations of A and B
 STEP_SWEEPS_LENGTH, STEADY_SWEEPS_LENGTH = 0.6, 4.0
@@ -61,6 +64,8 @@ class GaussSeidelSolver:
 
     `sweeps`: number of sweeps of all solves so far.
     """
+
+    linear_iterations = 0
 
     def __init__(self, case: Case, scales: Scales, film_scale: float, tolerance: float):
         self.problem = line_problem(case, scales, film_scale, 0, scales.grid.n)
@@ -145,6 +150,16 @@ class GaussSeidelSolver:
         for _ in range(sweeps):
             sweep(q, h, p, linearised, deflection, self.bound, relaxation)
         self.sweeps += sweeps
+
+
+def swept(case: Case, tolerance: float) -> Simulation:
+    """Simulation of a line contact, in oil and in direct contact, by sweeps."""
+
+    def solver(case: Case, scales: Scales, film_scale: float, *others: object) -> GaussSeidelSolver:
+        return GaussSeidelSolver(case, scales, film_scale, tolerance)
+
+    with mock.patch("ehlpetsc.run.simulation.solver_of", solver):
+        return Simulation(case)
 
 
 @compiled(fastmath=True)
