@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from ehlpetsc.pictures import style
 from ehlpetsc.surfaces.parameters import (
     CORRELATION_THRESHOLD,
+    ISOTROPIC,
     PARAMETERS,
     autocorrelation,
     binned,
@@ -37,11 +38,12 @@ def rows(found: dict[str, float]) -> list[str]:
     letter = "R" if "Ra" in found else "S"
     is_smooth = np.isnan(found[f"{letter}ku"])
     reason = "no height differs" if is_smooth else f"the autocorrelation {NO_LENGTH[letter]}"
+    reasons = {} if is_smooth else {"Std": f"no lay, as Str is above {ISOTROPIC:g}"}
     core = {ratio: found[letter + ratio] for ratio in ("mr1", "mr2")}
     lines = []
     for pattern, unit, meaning in PARAMETERS:
         value = FACTORS.get(unit, 1.0) * found.get(name := pattern.replace("?", letter), np.inf)
-        text = meaning.format(**core) + (f"; none: {reason}" if np.isnan(value) else "")
+        text = meaning.format(**core) + (f"; none: {reasons.get(name, reason)}" if np.isnan(value) else "")
         lines += [f"{name:4s}{value:10.4f} {unit:2s}  {text}"] * (name in found)
     return lines
 

@@ -45,6 +45,8 @@ PARAMETERS = (
 )
 """Name, with ? for R or S, unit shown, and meaning; mr1, mr2: material ratios of the core."""
 
+ISOTROPIC = 0.5  # Str above which a texture has no direction
+
 
 def profile_parameters(z: np.ndarray, dx: float, section: float | None = None) -> dict[str, float]:
     """Parameters of heights dx [m] apart by their names in `PARAMETERS`, lengths in m; shape (n,).
@@ -79,7 +81,7 @@ def areal_parameters(z: np.ndarray, dx: float, dy: float) -> dict[str, float]:
         "Sdr": developed_ratio(z, dx, dy),
         "Sal": fastest,
         "Str": fastest / slowest,
-        "Std": texture_direction(z, dx, dy) if z.any() else np.nan,
+        "Std": np.nan if not z.any() or fastest > ISOTROPIC * slowest else texture_direction(z, dx, dy),
     }
 
 

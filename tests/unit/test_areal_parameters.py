@@ -140,12 +140,15 @@ def test_the_command_prints_draws_and_explains_a_map_and_writes_its_spectra(tmp_
     path = tmp_path / "map.npy"
     np.save(path, waves()[:128, :256] + 1e-3 * X[:256])
     assert main([str(path), "--set", f"spacing={STEP!r}"]) == 0
-    shown = capsys.readouterr().out.splitlines()
+    shown = (out := capsys.readouterr().out).splitlines()
     assert shown[0] == f"{path}: 0.3188 x 0.1588 mm, 256 x 128 points 1.25 um and 1.25 um apart"
     values = {line.split()[0]: float(line.split()[1]) for line in shown[1:-1]}
     assert values["Sq"] == pytest.approx(1e6 * AMPLITUDE / 2, rel=0.01)  # without the plane
     assert values["Sku"] == pytest.approx(9 / 4, rel=0.02) and 0.7 < values["Str"] < 1.0
     assert shown[-1] == str(picture := tmp_path / "map.surface.png") and picture.stat().st_size > 1e4
+    assert (
+        "Std        nan °   direction of the lay against the rows, towards Y; none: no lay, as Str is " in out
+    )
     np.save(tmp_path / "map.npy", np.broadcast_to(np.cos(2 * np.pi * X / WAVE), (64, len(X))))
     assert main([str(tmp_path / "map.npy"), "--set", f"spacing={STEP!r}", "--no-picture"]) == 0
     *_, shown, direction = capsys.readouterr().out.splitlines()

@@ -78,6 +78,27 @@ MAPS = {
         "ncols 24\nnrows 16\ncellsize x 2.5\ncellsize y 4\n" + matrix(separator=" "),
         {"unit": "um", "x_unit": "um"},
     ),
+    "header of a diameter and a height of the part": (
+        "d = 50 mm\nHeight: 40 mm\nPixel size: 2.5 um x 4 um\nDelta = 3 nm\n" + matrix(),
+        {"unit": "um"},
+    ),
+    "header of a diameter and a width": (
+        "D: 50 mm\nWidth: 60 um\nY range: 64 um\n" + matrix(),
+        {"unit": "um"},
+    ),
+    "header of a range of heights": (
+        "Width: 60 um\nHeight = 0.3 um\nUnit Z: um\n" + matrix(),
+        {"spacing_across": DY},
+    ),
+    "header of a resolution beside steps": (
+        "Resolution: 5 nm\ndx = 2.5 um\ndy = 4 um\nHeights in um\n" + matrix(),
+        {},
+    ),
+    "header of a resolution": ("X Resolution: 2.5 um\nDelta Y: 4 um\n" + matrix(), {"unit": "um"}),
+    "unit behind its word": ("Unit X: mm\nUnit Z\tum\n" + matrix("y", MM * X, MM * Y), {}),
+    "units of axes": ("X axis unit: mm; Z in um\n" + matrix("y", MM * X, MM * Y), {"unit": "um"}),
+    "positions of the rows in m": (matrix(None, None, Y), {"unit": "um", "spacing": DX}),
+    "positions of both in m": (matrix("y", X, Y), {"unit": "um", "spacing": DX}),
     "no positions": (matrix(), BOTH),
     "every other line empty": (matrix().replace("\n", "\n\n"), BOTH),
 }
@@ -137,6 +158,51 @@ def test_random_heights_are_no_positions_and_those_of_a_binary_matrix_are_read(t
     np.testing.assert_allclose(found.z, Z, atol=1e-15)
 
 
+DIMPLES = -1e-6 * np.exp(-((np.arange(24) - 11.3) ** 2 + (np.arange(16)[:, None] - 7.4) ** 2) / 25.0)
+RISING = 1e-6 * np.sin(np.arange(16)[:, None] / 12.0) * (1.0 + 0.3 * np.cos(np.arange(24)))  # from 0 on
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e-9])
+@pytest.mark.parametrize("first", [0, 1])
+def test_numbers_beside_a_smooth_map_are_left_out(tmp_path, unit, first):
+    numbers = [axis - 1 + first for axis in (NUMBERS_X, NUMBERS_Y)]
+    body = DIMPLES / unit
+    np.savetxt(tmp_path / "rows.txt", np.column_stack([numbers[1], body]), fmt="%.9g")
+    np.savetxt(tmp_path / "columns.txt", np.vstack([numbers[0], body]), fmt="%.9g")
+    for name in ("rows.txt", "columns.txt"):
+        found = read_map(tmp_path / name, Layout(unit="um" if unit == 1e-6 else "nm", spacing=DX))
+        np.testing.assert_allclose(found.z, DIMPLES, rtol=0, atol=1e-14)
+        assert found.notes == (
+            f"first {'column' if 'rows' in name else 'line'}: numbers of the {name[:-4]}, left out",
+        )
+
+
+@pytest.mark.parametrize("height", ["um", "nm"])
+def test_positions_in_metres_above_heights_that_begin_at_0_are_no_heights(tmp_path, height):
+    body = {"um": 1e6, "nm": 1e9}[height] * RISING
+    np.savetxt(tmp_path / "map.txt", np.vstack([X, body]), fmt="%.9g")
+    found = read_map(tmp_path / "map.txt", Layout(unit=height, spacing=DX))
+    np.testing.assert_allclose(found.z, RISING, rtol=0, atol=1e-14)
+    assert found.notes == ("first line: positions of the columns, 2.5 um apart",)
+
+
+@pytest.mark.parametrize("word", ["inf", "-inf", "Infinity", "0.1x", "12.1 um", "?"])
+def test_a_first_line_with_a_word_is_no_heading(tmp_path, word):
+    lines = matrix(separator=" " if "um" not in word else ";").splitlines()
+    separator = ";" if "um" in word else " "
+    cells = lines[0].split(separator)
+    lines[0] = separator.join([*cells[:3], word, *cells[4:]])
+    (tmp_path / "map.txt").write_text("\n".join(lines))
+    with pytest.raises(
+        ProfileError, match=r"^(row 1, column 4 is not a height|line 1: .* is not a number; )"
+    ):
+        read_map(tmp_path / "map.txt", Layout(**BOTH))
+    x = "\n".join(f"{k} {v:.5f}" for k, v in enumerate(UM * Z[0]))
+    (tmp_path / "p.txt").write_text(x.replace(x.split()[1], "inf", 1))
+    with pytest.raises(ProfileError, match="^point 1 is not a number"):
+        read_profile(tmp_path / "p.txt", Layout(unit="um"))
+
+
 TWO, POSITIONED = matrix() + "\n" + matrix(), matrix("y", MM * X, MM * Y)
 UM_UNIT = {"unit": "um"}
 UNEQUAL = "^its first line rises or falls as positions do, but at unequal steps; "
@@ -168,6 +234,16 @@ REFUSED = {
         {"unit": "um", "spacing": 5e-6},
         r"^spacing = 5e-06 m, by its header 2\.5e-06 m; ",
     ),
+    "a width beside another spacing": (
+        "Pixel size: 2 um\nWidth: 1 mm\n" + matrix(),
+        {"unit": "um"},
+        r"^its header gives 2 and 41\.67 um as the distance of its points; allowed: one of them; ",
+    ),
+    "two spacings in the header": (
+        "dx = 2.5 um\nX step: 25 um\n" + matrix(),
+        {"unit": "um"},
+        r"^its header gives 2\.5 and 25 um as ",
+    ),
     "positions at unequal steps": (
         matrix("y", UM * X**1.3 * 50, UM * Y),
         {"unit": "um"},
@@ -191,6 +267,16 @@ def test_refused_map_names_the_cause(tmp_path, text, layout, message):
         assert is_map(path, Layout(**layout)) or "heights without" in message
         read_map(path, Layout(**layout))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("header", ["X in mm, Z in um", "Unit X: mm\nUnit Z: um", "Z unit = um"])
+def test_a_unit_in_the_words_above_a_profile_is_asked_for(tmp_path, header):
+    lines = [f"{x:.5f}\t{z:.5f}" for x, z in zip(MM * X, UM * Z[0], strict=True)]
+    (tmp_path / "p.txt").write_text("\n".join([header, *lines]))
+    with pytest.raises(ProfileError, match='^its header names .*um.*; write unit = "um" for the heights'):
+        read_profile(tmp_path / "p.txt", Layout())
+    x, z, _ = read_profile(tmp_path / "p.txt", Layout(unit="um", x_unit="mm"))
+    np.testing.assert_allclose((x[-1], z[-1]), (X[-1], Z[0, -1]), rtol=1e-9)
 
 
 NO_PROFILES = {

@@ -12,8 +12,15 @@ import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import similar_file
+from ehlpetsc.surfaces.files.headers import units_named
 from ehlpetsc.surfaces.files.text import UNITS, Layout, read_softgauge, text_columns, units_in
-from ehlpetsc.surfaces.files.text_maps import MIN_MATRIX_COLUMNS, MIN_POINTS, has_no_x, has_positions, listed
+from ehlpetsc.surfaces.files.text_maps import (
+    MIN_MATRIX_COLUMNS,
+    MIN_POINTS,
+    has_no_x,
+    has_positions,
+    listed,
+)
 from ehlpetsc.surfaces.filters import groups, held, spikes, without_no_data
 
 TEXT_ENDINGS = {".csv", ".txt", ".dat", ".asc", ".prf", ".prn", ".tsv", ".xyz", ""}
@@ -109,7 +116,7 @@ def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
             f"columns = {list(chosen)}: no numbers in column {min(empty)}; allowed: {numeric}, from 1"
         )
     _check_map(columns, header, chosen)
-    named = units_in(header)
+    named = units_in(header) or units_named(header)
     if layout.unit is None and set(named) - {"m"}:
         raise ProfileError(
             f"its header names {' and '.join(dict.fromkeys(named))}, which a file need not mean for both "

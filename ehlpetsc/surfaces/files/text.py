@@ -23,9 +23,11 @@ import numpy as np
 from ehlpetsc.base.errors import ProfileError
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[ed][+-]?\d+)?"
+INFINITE = r"[+-]?inf(?:inity)?"  # a number that no height may be
 MISSING = r"(?:-?nan(?:\(ind\))?|-?1\.#\w+|#?n/?a|bad|\*+|-+)"  # markers, besides empty cells
+MOSTLY = 0.7  # numbers in the cells of a line that is not a heading
 SCANNED = (2, 3)  # columns of x and z, and of x, y and z, in which empty lines part the scans
-CELL = re.compile(f"(?:({NUMBER})|({MISSING})?)", re.IGNORECASE)
+CELL = re.compile(f"(?:({NUMBER}|{INFINITE})|({MISSING})?)", re.IGNORECASE)
 WITH_UNIT = re.compile(rf"(?>{NUMBER})\s*[^\W\d_/:.-]", re.IGNORECASE)  # as 0.12 um, unlike a date or a name
 COMMENT = re.compile(r"(?:^|(?<=[\s,;|]))#(?!n/?a).*", re.IGNORECASE | re.MULTILINE)
 SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})  # minus and dash of word processors
@@ -213,11 +215,16 @@ def _column(cells: list[str], lines: list[int]) -> list[float]:
 
 
 def _check_last_heading(line: str, number: int, separator: str | None, width: int) -> None:
-    """Refuse a line above the numbers that is one of them with a word in a cell."""
+    """Refuse a line above the numbers that is one of them with a word in a cell behind numbers."""
     cells = [cell.strip(" \"'") for cell in line.strip().split(separator)]
-    if separator and len(cells) == width > 1 and any(re.fullmatch(NUMBER, cell) for cell in cells):
-        if word := next((cell for cell in cells if WITH_UNIT.match(cell)), None):
-            raise ProfileError(f"{_no_number(word, number)}, or header_lines = {number}")
+    numbers = [bool(re.fullmatch(NUMBER, cell, re.IGNORECASE)) for cell in cells]
+    if not len(cells) == width > 1 or not any(numbers):
+        return
+    word = next((cell for cell in cells if separator and WITH_UNIT.match(cell)), None)
+    if word is None and numbers[0] and sum(numbers) > MOSTLY * width:
+        word = next((cell for cell in cells if not CELL.fullmatch(cell)), None)
+    if word:
+        raise ProfileError(f"{_no_number(word, number)}, or header_lines = {number}")
 
 
 def _no_number(cell: str, line: int) -> str:

@@ -12,7 +12,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.files.text import NUMBER, UNIT_OF_NAME, UNITS, Layout, units_in
+from ehlpetsc.surfaces.files.headers import (
+    AGREEMENT,
+    MAX_RATIO,
+    UNIT_OF_HEIGHTS,
+    UNIT_OF_X,
+    spacings_in,
+    units_by,
+)
+from ehlpetsc.surfaces.files.text import NUMBER, UNITS, Layout, units_in
 
 MIN_POINTS = 4  # along either side
 MAX_LISTED = 6  # columns of a list of x y z with others
@@ -25,33 +33,9 @@ UNEVEN_RATIO, MIN_UNEVEN = 5.0, 0.05  # of heights beside positions: over the po
 SAME_RISE = 0.2  # relative, of the lines of an inclined map
 SMOOTH_JUMP = 0.3  # of a line to the next over the height, of a smooth map
 JUMP_RATIO = 3.0  # of a line to the next over that of the others, where it is no line of heights
-AGREEMENT = 0.02  # relative, of spacings
+NEGLIGIBLE = 0.01  # range of positions in m over heights in um, and more
+METRIC = "m", "mm", "um", "nm"
 EQUAL_STEPS = 0.02  # relative, of x in a profile
-
-NAME = "|".join(sorted(map(re.escape, UNIT_OF_NAME), key=len, reverse=True))
-UNIT_OF_HEIGHTS = re.compile(
-    rf"^\W*(?:(?:z|heights?|values?|data)[ _-]*)?units?\s*[:=\s]\s*\"?({NAME})\b"
-    rf"|(?<![a-z])(?:z|heights?|values?)\s*[\[(/]\s*({NAME})\s*(?:[\])]|$)",
-    re.IGNORECASE | re.MULTILINE,
-)
-UNIT_OF_X = re.compile(
-    rf"^\W*(?:x|y|lateral|axis|axes)[ _-]*units?\s*[:=\s]\s*\"?({NAME})\b"
-    rf"|(?<![a-z])(?:x|y)\s*[\[(/]\s*({NAME})\s*(?:[\])]|$)",
-    re.IGNORECASE | re.MULTILINE,
-)
-LENGTH = rf"(\d+(?:[.,]\d+|\.)?(?:e[+-]?\d+)?)\s*\"?\s*(?:[\[(]?({NAME})\b)?"
-ENTRY = re.compile(
-    rf"(?:^|,)[^\w\n]*([a-z][a-z _.-]*?)\s*(?:[\[(/]\s*({NAME})\s*[\])]?)?\s*[:=,;\t ]\s*\"?"
-    rf"{LENGTH}(?:\s*[x*\u00d7]\s*{LENGTH})?",
-    re.IGNORECASE | re.MULTILINE,
-)  # name [unit] = number unit, or number unit x number unit
-STEP_NAMES = set(
-    """step stepsize stepwidth spacing pointspacing pixelsize pixelwidth pixelspacing cellsize
-increment pitch d delta lateralresolution resolution sampling samplinginterval interval""".split()
-)
-SIZES = {"size", "scansize", "area", "scanarea"}  # along x times along y
-EXTENTS = {"": {"width": "x", "scanwidth": "x", "scansize": "x", "height": "y", "scanheight": "y"}}
-EXTENTS |= {axis: dict.fromkeys(("length", "range", "extent", "size", "width"), axis) for axis in "xy"}
 
 
 class TextMap(NamedTuple):
@@ -183,7 +167,8 @@ def _is_axis(line: np.ndarray, others: np.ndarray, place: str) -> bool:
     """Whether a line beside lines of heights, shape (n, len(line)), holds positions.
 
     Equally spaced values, beside heights that are not, are heights where they are inclined as the others are,
-    or differ from the next line of a smooth map as little as that from the one behind it.
+    or differ from the next line of a smooth map as little as that from the one behind it, but for numbers of
+    lines or columns and for values far smaller than the heights.
     """
     own, is_long = _unevenness(line[np.newaxis])[0] if len(line) >= MIN_POINTS else np.inf, len(line) >= LONG
     others = others[~np.isnan(others).any(axis=1)]
@@ -197,7 +182,9 @@ def _is_axis(line: np.ndarray, others: np.ndarray, place: str) -> bool:
         is_inclined = (np.abs(others @ centred / (line @ centred) - 1.0) < SAME_RISE).mean() >= 0.5
         is_next = usual < SMOOTH_JUMP * others.std() and jumps[0] <= JUMP_RATIO * usual
         is_uneven = np.median(unevenness) > max(UNEVEN_RATIO * own, MIN_UNEVEN)
-        return bool(is_uneven) and not (is_inclined or is_next)
+        are_numbers = _are_numbers(line) or _are_numbers(line - 1.0)  # behind that of a corner
+        is_position = are_numbers or np.ptp(line) < NEGLIGIBLE * others.std()
+        return bool(is_uneven) and (is_position or not (is_inclined or is_next))
     if is_long and np.isinf(unevenness).mean() > 0.5 and jumps[0] > JUMP_RATIO * usual:
         raise ProfileError(
             f"its {place} rises or falls as positions do, but at unequal steps; allowed: equally "
@@ -221,34 +208,6 @@ def _are_numbers(axis: np.ndarray) -> bool:
     return bool(axis.min() in (0.0, 1.0) and (np.abs(np.diff(axis)) == 1.0).all())
 
 
-def spacings_in(header: str, shape: tuple[int, ...], x_unit: str | None) -> dict[str, float]:
-    """Distances [m] of columns, "x", and rows, "y", of a matrix by the words of a header that have a unit.
-
-    `shape`: lines and columns; a width or height is that of as many cells.
-    `x_unit`: of steps without a unit; None: they are not read.
-    """
-    found: dict[str, float] = {}
-    for name, unit_before, number, unit_behind, number_y, unit_y in ENTRY.findall(header):
-        words = re.findall("[a-z]+", re.sub("d([xy])", r"d \1", name.lower()))
-        axes = [word for word in words if word in ("x", "y")]
-        rest = "".join(word for word in words if word not in ("x", "y", "of", "in"))
-        name_of_unit = (unit_before or unit_behind or unit_y).lower()
-        unit = UNIT_OF_NAME.get(name_of_unit, x_unit if rest in STEP_NAMES else None)
-        if unit is None or len(axes) > 1 and not number_y:
-            continue
-        value = UNITS[unit] * float(number.replace(",", "."))
-        if number_y:
-            both = value, UNITS[UNIT_OF_NAME.get(unit_y.lower(), unit)] * float(number_y.replace(",", "."))
-            cells = (1, 1) if rest in STEP_NAMES else shape[::-1]
-            if rest in STEP_NAMES | SIZES:
-                found |= {axis: size / n for axis, size, n in zip("xy", both, cells, strict=True)}
-        elif rest in STEP_NAMES:
-            found |= dict.fromkeys(axes or ("x", "y"), value)
-        elif axis := EXTENTS["".join(axes)].get(rest):
-            found.setdefault(axis, value / shape[axis == "x"])
-    return found if "x" in found else {}
-
-
 def in_metres(
     found: TextMap, header: str, layout: Layout
 ) -> tuple[np.ndarray, float, float, tuple[str, ...]]:
@@ -257,7 +216,7 @@ def in_metres(
     if not is_list:
         _check_borders(z)
     unit, x_unit = (
-        stated or next((UNIT_OF_NAME[(a or b).lower()] for a, b in pattern.findall(header)), None)
+        stated or next(iter(units_by(pattern, header)), None)
         for stated, pattern in ((layout.unit, UNIT_OF_HEIGHTS), (layout.x_unit, UNIT_OF_X))
     )
     named = dict.fromkeys(units_in(header))
@@ -278,7 +237,8 @@ def in_metres(
             "positions; spacing is in m)"
         )
     metres = UNITS[x_unit] if x_unit else None
-    distances, notes = [], [note] if note else []
+    distances: list[float | None] = []
+    notes = [note] if note else []
     for axis, is_number, stated, key, place in (
         (x, numbered[0], layout.spacing, "spacing", "first line: {} of the columns"),
         (y, numbered[1], layout.spacing_across, "spacing_across", "first column: {} of the rows"),
@@ -289,8 +249,8 @@ def in_metres(
             notes.append(f"{place.format('numbers')}, left out")
         elif axis is not None:
             step = float(np.abs(axis[-1] - axis[0])) / (len(axis) - 1)
-            if metres is None and known:
-                metres = _unit_of(step, known[0][1])
+            if metres is None and (known or distances):
+                metres = _unit_by(step, known[0][1] if known else distances[0])
             metres = metres or UNITS[unit or "m"]
             known.append(("by its positions", step * metres))
             notes += [] if is_list else [f"{place.format('positions')}, {1e6 * step * metres:.4g} um apart"]
@@ -318,6 +278,10 @@ def _agreed(known: list[tuple[str, float]], key: str, count: int) -> float | Non
     return known[0][1] if known else None
 
 
-def _unit_of(step: float, distance: float) -> float | None:
-    """Unit [m] in which positions have a distance [m]; None: no unit."""
-    return next((unit for unit in UNITS.values() if abs(step * unit / distance - 1.0) <= AGREEMENT), None)
+def _unit_by(step: float, distance: float | None) -> float | None:
+    """Unit [m] in which positions have a distance [m], or that of the other axis nearly; None: no unit."""
+    if distance is None:
+        return None
+    equal = (unit for unit in UNITS.values() if abs(step * unit / distance - 1.0) <= AGREEMENT)
+    alike = (UNITS[name] for name in METRIC if 1.0 / MAX_RATIO <= step * UNITS[name] / distance <= MAX_RATIO)
+    return next(equal, None) or next(alike, None)
