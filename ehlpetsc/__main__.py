@@ -38,6 +38,7 @@ COMMANDS = {
     "explain": ("explain", FORECAST, "film, run time, effects of a case"),
     "keys": ("keys", READING, "keys of a case: meaning, unit, bounds, default"),
     "template": ("keys:template", READING, "a commented case to begin with"),
+    "python": ("python", (), "a script in which import ehlpetsc works"),
 }
 
 

@@ -16,7 +16,7 @@ from support.work_shares import shared_out
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
 
-CASE = Path(__file__).parents[2] / "cases" / "mixed.toml"
+CASE = Path(__file__).parents[2] / "cases" / "resolved_mixed.toml"
 STRIP = {
     "mesh.inlet": -1.3,
     "mesh.outlet": 1.3,
@@ -25,7 +25,6 @@ STRIP = {
     "time.travel": 0.7,
     "time.courant": 1.0,
     "fluid.viscosity": 0.003,
-    "contact.yield_pressure": None,
 }
 LAYER = {"contact.boundary_film": None, "contact.asperity_height": 30e-9}
 MIXED = {

@@ -346,5 +346,5 @@ def test_faults_of_files_and_bounds_are_reported_beside_others_or_alone(tmp_path
 )
 def test_a_surface_file_that_is_none_is_answered_by_a_close_one(tmp_path, name, message):
     (tmp_path / "flank.csv").write_text("0 1")
-    fault = one_fault(load, CASES / "mixed.toml", {"surface": {"1": {"file": str(tmp_path / name)}}})
+    fault = one_fault(load, CASES / "resolved_mixed.toml", {"surface": {"1": {"file": str(tmp_path / name)}}})
     assert re.search(f"{message}$", fault)

@@ -144,3 +144,18 @@ def test_a_run_of_another_launcher_ends_before_the_case_in_one_sentence(case, ra
         assert is_line_with(done.stderr, "2 processes were started together (PMI_SIZE)", "mpirun")
     else:
         assert done.stderr == ""
+
+
+def test_a_script_runs_with_its_arguments_and_the_package_from_any_folder(tmp_path):
+    script = tmp_path / "mine.py"
+    script.write_text(
+        "import sys, ehlpetsc\nprint(sys.argv[1:], ehlpetsc.__version__, __name__)\nsys.exit(3)\n"
+    )
+    code = (
+        f"import sys; sys.path.insert(0, {str(ROOT)!r}); from ehlpetsc.__main__ import main; sys.exit(main())"
+    )
+    alone = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    words = [sys.executable, "-c", code, "python", "mine.py", "-o", "a b", "--help"]
+    done = subprocess.run(words, cwd=tmp_path, env=alone, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (3, f"['-o', 'a b', '--help'] {__version__} __main__\n")
+    assert main(["python", str(tmp_path / "none.py")]) == ExitStatus.BAD_INPUT

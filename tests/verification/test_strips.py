@@ -24,8 +24,8 @@ def marched(name, changes, steps):
 @pytest.mark.parametrize(
     "name, changes",
     [
-        pytest.param("mixed.toml", {"mesh.inlet": -1.4}, id="rigid"),
-        pytest.param("mixed.toml", LAYER | {"mesh.inlet": -1.5, "time.courant": 1.5}, id="layer"),
+        pytest.param("resolved_mixed.toml", {"mesh.inlet": -1.4}, id="rigid"),
+        pytest.param("resolved_mixed.toml", LAYER | {"mesh.inlet": -1.5, "time.courant": 1.5}, id="layer"),
         pytest.param("table1_rough.toml", {"mesh.inlet": -1.4}, id="direct"),
         pytest.param("compliant_mixed.toml", {"mesh.inlet": -1.4}, id="rough layer"),
     ],
