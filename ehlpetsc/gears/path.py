@@ -101,14 +101,15 @@ def describe(path: Path) -> list[str]:
     overlap = f", overlap ratio {pair.overlap_ratio:.3f}" if pair.helix_angle else ""
     tips = " and ".join(f"{1e3 * abs(d):.3f}" for d in pair.tip_diameter)
     x1, x2 = pair.shifts
+    source = "as given" if pair.mesh_stiffness is not None else "ISO 6336-1"
     lines = [
         f"working pressure angle {path.pressure_angle:.3f} degrees, "
         f"contact ratio {path.contact_ratio:.3f}{overlap}",
         f"centre distance {1e3 * abs(pair.centre_distance):.3f} mm, tip diameters {tips} mm, "
         f"profile shift {x1:.4f} and {x2:.4f}",
         f"load {1e-3 * pair.normal_load:.1f} kN/m of the mesh, load sharing: {pair.rule}",
-        f"c' {1e-9 * single_stiffness(pair):.2f} N/(mm µm): one pair bends by "
-        f"{1e6 * pair.normal_load / single_stiffness(pair):.1f} µm",
+        f"single stiffness c' of a tooth pair {1e-9 * single_stiffness(pair):.2f} N/(mm µm), {source}: "
+        f"one pair bends by {1e6 * pair.normal_load / single_stiffness(pair):.1f} µm",
         f"a pinion tooth meets {pair.partners} of {abs(pair.teeth[1])} wheel teeth; "
         f"shift of flank 2 between passes {1e3 * pair.hunting_shift:.4f} mm",
     ]

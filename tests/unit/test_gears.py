@@ -264,7 +264,8 @@ def test_single_stiffness_of_iso_6336():
     stiff = GearPair(**(FZG | {"mesh_stiffness": 20e9}))
     assert single_stiffness(stiff) == 20e9
     described = "; ".join(describe(path_of_contact(stiff)))
-    assert f"one pair bends by {stiff.normal_load / 20e3:.1f} µm" in described
+    bends = f"one pair bends by {stiff.normal_load / 20e3:.1f} µm"
+    assert f"single stiffness c' of a tooth pair 20.00 N/(mm µm), as given: {bends}" in described
 
 
 OWN = {key: FZG[key] for key in ("module", "teeth", "face_width", "torque", "speed")}
