@@ -32,8 +32,7 @@ DEFAULTS = {
 ATOL = {"direct": "1e-5", "mixed": "1e-7", "compliant": "1e-8"}
 PRECONDITIONER = {"pc_type": "python", "pc_python_type": "ehlpetsc.nonlinear.line.system.FarFieldBand"}
 KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.line.gmres.FlexibleGMRES"}
-# of a contact in the plane, whose preconditioner hands PETSc's options with a prefix to the one of its
-# pressures
+# of a contact in the plane, which has no assembled matrix for PETSc's preconditioners
 PLANE = {
     "ksp_rtol": "3e-3",  # 1e-2 costs a Newton iteration in three, 1e-3 iterations of GMRES
     # with stiff asperities the basis else loses its orthogonality, and the residual found is not the true one
@@ -43,18 +42,6 @@ PLANE = {
 }
 # of a dry one: an error of a stiff layer's separation is one of its pressure a thousand times as large
 DRY_PLANE = {"ksp_rtol": "1e-6"}
-INNER_PREFIX = "pressure_"
-# of PETSc's preconditioner of the pressures where the user has one, incomplete LU if nothing else: on several
-# ranks in slabs of rows with a few of their neighbours'
-INNER = {
-    "pc_factor_levels": "1",
-    "pc_asm_overlap": "4",
-    "sub_pc_type": "ilu",
-    "sub_pc_factor_levels": "1",
-    "pc_factor_shift_type": "inblocks",
-    "sub_pc_factor_shift_type": "inblocks",
-}
-OF_PRECONDITIONERS = ("pc_", "sub_", "mg_")
 # options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
 GMRES_OPTIONS = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
 # PETSc's LU and ILU do not pivot, and pivots of the deflection rows may be zero by chance
@@ -164,7 +151,6 @@ class RunOptions:
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
         defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PLANE, *PETSC_FACTORISATION, "snes_atol"}
-        defaults |= {INNER_PREFIX + name for name in {*INNER, *self.given}}
         of_run = (name for name in self.unused if not (self._depth and was_read(name)))
         return {*of_run, *unused()} - defaults - set(self.deferred_views)
 
@@ -186,8 +172,6 @@ class RunOptions:
 
     def _leave(self, table: PETSc.Options) -> None:
         self.unused = {name for name in self.unused if not was_read(name)} - set(self.deferred_views)
-        for name in filter(was_read, self.given):
-            table.hasName(name)  # marks it as read, which so far may be its copy with the prefix alone
         for name in self._entered:
             table.delValue(name)
         for name, value in self._saved.items():
@@ -205,12 +189,12 @@ def line_solver(wanted: dict) -> dict:
 
 
 def plane_solver(wanted: dict) -> dict:
-    """As :func:`line_solver`, in the plane: options of preconditioners are those of the pressures."""
-    inner = {name: value for name, value in wanted.items() if name.startswith(OF_PRECONDITIONERS)}
-    if any(name.startswith("sub_") for name in inner):  # on one rank else of no effect
-        inner = {"pc_type": "asm"} | inner
-    inner = {INNER_PREFIX + name: value for name, value in (INNER | inner).items() if inner}
-    return PLANE | inner | wanted | {name: PLANE[name] for name in ("pc_type", "pc_python_type")}
+    """As :func:`line_solver`, in the plane, whose preconditioner is that of this program alone."""
+    for name in ("pc_type", "pc_python_type"):
+        if wanted.get(name, PLANE[name]) != PLANE[name]:
+            own = "a contact in the plane has a preconditioner of its own; leave it out"
+            raise UsageError(f"-{name} {wanted[name]}: {own}")
+    return PLANE | wanted
 
 
 def unused() -> list[str]:
@@ -221,8 +205,6 @@ def unused() -> list[str]:
 
 def was_read(name: str) -> bool:
     """Whether an option has been read (PetscOptionsUsed, which petsc4py lacks)."""
-    if name.startswith(OF_PRECONDITIONERS) and was_read(INNER_PREFIX + name):
-        return True
     answer = ctypes.c_int(1)
     ctypes.CDLL(PETSc.__file__).PetscOptionsUsed(None, name.encode(), ctypes.byref(answer))
     return bool(answer.value)

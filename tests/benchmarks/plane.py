@@ -1,7 +1,7 @@
 """Contacts in the plane: iterations, time, memory and errors, mesh by mesh.
 
-``python3 tests/benchmarks/plane.py [--meshes 65 129 257 513] [--ranks 1 2] [--options pc_type=lu]``: scenes
-of a circular contact, M = 200 and L = 10, each in a process of its own; every table is Markdown.
+``python3 tests/benchmarks/plane.py [--meshes 65 129 257 513] [--ranks 1 2] [--options ksp_rtol=1e-4]``:
+scenes of a circular contact, M = 200 and L = 10, each in a process of its own; every table is Markdown.
 
 - smooth: steady start, counted as one step.
 - wave: cos kx cos ky of a half-width, a hundredth of the film (2 nm), pure rolling.

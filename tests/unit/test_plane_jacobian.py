@@ -10,7 +10,7 @@ from petsc4py import PETSc
 from scipy.sparse import bsr_matrix
 from support.points import point
 
-from ehlpetsc.base.errors import SolveFailed
+from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import limit_cavitation, open_cavity
 from ehlpetsc.discretisation.film_history import FilmHistory
@@ -21,7 +21,7 @@ from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.plane import system as plane
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
-from ehlpetsc.nonlinear.plane.preconditioner import SparseForm
+from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
 from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, fill, neighbour
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
@@ -103,10 +103,19 @@ def test_product_equals_differences(name):
     np.testing.assert_allclose(rows[2 * system.n :], expected[2 * system.n :], rtol=1e-7)
 
 
+@pytest.fixture
+def complete(monkeypatch):
+    """Complete factors of the sparse form in place of incomplete ones."""
+    build = Elimination._build
+    monkeypatch.setattr(
+        Elimination, "_build", lambda self, operator, with_coarse: build(self, operator, with_coarse, True)
+    )
+
+
 @pytest.mark.parametrize("name", ("rolling", "eyring", "layer", "strip", "tilt"))
-def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name):
+def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name, complete):
     system, state, inputs = scene(name)
-    options = RunOptions(given={"pc_type": "lu", "ksp_rtol": "1e-6"}, kind="point")
+    options = RunOptions(given={"ksp_rtol": "1e-6"}, kind="point")
     with options:
         solver = NewtonSolver(system, options)
         system.set_initial_guess(state, inputs)
@@ -123,22 +132,17 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name):
     assert (residual - b).norm() < 1.01e-6 * b.norm()
 
 
-def test_read_options_of_the_pressures_are_not_called_unused():
-    table, options = PETSc.Options(), RunOptions(kind="point")
-    for name in ("pc_factor_levels", "pc_factor_levls"):
-        table[name] = "2"
-    try:
-        prepared(*scene("layer"), {}, options)
-        assert options.unused_so_far() == {"pc_factor_levls"}
-    finally:
-        for name in ("pc_factor_levels", "pc_factor_levls"):
-            table.delValue(name)
+@pytest.mark.parametrize(("name", "value"), [("pc_type", "lu"), ("pc_python_type", "own.Preconditioner")])
+def test_preconditioners_of_the_user_are_refused(name, value):
+    with pytest.raises(UsageError, match=f"^-{name} {value}: a contact in the plane has a precond"):
+        RunOptions(given={name: value}, kind="point").__enter__()
+    with RunOptions(given={"pc_type": "python"}, kind="point"):
+        assert PETSc.Options()["pc_python_type"].endswith("EliminatedFilm")
 
 
-def prepared(system, state, inputs, given, options=None):
-    """Elimination with the factors of a state, with some options."""
-    options = options or RunOptions(given=given, kind="point")
-    with options:
+def prepared(system, state, inputs):
+    """Elimination with the factors of a state."""
+    with RunOptions(kind="point") as options:
         NewtonSolver(system, options)
         system.set_initial_guess(state, inputs)
         system.linearise(system.x)
@@ -162,16 +166,19 @@ def test_options_of_a_run_inside_of_another_one_are_its_own():
     with RunOptions("mixed", {"snes_max_it": "7"}, kind="point") as outer:
         before = table.getAll()
         with RunOptions("direct", kind="line"):
-            assert (table.getInt("snes_max_it"), table.hasName("pressure_pc_factor_levels")) == (30, False)
+            assert (table.getInt("snes_max_it"), table.hasName("ksp_gmres_cgs_refinement_type")) == (
+                30,
+                False,
+            )
         assert table.getAll() == before
         assert outer.given == {"snes_max_it": "7"}
     assert not table.getAll()
 
 
 @pytest.mark.parametrize("name", ("layer", "strip", "direct"))
-def test_blocks_filled_in_place_are_those_of_the_matrix(name):
+def test_blocks_filled_in_place_are_those_of_the_matrix(name, complete):
     system, state, inputs = scene(name)
-    elimination = prepared(system, state, inputs, {"pc_type": "jacobi"})
+    elimination = prepared(system, state, inputs)
     form, p = elimination.factors.sparse, system.problem
     factors = form.factors
     blocks = np.zeros_like(factors.blocks)
@@ -187,13 +194,20 @@ def test_blocks_filled_in_place_are_those_of_the_matrix(name):
 
 
 @pytest.mark.parametrize("name", ("layer", "direct"))
-def test_own_incomplete_factors_are_those_of_petsc(name):
+def test_own_incomplete_factors_are_those_of_petsc(name, request):
     """ILU(1) of the same order of nodes."""
     system, state, inputs = scene(name)
     rows = np.random.default_rng(9).standard_normal((2, system.n))
-    of_petsc = prepared(system, state, inputs, {"pc_type": "ilu"}).factors.sparse.solve(*rows)
-    own = prepared(system, state, inputs, {}).factors.sparse.solve(*rows)
-    for values, expected in zip(own, of_petsc, strict=True):
+    own = prepared(system, state, inputs).factors.sparse.solve(*rows)
+    request.getfixturevalue("complete")
+    form = prepared(*scene(name)).factors.sparse
+    of_petsc = PETSc.PC().create()
+    of_petsc.setOperators(form.factors.matrix)
+    of_petsc.setType("ilu")
+    of_petsc.setFactorLevels(1)
+    of_petsc.setFactorShift(PETSc.Mat.FactorShiftType.INBLOCKS)
+    form.factors.pc = of_petsc
+    for values, expected in zip(own, form.solve(*rows), strict=True):
         np.testing.assert_allclose(values, expected, atol=1e-4 * abs(expected).max())
 
 

@@ -14,7 +14,9 @@ that elastic solids would have, :math:`s=\max(q,0)+P` that of both. Of the nodes
 So the signs of :math:`s-p_y` and q carry the conditions, and all of them hold exactly at any q and w; a node
 at :math:`p_y` but for rounding, as those that have yielded begin the next step, counts as yielding. Rigid
 solids, :math:`P=K\max(-w,0)`, are :class:`.mixed.MixedContact`; those of a layer, :math:`P=p_c(w)`,
-:class:`.compliant.CompliantContact`.
+:class:`.compliant.CompliantContact`. A layer on solids that yield is a class of its own although the hardness
+of its asperities bounds their pressure too: oil and asperities together load the solids, whose depth is a
+result that running in, lives and the mixed contacts of the published cases are about.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-r"""Factors of the sparse form of a contact in the plane: incomplete LU of this program, or PETSc's.
+r"""Factors of the sparse form of a contact in the plane: incomplete LU, complete LU where that breaks down.
 
 A row of the sparse form has blocks of two unknowns at the nodes i-2 .. i+1, below and above. The incomplete
 LU keeps those that two of them bring, ILU(1), and no others: four to the left of the diagonal, four to the
@@ -16,18 +16,12 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, UNKNOWNS, pattern
 from ehlpetsc.nonlinear.two_fields import owned
 
-PREFIX = "pressure_"  # of the options of PETSc's preconditioner; -pc_type means -pressure_pc_type
 # blocks of a row of the incomplete LU, of the nodes i-n_x, i-n_x+1, i-2, i-1, i, i+1, i+n_x-2, i+n_x-1, i+n_x
 BELOW, BELOW_RIGHT, SECOND, LAST, DIAGONAL, NEXT, ABOVE_SECOND, ABOVE_LEFT, ABOVE = map(unsigned, range(9))
 BLOCKS = 9
 OF_STENCIL = (2, 3, 4, 5, 0, 8)  # blocks of the stencil's nodes
 OVERLAP = 4  # rows of the neighbouring ranks that a rank factors beside its own
 ONE, TWO, SINGLE = unsigned(1), unsigned(2), np.float32(1.0)
-
-
-def uses_petsc() -> bool:
-    """Whether an option of the user asks for a preconditioner of PETSc."""
-    return any(name.startswith(PREFIX) for name in PETSc.Options().getAll())
 
 
 class IncompleteLU:
@@ -166,13 +160,10 @@ def substitute(blocks: np.ndarray, n_x: int, x: np.ndarray) -> None:
         x[i, 0], x[i, 1] = a * u + b * v, c * u + d * v
 
 
-class PETScFactors:
-    """PETSc's preconditioner of the options with :data:`PREFIX`, of an assembled matrix.
+class CompleteLU:
+    """LU of the assembled matrix by PETSc, on several ranks by MUMPS."""
 
-    `is_complete`: whether the factors are complete, whatever the options.
-    """
-
-    def __init__(self, problem: EHLProblem, comm: PETSc.Comm, is_complete: bool):
+    def __init__(self, problem: EHLProblem, comm: PETSc.Comm):
         local, block = problem.local, UNKNOWNS
         self.pointers = np.empty(local + 1, dtype=np.int32)
         self.places = np.empty((local, STENCIL), dtype=np.int8)
@@ -187,13 +178,8 @@ class PETScFactors:
         self.matrix.setOption(PETSc.Mat.Option.ROW_ORIENTED, False)
         self.pc = PETSc.PC().create(comm)
         self.pc.setOperators(self.matrix)
-        if is_complete:
-            self.pc.setType("lu")
-            self.pc.setFactorSolverType("petsc" if comm.size == 1 else "mumps")
-        else:
-            self.pc.setOptionsPrefix(PREFIX)
-            self.pc.setType("ilu" if comm.size == 1 else "asm")
-            self.pc.setFromOptions()
+        self.pc.setType("lu")
+        self.pc.setFactorSolverType("petsc" if comm.size == 1 else "mumps")
         self.right, self.left = self.matrix.createVecs()
         self._petsc_objects = owned(self, self.matrix, self.pc, self.right, self.left)
         self.b = self.right.array.reshape(local, block)

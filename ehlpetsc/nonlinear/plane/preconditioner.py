@@ -1,12 +1,11 @@
-r"""Preconditioner of a contact in the plane: film and load eliminated, the pressures by PETSc.
+r"""Preconditioner of a contact in the plane: film and load eliminated, then a system of the pressures.
 
 For a right-hand side (b_g, b_F, b_W) of the rows of deflection, Reynolds equation and border:
 
 1. The separation by the row of the deflection, :math:`\delta s=D\,\delta p+\delta g_b+b_g/s_g`, is put
    into the Reynolds rows (:mod:`.reduction`).
 2. The pressures follow from a coarse correction (:mod:`.coarse_space`) and from the sparse form
-   (:mod:`.screened_poisson`) by its incomplete LU or by PETSc's preconditioner of the user's options,
-   ``-pc_type`` (:mod:`.factors`). The border adds rows and columns.
+   (:mod:`.screened_poisson`) by its incomplete LU (:mod:`.factors`). The border adds rows and columns.
 3. One convolution gives the separation and with it both unknowns of each node: the rows of the deflection are
    exact but where pressure and separation depend on each other.
 
@@ -29,7 +28,7 @@ from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
-from ehlpetsc.nonlinear.plane.factors import OVERLAP, IncompleteLU, PETScFactors, uses_petsc
+from ehlpetsc.nonlinear.plane.factors import OVERLAP, CompleteLU, IncompleteLU
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import BOUND, PRESSURE, Reduction, reduction_of, unknowns_of
 from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fitted_term, put, taken
@@ -72,8 +71,7 @@ class SparseForm:
 
     `term`: of the deflection, see :func:`.screened_poisson.fitted_term`.
     `precision`: of incomplete factors.
-    `is_complete`: whether the factors are complete, whatever the options; for oil so viscous that the
-        pivots of incomplete ones vanish.
+    `is_complete`: whether the factors are complete: for oil so viscous that pivots of incomplete ones vanish.
 
     `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
     `no_pressure`, `no_reynolds`: masks of the nodes of the window not `PRESSURE`, of the local nodes `BOUND`.
@@ -93,12 +91,11 @@ class SparseForm:
         self.problem, self.exchange, self.term = problem, exchange, term
         self.precision, self.is_complete = precision, is_complete
         n_y, self.n_x = problem.grid.shape
-        self.has_petsc = is_complete or uses_petsc()
-        self.overlap = 1 if self.has_petsc else min(OVERLAP, n_y)
+        self.overlap = 1 if is_complete else min(OVERLAP, n_y)
         self.own, nodes = exchange.slab(self.overlap), len(self._at_hand(np.empty((1, problem.local)))[0])
-        self.factors: PETScFactors | IncompleteLU
-        if self.has_petsc:
-            self.rows, self.factors = self.own, PETScFactors(problem, comm, is_complete)
+        self.factors: CompleteLU | IncompleteLU
+        if is_complete:
+            self.rows, self.factors = self.own, CompleteLU(problem, comm)
         else:
             self.rows, self.factors = slice(0, nodes), IncompleteLU(self.n_x, nodes, precision)
         self.of_rows = np.empty((self.rows.stop - self.rows.start, 2 * STENCIL), dtype=precision)
@@ -137,10 +134,10 @@ class SparseForm:
         """
         deflection, factors = self.problem.deflection, self.factors
         scales, rows = (deflection.cell, deflection.row_scale), (reynolds, separation)
-        if not self.has_petsc:
+        if not self.is_complete:
             rows = tuple(self._at_hand(rows))
         put(*self.of_factors, scales, rows, factors.b)
-        u = self.exchange.window(factors.solve()) if self.has_petsc else factors.solve()
+        u = self.exchange.window(factors.solve()) if self.is_complete else factors.solve()
         of_nodes, own = (self.kind, self.p_s, self.term), (self.n_x, self.own.start)
         return taken(*of_nodes, self.problem.grid.increments, separation, u, own)
 
@@ -230,7 +227,7 @@ class Elimination:
         of_border = [(by_p, by_r, global_sum(self.ranks, forces)) for by_p, by_r, forces in of_border]
         self.factors = Factors(sparse, coarse, of_border)
         is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
-        if is_broken and not (is_complete or sparse.has_petsc):
+        if is_broken and not is_complete:
             self._build(operator, with_coarse, is_complete=True)
 
     def _pressures(
