@@ -29,4 +29,6 @@ def operation_of(case: Case, scales: Scales) -> Operation:
         conditions = Conditions(*(float(column[0]) for column in table[1:5]))
         return ConstantOperation(conditions, min(travel, table.swept_length()))
     half_width = partial(scales.geometry.half_width, modulus=scales.E, extent=scales.extent)
-    return VariableOperation(table, case.time.courant, scales.spacing, half_width, scales.grid.growth, travel)
+    return VariableOperation(
+        table, case.time.shortest, scales.spacing, half_width, scales.grid.growth, travel
+    )

@@ -40,7 +40,7 @@ class Scales:
     moes_m, moes_l
         Moes' M and L; None in a dry case.
     dt
-        Time step [s], courant dx / max(u, |u1 - u2|/2); None in a steady case.
+        Time step [s], courant dx / max(u, |u1 - u2|/2), with a tolerance the shortest one; None if steady.
     duration
         Time in which the faster surface covers the travel [s]; None in a steady case.
     """
@@ -129,7 +129,7 @@ class Scales:
         dx = a / mesh.points_per_half_width
         if case.time:
             now = Conditions(contact.load, contact.radius, u1, u2)
-            dt = case.time.courant * dx / now.step_speed
+            dt = case.time.shortest * dx / now.step_speed
             duration = case.time.travel * a / max(abs(u1), abs(u2))
         return cls(
             geometry=geometry,

@@ -153,7 +153,7 @@ class VariableOperation:
     Attributes
     ----------
     courant
-        Courant number of the time steps.
+        Courant number of a step between two time levels.
     dx
         Spacing of the nodes [m].
     half_width
@@ -287,6 +287,19 @@ class VariableOperation:
         levels = self._levels
         k = max(whole_down(self.level(time, nominal)), 0) % (len(levels) - 1)
         return float(levels[k + 1] - levels[k])
+
+    def time_over(self, time: float, levels: int) -> float:
+        """Time over some time levels, at most to the level behind the next line of the table [s]."""
+        done, local = self._local(time)
+        begin = self.level(time, 0.0) - done * (len(self._levels) - 1)
+        next_line = self.table.time[
+            np.searchsorted(self.table.time, local * (1.0 + TIME_TOLERANCE), "right") :
+        ]
+        line = (
+            np.interp(next_line[0], self._levels, np.arange(len(self._levels))) if len(next_line) else np.inf
+        )
+        end = min(whole_down(begin) + levels, whole_up(line), len(self._levels) - 1)
+        return min(float(self._levels[end]) - local, self.duration - time)
 
     def time_left(self, time: float, nominal: float) -> float:
         """Time to the next time level or to the end of the run, whichever is nearer [s]."""

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 TOTAL, RECORD = "total ", "record "  # prefixes of the names of totals and of effects with a record
 EARLIER = "earlier {}"  # prefix of the values of an earlier level
-OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled")
+OF_STATE = ("m", "m_older", "time", "dt", "step", "retries", "travelled", "error")
 NOT_PHYSICS = ("title", "output", "post", "petsc", "series")  # tables whose changes are not reported
 SCALE_TOLERANCE = 1e-12  # relative
 SCALE_NAMES = ("a", "p0", "h")  # of load, radius and elasticity
@@ -165,7 +165,7 @@ def _changes_of(names: Collection[str], earlier: dict, now: dict, case: Case) ->
     return f": {', '.join(changes[:MAX_NAMED])}{more}" if changes else ""
 
 
-VERSION = 8  # of the format
+VERSION = 9  # of the format
 HEADER_BYTES = 512
 SIGNATURE = b"ehlpetsc restart file %d\n" % VERSION
 

@@ -18,6 +18,7 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import SECONDS_IN_PLACE, ProgressLine, duration, in_notebook, on_terminal
+from ehlpetsc.base.counts import whole_down
 from ehlpetsc.base.errors import ExitStatus, OutputError, OutputLost
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.nonlinear.options import WRITING
@@ -27,7 +28,6 @@ from ehlpetsc.results.writer import Layout, ResultWriter, StoredSurface
 from ehlpetsc.run import checkpoint
 from ehlpetsc.run.forecast.limits import limits
 from ehlpetsc.run.ranks import Deadline, on_root
-from ehlpetsc.stepping.time_stepping import on_level
 
 if TYPE_CHECKING:
     from ehlpetsc.run.simulation import AcceptedState, Simulation
@@ -248,10 +248,18 @@ class Recorder(Output):
 
     def _append(self, state: AcceptedState) -> None:
         every, steady = self.simulation.case.output.every, self.simulation.case.time is None
-        level, nominal = self.simulation.operation.level, self.simulation.scales.dt
-        frame = every == 1 or steady or on_level(level(float(state.time), nominal), every)
+        frame = every == 1 or steady or self._passes_frame(float(state.time), float(state.dt), every)
         with self._kept_if_lost():
             self._writer.append(state.step, state.time, state.fields, state.scalars, state.in_contact, frame)
+
+    def _passes_frame(self, time: float, dt: float, every: int) -> bool:
+        """Whether a step of `dt` to a time [s] ends on or passes one of every so many time levels."""
+        if not dt > 0.0:  # the state at time 0
+            return True
+        before, after = (
+            self.simulation.operation.level(t, self.simulation.scales.dt) for t in (time - dt, time)
+        )
+        return whole_down(after / every) > whole_down(before / every)
 
     def _close(self, status: ExitStatus) -> None:
         simulation, surfaces = self.simulation, self._surfaces

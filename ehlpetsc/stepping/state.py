@@ -15,11 +15,12 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 
 
 class TimeLevel(NamedTuple):
-    """Unknowns of an earlier time level, and the distance travelled by the film [m]."""
+    """Unknowns of an earlier time level, the distance travelled by the film [m], and its time [s]."""
 
     travelled: float
     q: np.ndarray
     w: np.ndarray
+    time: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,8 @@ class State:
         Distances travelled by surfaces 1 and 2 since time 0 [m], signed.
     earlier
         Up to two previous levels, latest first.
+    error
+        Relative error of the film in the step, see :mod:`.step_control`; None: not estimated.
     newton, retries
         Iterations of the step, failed attempts included; number of times that it was halved.
     records
@@ -58,6 +61,7 @@ class State:
     step: int = 0
     travelled: tuple[float, float] = (0.0, 0.0)
     earlier: tuple[TimeLevel, ...] = ()
+    error: float | None = None
     newton: int = 0
     retries: int = 0
     records: dict = field(default_factory=dict, repr=False)
@@ -90,7 +94,7 @@ class State:
     @property
     def level(self) -> TimeLevel:
         """Time level for the predictor of later steps."""
-        return TimeLevel(0.5 * sum(self.travelled), self.q, self.w)
+        return TimeLevel(0.5 * sum(self.travelled), self.q, self.w, self.time)
 
 
 MIN_FILM_DIVISOR = 1e-3  # of the expected film: on a coarse mesh the smooth solution may be in contact too

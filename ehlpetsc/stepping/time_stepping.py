@@ -4,9 +4,11 @@ The initial guess of a step is that of :mod:`.state`. A step that does not conve
 :func:`next_step` returns to the nominal step.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -25,6 +27,12 @@ from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step
 from ehlpetsc.stepping.state import State, TimeLevel, predict
 from ehlpetsc.stepping.steady_start import steady
 
+if TYPE_CHECKING:
+    from ehlpetsc.base.declarations import Values
+    from ehlpetsc.physics import Operation
+    from ehlpetsc.physics.variable_operation import VariableOperation
+    from ehlpetsc.stepping.step_control import StepControl
+
 REST_SPEED = 1e-9  # of the scales' speed: a slower film is at rest
 REST_RAMP_LENGTH = 1.0  # half-widths of entrained distance over which roughness at rest is ramped up
 LAST_OF_RAMP = 0.15  # of it: what a mesh does itself that takes its state from a coarser one
@@ -32,11 +40,6 @@ MAX_STEADY_SOLUTIONS = 60  # of a steady start, in turn with the records of the 
 MIN_STEP_RATIO = 2.0**-12  # smallest step over the nominal one
 MAX_STEP_RATIO = 2.0  # of successive steps; BDF2 is stable up to 2.4
 NEARLY_NOMINAL = 1.5  # a step within this factor of the nominal step is followed by the nominal step
-
-
-def on_level(steps: float, every: int = 1) -> bool:
-    """Whether a number of nominal steps is a multiple of `every`, except for rounding."""
-    return abs(steps - every * round(steps / every)) < COUNT_TOLERANCE
 
 
 def next_step(dt: float | None, retries: int, nominal: float, left: float) -> float:
@@ -57,6 +60,15 @@ def next_step(dt: float | None, retries: int, nominal: float, left: float) -> fl
 def ramp_time(scales: Scales, dt: float) -> float:
     """Duration of the ramp of roughness at rest [s], a whole number of steps of `dt` [s]."""
     return whole_up(REST_RAMP_LENGTH * scales.a / scales.u / dt) * dt
+
+
+def step_control(time: Values | None, operation: Operation) -> StepControl | None:
+    """Control of the steps of `[time]`; None: all steps are from one time level to the next."""
+    if time is None or time.tolerance is None or not operation.varies:
+        return None
+    from ehlpetsc.stepping.step_control import StepControl
+
+    return StepControl(time, cast("VariableOperation", operation))
 
 
 class TimeStepping:
@@ -85,6 +97,7 @@ class TimeStepping:
         # the baseline is the steady solution of the start, which holds for constant conditions only
         self._is_rough = any(effect.moves_with_surfaces for effect in effects)
         self._advected = self._is_rough and not self.operation.varies
+        self._control = step_control(time, self.operation)
 
     def start(
         self, records: dict, watch: Watch = None, guess: Unknowns | None = None, begun: State | None = None
@@ -291,8 +304,7 @@ class TimeStepping:
     def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:
         """State after one time step of `dt` [s], by default of the step control; halved as needed."""
         nominal = self.operation.time_step(state.time, self.scales.dt)
-        left = self.operation.time_left(state.time, nominal)
-        dt = dt or next_step(state.dt, state.retries, nominal, left)
+        levels, dt = (1, dt) if dt else self._length(state, nominal)
         self._prepare(nominal)
         retries = newton = 0
         while True:
@@ -300,22 +312,46 @@ class TimeStepping:
             try:
                 step, inputs = self.inputs(state, dt)
                 solved, iterations = self._solve_step(inputs, Unknowns(*guess, state.unknowns.border), watch)
-                break
             except SolveFailed as error:
-                newton, retries = newton + error.iterations, retries + 1
+                newton, retries, levels = newton + error.iterations, retries + 1, 1
                 dt *= 0.5
                 if dt < MIN_STEP_RATIO * nominal:
                     raise NotConverged(
                         f"step {state.step + 1}, time {state.time:.6e} s: {error}, also with a step of "
                         f"{dt:.2e} s. Try a smaller time.courant, a finer mesh or a higher viscosity"
                     ) from error
+                continue
+            newton, film_error = newton + iterations, self._error(state, solved, step)
+            if not (self._control and self._control.is_repeated(film_error, levels)):
+                break
+            levels = min(self._control.levels(dt, film_error, nominal), levels - 1)
+            dt = self._control.operation.time_over(state.time, levels)
         return self._state(
             solved,
             step,
             state.records,
             m_older=state.m,
             step=state.step + 1,
-            newton=newton + iterations,
+            error=film_error,
+            newton=newton,
             retries=retries,
             earlier=(state.level, *state.earlier[:1]),
         )
+
+    def _length(self, state: State, nominal: float) -> tuple[int, float]:
+        """Time levels that the next step spans, and its length [s]; `nominal`: to the next level [s]."""
+        if self._control and state.time >= 0.0:
+            levels = self._control.levels(state.dt, state.error, nominal, may_grow=not state.retries)
+            if levels > 1:
+                return levels, self._control.operation.time_over(state.time, levels)
+        left = self.operation.time_left(state.time, nominal)
+        return 1, next_step(state.dt, state.retries, nominal, left)
+
+    def _error(self, state: State, solution: Solution, end: Step) -> float | None:
+        """Relative error of the film in a step from a state; None without step control."""
+        if self._control is None:
+            return None
+        levels, model = (state.level, *state.earlier), self.problem.model
+        films = [solution.nodes.film, *(model.state(level.q, level.w).film for level in levels)]
+        times = [end.time, *(level.time for level in levels)]
+        return self._control.error(films, times, solution.nodes.pressure)

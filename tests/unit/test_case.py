@@ -265,7 +265,7 @@ def test_control_characters_in_a_title_are_refused(write, sign):
 def test_every_case_has_a_description_and_is_the_same_written_and_stored(path):
     tables, head = tomllib.loads(path.read_text()), path.read_text().splitlines()[:2]
     assert tables["title"] and all(line.startswith("# ") for line in head)
-    own = "ball coated fzg mixed life micropitting traction cmod discs optical superfinished".split()
+    own = "ball cam coated fzg mixed life micropitting traction cmod discs optical superfinished".split()
     assert path.stem.partition("_")[0] in own or "Holmes" in head[1] and "2005" in head[1]
     tables["petsc"] = {'a "b"': "tab\t, \\, \u00e9", "": [[1, 2.5e-17], [True]], "c": {"d": {"e": -0.0}}}
     assert tomllib.loads(toml_text(tables)) == tables
@@ -275,7 +275,12 @@ def test_every_case_has_a_description_and_is_the_same_written_and_stored(path):
     wave = {"kind": "sine", "amplitude": 2e-7, "wavelength": 1e-4}
     is_varied = "surface.2" in str(tables.get("series"))
     changed = case.load(path, sets if is_varied else sets | {"surface.2": {"synthetic": wave}})
-    assert case.stored_case(changed.text) == changed
+    stored = case.stored_case(changed.text)
+    if changed.operation and changed.operation.file:  # its columns are stored
+        for one, other in zip(stored.conditions, changed.conditions, strict=True):
+            np.testing.assert_array_equal(one, other)
+        stored, changed = (of.copy({"operation": None}) for of in (stored, changed))
+    assert stored == changed
 
 
 @pytest.mark.parametrize(

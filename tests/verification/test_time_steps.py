@@ -3,11 +3,15 @@
 import numpy as np
 import pytest
 
+from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.film_history import FilmLevels, film_history
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.checkpoint import load as load_checkpoint
+from ehlpetsc.run.checkpoint import save
 from ehlpetsc.run.forecast.validity import warnings
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.stepping.step_control import film_error
 
 LINE = {
     "title": "long steps",
@@ -99,13 +103,16 @@ def test_conditions_over_time_in_steps_of_ten_nodes():
         "speed_2": list(0.75 * speed),
     }
     case = {key: values for key, values in LINE.items() if key != "motion"} | {"operation": operation}
-    runs = {c: films_over_time(case | {"time": {"courant": c, "travel": 60.0}}) for c in (1.0, 10.0, 30.0)}
-    (exact_time, exact, iterations) = runs[1.0]
-    for courant, bound in ((10.0, 0.003), (30.0, 0.008)):
-        times, films, _ = runs[courant]
+    exact_time, exact, iterations = films_over_time(case | {"time": {"courant": 1.0, "travel": 60.0}})
+    for steps, bound, work in (
+        ({"courant": 10.0}, 0.003, 0.25),
+        ({"courant": 30.0}, 0.008, 0.1),
+        ({"courant": 100.0, "tolerance": 1e-3}, 0.003, 0.25),
+    ):
+        times, films, newton = films_over_time(case | {"time": steps | {"travel": 60.0}})
         expected = np.array([np.interp(times, exact_time, film) for film in exact.T]).T
         np.testing.assert_allclose(films, expected, rtol=bound)
-    assert runs[10.0][2] < 0.25 * iterations
+        assert newton < work * iterations
 
 
 def wave_amplitudes(courant: float) -> tuple[float, float]:
@@ -172,3 +179,60 @@ def test_roughness_in_long_steps_under_varying_conditions_causes_a_warning():
     speeds = {"time": [0.0, 1e-3], "speed_1": [1.5, 1.2], "speed_2": [1.0, 1.0]}
     assert step_notes(1.0, motion=None, operation=speeds) == []
     assert "2 times coarser" in step_notes(2.0, motion=None, operation=speeds)[0]
+
+
+def step_of(values: list[np.ndarray], dt: float, dt_older: float, rate: np.ndarray) -> np.ndarray:
+    """BDF2 step from two earlier values, the latest first, with a rate at its end."""
+    k = dt / (dt + dt_older)
+    return (values[0] + k * values[0] + k * dt / dt_older * (values[0] - values[1]) + dt * rate) / (1.0 + k)
+
+
+def test_error_estimate_is_the_local_error_of_a_cubic():
+    times = [2.0, 1.6, 1.3, 0.5]
+    films = [np.full(5, 7.0) + t**3 for t in times]
+    found = step_of(films[1:], times[0] - times[1], times[1] - times[2], np.full(5, 3.0 * times[0] ** 2))
+    expected = abs(found[0] - films[0][0]) / films[0][0]
+    assert film_error(films, times, np.ones(5)) == pytest.approx(expected, rel=1e-12)
+    assert film_error(films[:3], times[:3], np.ones(5)) is None
+
+
+def test_steps_of_a_restart_are_those_of_the_whole_run(tmp_path):
+    """The estimate of the last step is in the restart file."""
+    speeds = {"time": [0.0, 1e-3, 2e-3], "speed_1": [1.5, 2.2, 1.5], "speed_2": [1.0, 1.0, 1.0]}
+    case = load(
+        {key: of for key, of in LINE.items() if key != "motion"}
+        | {"operation": speeds, "time": {"courant": 50.0, "tolerance": 1e-3, "travel": 60.0}}
+    )
+    whole = Simulation(case)
+    for _ in range(9):
+        whole.advance()
+    save(tmp_path / "a.restart.h5", whole, np.zeros(whole.scales.grid.n, int), {})
+    again = Simulation(case)
+    checkpoint, _ = load_checkpoint(tmp_path / "a.restart.h5", case, again.scales)
+    again.resume(checkpoint.state, checkpoint.baseline)
+    lengths = [[one.advance().scalars["dt"] for _ in range(5)] for one in (whole, again)]
+    assert lengths[0] == lengths[1]
+    assert max(lengths[0]) > 5.0 * whole.scales.dt
+
+
+def test_tolerance_under_constant_conditions_is_refused():
+    with pytest.raises(CaseError, match=r"time.tolerance: allowed: with \[operation\] or \[gears\]"):
+        Simulation(load(LINE | {"time": {"courant": 10.0, "tolerance": 1e-3, "travel": 3.0}}))
+
+
+def reversal(outlet: float, end: float) -> list[str]:
+    """Warnings of a border of entrainment that falls from 1 to -1 m/s between 1 and 3 ms."""
+    speeds = {
+        "time": [0.0, 1e-3, 3e-3, end],
+        "speed_1": [1.2, 1.2, -0.8, -0.8],
+        "speed_2": [0.8, 0.8, -1.2, -1.2],
+    }
+    case = {key: of for key, of in LINE.items() if key != "motion"} | {"operation": speeds}
+    case = load(case | {"mesh": {"inlet": -outlet, "outlet": outlet, "points_per_half_width": 30}})
+    return [note for note in warnings(case, Scales.of(case)) if "reverses" in note]
+
+
+def test_border_whose_oil_arrives_late_after_a_reversal_causes_a_warning():
+    assert reversal(2.6, 6e-3) == []
+    assert "mesh.outlet = 3, arrives after 2 of the 18 half-widths" in reversal(3.0, 6e-3)[0]
+    assert "does not arrive within the 3.35 half-widths" in reversal(12.0, 3.05e-3)[0]

@@ -193,6 +193,16 @@ MESH_KEYS = {
 }
 MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_complete_mesh)
 
+
+class Time(Values):
+    """`[time]`: length of the run and of its steps."""
+
+    @property
+    def shortest(self) -> float:
+        """Courant number of the shortest step."""
+        return self.courant if self.tolerance is None else min(self.min_courant, self.courant)
+
+
 TIME_KEYS = {
     "travel": Required(
         "travel of the faster surface, `travel a = u_max t`", "half-widths", 1e-6, 1e5, replaced_by=VARYING
@@ -210,9 +220,17 @@ TIME_KEYS = {
     ),
     "courant": Key(
         "mesh spacings that the film moves in a step; less where surfaces pass it faster, "
-        "`dt = courant dx/max(|u|, |u1 - u2|/2)`",
+        "`dt = courant dx/max(|u|, |u1 - u2|/2)`; with tolerance in the longest step",
         *("", 1e-3, 100),
         default=1.0,
+    ),
+    "tolerance": Key(
+        "relative error of the film in a step under conditions that vary, by which steps are long or short; "
+        "left out: all steps by courant",
+        *("", 1e-6, 0.1),
+    ),
+    "min_courant": Key(
+        "courant of the shortest step, with tolerance", "", 1e-3, 100, default=1.0, below="courant"
     ),
     "passes": Key("passes of the same stretches of both surfaces", "", 1, 10_000, kind=int, default=1),
     "pass_shift": Key(
@@ -220,4 +238,4 @@ TIME_KEYS = {
         *("m", -1, 1),
     ),
 }
-TIME = KeyTable("time", "left out: steady", TIME_KEYS)
+TIME = KeyTable("time", "left out: steady", TIME_KEYS, values=Time)

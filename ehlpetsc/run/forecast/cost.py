@@ -160,7 +160,8 @@ def _part_in_contact(case: Case, s: Scales, profile: RoughSurface, reaches: floa
 
 def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:
     """Heading of a run in a few lines: title, size, surfaces."""
-    length = f"{steps(case, scales)} steps" if case.time else "steady"
+    at_most = "at most " * bool(case.time and case.time.tolerance)
+    length = f"{at_most}{steps(case, scales)} steps" if case.time else "steady"
     length += f" of {1e9 * scales.dt:.2f} ns" if case.time and not case.conditions else ""
     nodes, size = " x ".join(map(str, scales.grid.shape[::-1])), f"a = {1e3 * scales.a:.4f} mm"
     size += f", b = {1e3 * scales.b:.4f} mm" * math.isfinite(scales.b)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Values
@@ -17,11 +19,17 @@ from ehlpetsc.physics.film_formulas import (
 )
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
+
+if TYPE_CHECKING:
+    from ehlpetsc.physics.variable_operation import ConditionsTable
 from ehlpetsc.run.forecast.kinds import MAX_FILM_SLOPE, MESH_MARGIN
 
 MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
 MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film
 CORRELATION_LENGTHS = 4.0  # across a strip of random roughness; of its variance .45 is then uniform across
+EARLY = 0.1  # of a stroke: oil that arrives later leaves a film by the border of the mesh
+MIN_BORDER = 1.5  # half-widths: nearest border beside an outlet
+AT_REST = 1e-6  # of the longest stroke: shorter ones are rest
 RIGID_FILM = 1000.0  # a^2/R: below a thicker film solids hardly deform
 SOFT_LAYER = 0.1  # beta E* over p0: a node of a softer layer has no asperity pressure or all of it
 
@@ -58,6 +66,9 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
         return [f'{case.path}: time.ramp = "coarse": allowed: in steps {allowed}']
     if fault := _beside_mesh(case, scales):
         return [f"{case.path}: {fault}"]
+    varies = case.conditions is not None and case.conditions.varies
+    if case.time is not None and case.time.tolerance and not varies:
+        return [f"{case.path}: time.tolerance: allowed: with [operation] or [gears], conditions that vary"]
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
     film, opening = _inlet(case, scales)
@@ -113,6 +124,44 @@ def rolling_warnings(case: Case, scales: Scales) -> list[str]:
     if case.fluid is None or abs(scales.xi) > MAX_ROLLING:
         return []
     return KINDS[case.kind].part("forecast").rolling(case, scales)
+
+
+def reversal_warnings(case: Case, scales: Scales) -> list[str]:
+    """Warning of entrainment that reverses: the new inlet begins with the oil of the old outlet.
+
+    More oil enters at the border of the mesh, and arrives once the film has moved from there to the contact.
+    """
+    if case.fluid is None or case.conditions is None:
+        return []
+    strokes = _strokes_after_reversal(case.conditions)
+    border = case.mesh.outlet  # the inlet is as far out
+    shortest, way = min(strokes, default=math.inf) / scales.a, border - 1.0
+    if way <= EARLY * shortest:
+        return []
+    arrives = f"arrives after {way:.3g} of the {shortest:.3g} half-widths of the shortest stroke"
+    if way > shortest:
+        arrives = f"does not arrive within the {shortest:.3g} half-widths of the shortest stroke"
+    near = max(1.0 + EARLY * shortest, MIN_BORDER)
+    cure = f"it arrives {'within the first tenth' if near > MIN_BORDER else 'as early as it can'}"
+    return [
+        f"the entrainment reverses: the film then begins with the oil of the old outlet, and oil of the "
+        f"border, mesh.outlet = {border:g}, {arrives}; with mesh.inlet = {-near:.2g} and mesh.outlet = "
+        f"{near:.2g} {cure}"
+    ]
+
+
+def _strokes_after_reversal(table: ConditionsTable) -> list[float]:
+    """Distances of the film from each reversal of the entrainment to the next one or the end [m]."""
+    import numpy as np
+
+    from ehlpetsc.physics.variable_operation import cumulative
+
+    fine = table.sampled()
+    moved = cumulative(fine.entrainment, fine.time)
+    turns = np.flatnonzero(np.diff(np.sign(fine.entrainment)) != 0.0)
+    strokes = np.diff(moved[np.concatenate(([0], turns, [len(moved) - 1]))])
+    strokes = strokes[np.abs(strokes) > AT_REST * np.abs(strokes).max(initial=0.0)]
+    return [abs(float(after)) for before, after in pairwise(strokes) if before * after < 0.0]
 
 
 def strip_warnings(case: Case, scales: Scales) -> Iterator[str]:

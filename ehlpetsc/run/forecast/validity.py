@@ -14,7 +14,12 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.oil.laws import LAW_TABLES, names_in_use, reference_temperature
 from ehlpetsc.physics.oil.oils import OIL_SHEAR, OILS
 from ehlpetsc.physics.oil.rheology import shear_law
-from ehlpetsc.run.forecast.domain import domain_warnings, rolling_warnings, strip_warnings
+from ehlpetsc.run.forecast.domain import (
+    domain_warnings,
+    reversal_warnings,
+    rolling_warnings,
+    strip_warnings,
+)
 
 if TYPE_CHECKING:
     from ehlpetsc.case.tables import Case
@@ -39,6 +44,7 @@ def warnings(case: Case, scales: Scales, rough: Roughness | None = None) -> list
         notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
         notes += [*mesh_warnings(profiles, scales), *strip_warnings(case, scales)]
         notes += step_warnings(case, profiles, scales, operation_of(case, scales).varies)
+    notes += reversal_warnings(case, scales)
     return notes + rolling_warnings(case, scales) + heat_warnings(case, scales)
 
 
