@@ -182,7 +182,8 @@ class Reynolds(NoOil):
         balance(at, self.layout, law, table, (*history, rate / scale), self.dy / scale, rows)
         if self.has_sides is not None:
             law = self.face_law(inputs, self.dy)
-            self._add_across(at, self.shape, law, inputs.flow, table, self.dx / scale, rows)
+            across = inputs.cross_flow_table
+            self._add_across(at, self.shape, law, inputs.flow, across, self.dx / scale, rows)
         self._beyond_edges(derivatives.reshape(*self.shape, -1))
         if self.has_inlet:
             of_inlet = inlet(q[self.owned][first], h[self.owned][first], inputs.inlet_film)

@@ -18,7 +18,7 @@ from ehlpetsc.discretisation.finite_volumes import FLUIDITY, LN_ETA_P, PROPERTIE
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.physics.oil.laws import density_law, ln_viscosity, viscosity_law
 from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_law, stress_pressure
-from ehlpetsc.physics.oil.tabulated_flow import flow_table
+from ehlpetsc.physics.oil.tabulated_flow import cross_flow_table, flow_table
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
 
@@ -164,6 +164,12 @@ class StepInputs:
         """Table of the pressure flow, empty where the shear law has a closed form."""
         kind, _, *constants = self.flow
         return flow_table(kind, *constants)
+
+    @property
+    def cross_flow_table(self) -> np.ndarray:
+        """Table of the flow across the sliding, empty of Newton's law."""
+        kind, _, *constants = self.flow
+        return cross_flow_table(kind, *constants)
 
     def begin(self) -> StepInputs:
         """Inputs of one solve, see :meth:`.step_inputs.Oil.begin`."""

@@ -152,7 +152,8 @@ def fluxes(simulation):
     (n_y, n_x), (dy, dx), inputs = s.grid.shape, s.grid.increments, solution.inputs
     reynolds = simulation.stepper.problem.reynolds
     at = reynolds.properties(solution.nodes.reynolds_unknown, solution.nodes.film, inputs.oil)
-    constants, table = (s.h, *shear_constants(inputs, s), *reynolds.gap), inputs.flow_table
+    constants = (s.h, *shear_constants(inputs, s), *reynolds.gap)
+    table, table_across = inputs.flow_table, inputs.cross_flow_table
     along, across = ((s.p0 / (s.a * step), *constants) for step in (dx, dy))
     x, y = np.zeros((n_y, n_x)), np.zeros((n_y + 1, n_x))
     for row in range(n_y + 1):
@@ -162,7 +163,7 @@ def fluxes(simulation):
                 nodes = map(unsigned, (here - min(i, 1), here, here + 1))
                 x[row, i] = dy * flux_through(at, *nodes, table, along)[0]
             nodes = map(unsigned, (here - n_x - 1, here))
-            y[row, i] = dx * flux_across(at, *nodes, table, across, flow_law(inputs.fluid))[0]
+            y[row, i] = dx * flux_across(at, *nodes, table_across, across, flow_law(inputs.fluid))[0]
     return x, y
 
 

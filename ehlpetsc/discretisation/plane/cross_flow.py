@@ -3,17 +3,16 @@ r"""Finite volumes of the Reynolds equation: flow across, in strips and points (
 Across the direction of motion there is no entrainment; the pressure flow between two rows is central, with
 the film of the face and both nodes' fluidities, as along x.
 
-Flow across a sliding non-Newtonian film: the stress of sliding, :math:`\tau_m`, is along x and of the order
-of the Eyring stress, the one of the cross flow is small beside it. It then flows with the viscosity
-:math:`\eta_e=\tau_m/\dot\gamma_m` of the film that slides (the secant, whereas flow along x sees the
-tangent), as Ehret, Dowson and Taylor (1998) and Greenwood (2000) have it,
+Flow across a sliding non-Newtonian film: the magnitude of both stresses, along the sliding :math:`\tau` and
+across it :math:`zp_y`, sets the viscosity of both (see
+:func:`ehlpetsc.physics.oil.tabulated_flow.flow_beside_sliding`),
 
-.. math:: M_y=\frac{h^3}{12\eta}\Big[S_0^2+\Big(\frac{\eta}{\eta_e}\Big)^2-1\Big]^{1/2},\qquad
-   \frac{\eta}{\eta_e}=\frac{\eta|u_1-u_2|}{h\,\tau(\eta|u_1-u_2|/h)},
+.. math:: M_y=\int\frac{\dot\gamma(r)}{r}z^2\,dz,\qquad r=\sqrt{\tau^2+z^2p_y^2},\qquad
+   \int\frac{\dot\gamma(r)}{r}\tau\,dz=|u_1-u_2|.
 
-for Eyring's law :math:`\zeta/\operatorname{asinh}\zeta`, :math:`\zeta=\eta(u_1-u_2)/(\tau_0h)`. :math:`S_0`
-is the factor of the cross flow without sliding: the limits of a Newtonian oil, of pure rolling and of slow
-cross flow are exact.
+It is a table over the sliding speed and the gradient. In the limit of a slow cross flow the oil flows with
+the viscosity of the sliding film, the secant of the shear law (Ehret, Dowson & Taylor 1998; Greenwood 2000),
+whereas flow along x sees the tangent. The gradient along x is left out.
 """
 
 import numpy as np
@@ -38,38 +37,8 @@ from ehlpetsc.discretisation.finite_volumes import (
     fluidities,
 )
 from ehlpetsc.physics.contact.asperities import flow_factor
-from ehlpetsc.physics.oil.rheology import NEWTON, FlowLaw, flow_stress, mobilities
+from ehlpetsc.physics.oil.rheology import EYRING, FlowLaw, mobilities
 from ehlpetsc.physics.oil.tabulated_flow import tabulated_mobilities
-
-
-@compiled
-def cross_mobility(
-    film: float, resting: tuple, fluidity: float, sliding: float, law: FlowLaw
-) -> tuple[float, float, float, float, float]:
-    """Mobility of the flow across of one node of a face, and its derivatives.
-
-    With respect to film, gradient, ln(eta) and ln of the stress of the shear law.
-
-    `resting`: mobility without sliding and its derivatives by film, gradient and ln(eta).
-    """
-    value, by_h, by_gradient, by_ln_eta = resting
-    if sliding == 0.0 or law.kind == NEWTON or value == 0.0:
-        return value, by_h, by_gradient, by_ln_eta, 0.0
-    x = np.log(sliding / (fluidity * film * law.stress))
-    tau, by_x, _ = flow_stress(x, law, np.inf)
-    ratio, slope = law.stress * np.exp(x) / tau, 1.0 - by_x / tau  # eta over eta_e; d ln(ratio)/dx
-    newton = film**3 * fluidity / 12.0
-    excess = newton * np.sqrt(max(ratio * ratio - 1.0, 0.0))
-    total = np.sqrt(value * value + excess * excess)
-    rests, newton_2, slides_2 = value / total, newton * newton / total, (newton * ratio) ** 2 / total
-    by_excess = slides_2 - newton_2  # derivative by ln(newton); by ln(ratio) it is slides_2
-    return (
-        total,
-        rests * by_h + (3.0 * by_excess - slides_2 * slope) / film,
-        rests * by_gradient,
-        rests * by_ln_eta - by_excess + slides_2 * slope,
-        -slides_2 * slope,
-    )
 
 
 @compiled
@@ -78,9 +47,9 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
 
     Derivatives are with respect to (q, h) of both nodes.
 
-    `at`, `table`: as of `finite_volumes.flux_through`, and `law` with the spacing across; its stress and
-        rise.
-    `flow`: shear law, its stress at zero pressure.
+    `at`: as of `finite_volumes.flux_through`, and `law` with the spacing across.
+    `table`: of :func:`ehlpetsc.physics.oil.tabulated_flow.cross_flow_table`.
+    `flow`: shear law.
     """
     if at[DP, left] == 0.0 and at[DP, right] == 0.0:  # no pressure in a cavity
         return 0.0, 0.0, 0.0, 0.0, 0.0
@@ -90,13 +59,14 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
     if rise != 0.0:
         stress += 0.5 * rise * (at[P, left] + at[P, right])
     fluidity_l, fluidity_r = fluidities(at, left, right)
-    state = film, gradient, fluidity_l, fluidity_r, stress, 0.0
-    at_rest_l, at_rest_r = tabulated_mobilities(*state, table) if len(table) > 0 else mobilities(*state)
-    now = FlowLaw(flow.kind, stress if flow.kind != NEWTON else 1.0, flow.n, flow.a)
+    state = film, gradient, fluidity_l, fluidity_r, stress
+    if len(table) > 0 and (sliding != 0.0 or flow.kind != EYRING):
+        now_l, now_r = tabulated_mobilities(*state, sliding / stress, table)
+    else:
+        now_l, now_r = mobilities(*state, 0.0)
+    (m_l, h_l, g_l, eta_l), (m_r, h_r, g_r, eta_r) = now_l, now_r
     factor, factor_h = flow_factor(film, layer) if layer != 0.0 else (1.0, 0.0)
     half = 0.5 * gradient
-    m_l, h_l, g_l, eta_l, s_l = cross_mobility(film, at_rest_l, fluidity_l, sliding, now)
-    m_r, h_r, g_r, eta_r, s_r = cross_mobility(film, at_rest_r, fluidity_r, sliding, now)
     mean, weight_l, weight_r = face_mean(at[RHO, left] * m_l, at[RHO, right] * m_r, leaks)
     rho_l, rho_r = weight_l * at[RHO, left], weight_r * at[RHO, right]
     by_film = half * per_film * (factor * (rho_l * h_l + rho_r * h_r) + 2.0 * factor_h * mean)
@@ -104,11 +74,9 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
     by_state_l = weight_l * at[RHO_P, left] * m_l + at[LN_ETA_P, left] * rho_l * eta_l
     by_state_r = weight_r * at[RHO_P, right] * m_r + at[LN_ETA_P, right] * rho_r * eta_r
     by_p_l, by_p_r = half * factor * by_state_l - by_difference, half * factor * by_state_r + by_difference
-    if rise != 0.0:  # the mobility at rest is a function of gradient over stress
-        at_rest = 0.0
-        if at_rest_l[0] > 0.0 and m_l > 0.0:
-            at_rest -= gradient * (rho_l * g_l + rho_r * g_r)
-        by_stress = factor * half * (at_rest + rho_l * s_l + rho_r * s_r) * 0.5 * rise / stress
+    if rise != 0.0:  # the mobility over the fluidity is a function of sliding and gradient over the stress
+        s_l, s_r = (-m_l - eta_l - gradient * g_l), (-m_r - eta_r - gradient * g_r)
+        by_stress = factor * half * (rho_l * s_l + rho_r * s_r) * 0.5 * rise / stress
         by_p_l, by_p_r = by_p_l + by_stress, by_p_r + by_stress
     by_film_l, by_film_r = by_film * film_l, by_film * film_r
     if at.shape[0] > PROPERTIES:

@@ -171,7 +171,7 @@ class HeatStep:
         of_faces = faces_in_rows(self.rows, at, along, table, oil, max_flow)
         couette, pressure_heat, spread, gradient = of_faces
         for law in across:
-            laws = law, inputs.flow, table
+            laws = law, inputs.flow, inputs.cross_flow_table
             pressure_heat += cross_flow_heat(at, s.shape, s.periodic, laws, oil, max_flow)
         if backward:
             solved, couette, pressure_heat, spread, gradient = map(

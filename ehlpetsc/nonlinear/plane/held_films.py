@@ -51,7 +51,8 @@ class HeldFilms:
 
     def balance(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residual of some cells, none at the inlet, and derivatives by q of their stencils, (nodes, 6)."""
-        r, of_flow = self.reynolds, (tuple(self.inputs.flow), self.inputs.flow_table)
+        r, tables = self.reynolds, (self.inputs.flow_table, self.inputs.cross_flow_table)
+        of_flow = tuple(self.inputs.flow), tables
         rows = np.empty(len(nodes)), np.empty((len(nodes), STENCIL))
         balance_at(self.at, nodes, r.n_x, self.laws, *of_flow, self.storage, (r.dy, r.dx), rows)
         return rows
@@ -107,27 +108,28 @@ def balance_at(
     n_x: int,
     laws: tuple,
     flow: tuple,
-    table: np.ndarray,
+    tables: tuple,
     storage: tuple,
     weights: tuple,
     rows: tuple,
 ) -> None:
     """Mass balance of some local nodes, none at the inlet, as :class:`.reynolds.Reynolds` sums it up.
 
-    `laws`, `weights`: of the fluxes along x and across; `flow`: shear law.
+    `laws`, `tables`, `weights`: of the fluxes along x and across; `flow`: shear law.
     `rows`: filled in: residual, shape (nodes,); derivatives by q of the `STENCIL` alone, (nodes, 6).
     """
     (along, across), (m_old, extrapolated, k, rate), law = laws, storage, FlowLaw(*flow)
+    table_x, table_y = tables
     (weight_x, weight_y), (residual, derivatives), stride = weights, rows, unsigned(n_x + 1)
     for j in range(len(nodes)):
         node, by = unsigned(nodes[j]), derivatives[j]
         i = node % unsigned(n_x)
         here = (node // unsigned(n_x) + ONE) * stride + i
         behind = here - ONE - ONE if i > ONE else here - ONE
-        inflow = flux_through(at, behind, here - ONE, here, table, along)
-        outflow = flux_through(at, here - ONE, here, here + ONE, table, along)
-        below = flux_across(at, here - stride, here, table, across, law)
-        above = flux_across(at, here, here + stride, table, across, law)
+        inflow = flux_through(at, behind, here - ONE, here, table_x, along)
+        outflow = flux_through(at, here - ONE, here, here + ONE, table_x, along)
+        below = flux_across(at, here - stride, here, table_y, across, law)
+        above = flux_across(at, here, here + stride, table_y, across, law)
         stored, by_m, _ = positive_extrapolation(at[M, here], m_old[node], k)
         residual[j] = weight_x * (outflow[0] - inflow[0]) + (stored - extrapolated[node]) * rate
         residual[j] += weight_y * (above[0] - below[0])

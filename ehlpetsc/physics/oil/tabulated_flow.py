@@ -1,7 +1,8 @@
 r"""Pressure flow of a sheared film by a table, for shear laws without a closed form, and the stress with it.
 
-The flow across an isothermal film depends on its sliding speed and its pressure gradient alone: a table over
-both is computed once for the constants of a law, :func:`flow_table`.
+The flow of an isothermal film depends on its sliding speed and its pressure gradient alone: a table over both
+is computed once for the constants of a law, of the flow along the sliding by :func:`flow_table`, across it by
+:func:`cross_flow_table`.
 """
 
 from __future__ import annotations
@@ -11,11 +12,12 @@ from functools import cache
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined, unsigned
-from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, MAX_SERIES_STRESS, FlowLaw, flow_stress
+from ehlpetsc.physics.oil.rheology import CARREAU, EYRING, MAX_SERIES_STRESS, NEWTON, FlowLaw, flow_stress
 
 MIN_RATE = 1e-30  # shear rate and stress difference of a film at rest, over those of its law
 NO_FLOW = 0.0, 0.0, 0.0, 0.0
 TABLE_STEPS = 0.25, 0.1  # of ln(Gamma) and ln(s), over the width of the bend in Carreau's law
+CROSS_STEPS = 0.5, 0.1  # the same of the flow across
 RANGE = 14.0  # of both: exp(-14) is the error of the asymptotes beyond
 NEWTONIAN = 1e-8  # accuracy to which it is below some Gamma and s
 SHALLOW = 1e-4  # stress difference across the film over the law's stress, below which there is none
@@ -29,6 +31,8 @@ def rate_of_stress(t: float, law: FlowLaw) -> tuple[float, float]:
     size = abs(t)
     if size < 1e-8:
         return t, 1.0
+    if law.kind == EYRING:
+        return np.sinh(t), np.cosh(t)
     n, a = law.n, law.a
     ln_t, power = np.log(size), (n - 1.0) / a
     x = ln_t if size < 1.0 or law.kind != CARREAU else ln_t / n
@@ -88,6 +92,51 @@ def flow_across(gamma: float, drop: float, law: FlowLaw) -> tuple[float, float]:
 
 
 @compiled
+def flow_beside_sliding(gamma: float, drop: float, law: FlowLaw) -> float:
+    r"""Mobility of the flow across the sliding of a film, isothermal, by Gauss points.
+
+    The stress along the sliding, :math:`\tau`, is uniform, that of the cross flow :math:`zs`, and both rates
+    are those of the magnitude of the stress: with :math:`r=\sqrt{\tau^2+z^2s^2}`,
+
+    .. math:: \Phi=12\int\frac{\dot\gamma(r)}{r}z^2\,dz,\qquad \int\frac{\dot\gamma(r)}{r}\tau\,dz=\Gamma.
+
+    Parameters
+    ----------
+    gamma, drop
+        :math:`\Gamma=\eta|u_1-u_2|/(h\tau_s)` and :math:`s=hp_y/\tau_s`, not negative.
+    law
+        With a stress :math:`\tau_s` of 1.
+    """
+    low, high = 0.0, gamma  # the mean stress is below the viscous one
+    t = flow_stress(np.log(gamma), law, np.inf)[0]
+    phi = 0.0
+    for _ in range(200):
+        mean, slope, phi = 0.0, 0.0, 0.0
+        for k in range(len(_Z)):
+            z, weight = 0.5 * _Z[k], _WEIGHTS[k]
+            r = np.hypot(t, z * drop)
+            rate, by_r = rate_of_stress(r, law)
+            mean += weight * rate / r * t
+            slope += weight * (rate / r + (by_r - rate / r) * (t / r) ** 2)
+            phi += weight * rate / r * z * z
+        low, high = (t, high) if mean < gamma else (low, t)
+        new = t + (gamma - mean) / slope
+        if not low <= new <= high:
+            new = 0.5 * (low + high)
+        change, t = abs(new - t), new
+        if change <= 1e-13 * t:
+            break
+    return 12.0 * phi
+
+
+@compiled
+def _fill_cross_table(law: FlowLaw, x: np.ndarray, ln_drop: np.ndarray, out: np.ndarray) -> None:
+    for i in range(len(x)):
+        for j in range(len(ln_drop)):
+            out[i, j] = np.log(flow_beside_sliding(np.exp(x[i]), np.exp(ln_drop[j]), law))
+
+
+@compiled
 def _fill_table(law: FlowLaw, x: np.ndarray, ln_drop: np.ndarray, out: np.ndarray) -> None:
     for i in range(len(x)):
         for j in range(len(ln_drop)):
@@ -118,8 +167,6 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
     """
     if kind <= EYRING:
         return np.zeros((0, 0, 16))
-    from scipy.interpolate import CubicSpline
-
     law, sharpness = FlowLaw(kind, 1.0, n, a), a if kind == CARREAU else 1.0
     bend = max(sharpness, 2.0) / 2.0
     step_x, step = TABLE_STEPS[0] / bend, TABLE_STEPS[1] / bend
@@ -133,15 +180,47 @@ def flow_table(kind: int, n: float, a: float) -> np.ndarray:
         n, a = by_x / tau, 0.0
     values = np.empty((2, len(x), len(ln_drop)))
     _fill_table(law, x, ln_drop, values)
-    u, v = (np.arange(len(points), dtype=float) for points in (x, ln_drop))
-    table = np.zeros((2 * len(x) - 1, len(ln_drop) - 1, 16))
-    for quantity, rows in enumerate(np.split(table[:-1], 2)):
-        coefficients = CubicSpline(v, CubicSpline(u, values[quantity]).c, axis=2).c  # falling powers of v, u
+    return _table(values, (x, ln_drop), n, a, NEWTONIAN ** (1.0 / sharpness))
+
+
+def _table(
+    values: np.ndarray, points: tuple[np.ndarray, np.ndarray], n: float, a: float, newtonian: float
+) -> np.ndarray:
+    """Table as of :func:`flow_table` of quantities, shape (quantities, x, ln s), at equidistant points."""
+    from scipy.interpolate import CubicSpline
+
+    u, v = (np.arange(len(along), dtype=float) for along in points)
+    table = np.zeros((len(values) * (len(u) - 1) + 1, len(v) - 1, 16))
+    for value, rows in zip(values, np.split(table[:-1], len(values)), strict=True):
+        coefficients = CubicSpline(v, CubicSpline(u, value).c, axis=2).c  # falling powers of v, u
         rows[:] = coefficients[::-1, :, ::-1].transpose(3, 1, 0, 2).reshape(rows.shape)
-    ends = x[0], ln_drop[0], 1.0 / step_x, 1.0 / step, x[-1], ln_drop[-1]
-    constants = n, *ends, a, NEWTONIAN ** (1.0 / sharpness)
+    (x, ln_drop), steps = points, (along[1] - along[0] for along in points)
+    ends = x[0], ln_drop[0], *(1.0 / step for step in steps), x[-1], ln_drop[-1]
+    constants = n, *ends, a, newtonian
     table[-1, 0, : len(constants)] = constants
     return table
+
+
+@cache
+def cross_flow_table(kind: int, n: float, a: float) -> np.ndarray:
+    r"""Table of the flow across the sliding, as :func:`flow_table` of a user's law; empty of Newton's.
+
+    Its one quantity is :math:`\ln\Phi` of :func:`flow_beside_sliding`, to 1e-4 up to its last s; beyond it
+    grows as the law does at its end.
+    """
+    if kind == NEWTON:
+        return np.zeros((0, 0, 16))
+    sharpness = a if kind == CARREAU else 2.0
+    bend = max(sharpness, 2.0) / 2.0
+    first, last = -RANGE / min(sharpness, 2.0), RANGE / min(a, 2.0) if kind == CARREAU else 2.0 * RANGE
+    x = np.arange(first, last, CROSS_STEPS[0] / bend)
+    law = FlowLaw(kind, 1.0, n, a)
+    tau, by_x, _ = flow_stress(x[-1], law, np.inf)
+    steepest = n * last + 1.0 if kind == CARREAU else min(np.log(tau), 0.5 * RANGE) + 1.0
+    ln_drop = np.arange(first, steepest, CROSS_STEPS[1] / bend)
+    values = np.empty((1, len(x), len(ln_drop)))
+    _fill_cross_table(law, x, ln_drop, values[0])
+    return _table(values, (x, ln_drop), by_x / tau, 0.0, NEWTONIAN ** (1.0 / sharpness))
 
 
 @inlined
@@ -152,7 +231,10 @@ def _place(x: float, ln_drop: float, table: np.ndarray) -> tuple:
     beyond = max(max(x - table[last, 0, 5], (ln_drop - table[last, 0, 6]) / n), 0.0)
     u = max((x - beyond - table[last, 0, 1]) * table[last, 0, 3], 0.0)
     v = max((ln_drop - n * beyond - table[last, 0, 2]) * table[last, 0, 4], 0.0)
-    i, j = unsigned(min(u, table.shape[0] // 2 - 0.5)), unsigned(min(v, table.shape[1] - 0.5))
+    i, j = (
+        unsigned(min(u, (table[last, 0, 5] - table[last, 0, 1]) * table[last, 0, 3] - 0.5)),
+        unsigned(min(v, table.shape[1] - 0.5)),
+    )
     return i, j, u - i, v - j, beyond
 
 
