@@ -191,6 +191,7 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
     tables = [table for table in surface.values() if "short_cutoff" in table]
     if not tables:
         return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
+    from ehlpetsc.surfaces.motion.profile_checks import OTHER_HEIGHTS
     from ehlpetsc.surfaces.samples import measured_samples
 
     try:
@@ -200,7 +201,13 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
     except (ProfileError, CaseError):  # reported by the checks of the profiles
         return unresolved
     removed = [float((z - z_s).std()) for z, z_s in zip(before, after, strict=True)]
-    contact[MEASURED_KEY] = float(f"{math.hypot(*removed):.{DIGITS}g}")
+    height = float(f"{math.hypot(*removed):.{DIGITS}g}")
+    key = CONTACT.keys[MEASURED_KEY]
+    if not is_allowed(key, height):
+        found = f"short_cutoff removes waves of an rms height of {1e6 * height:.3g} um"
+        bounds = f"{1e6 * key.ge:g} to {1e6 * key.le:g} um"
+        return [Fault(place, f'{place} = "measured": {found}; allowed: {bounds}; {OTHER_HEIGHTS}')]
+    contact[MEASURED_KEY] = height
     return []
 
 

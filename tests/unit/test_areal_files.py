@@ -15,6 +15,8 @@ from ehlpetsc.base.errors import CaseError, ProfileError
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast.validity import warnings
 from ehlpetsc.surfaces.files.areal import gap_width, read_map
 from ehlpetsc.surfaces.files.profiles import Layout
 from ehlpetsc.surfaces.filters import smoothed, without_form
@@ -381,12 +383,41 @@ def test_an_implausible_ridge_is_refused(tmp_path, monkeypatch, more, factors, m
     judge(more | {"surface": {"2": {"file": "p.csv"}}}, message)
 
 
+@pytest.mark.parametrize("more", [{}, STRIP, LINE], ids=["point", "strip", "line"])
+@pytest.mark.parametrize(("factor", "is_warned"), [(1.0, False), (1e-3, True)])
+def test_heights_a_thousand_times_too_low_are_warned_of(tmp_path, monkeypatch, more, factor, is_warned):
+    """A profile in um that is read in nm is far smoother than the finest polish; lambda would be 1000."""
+    monkeypatch.chdir(tmp_path)
+    np.savetxt("p.csv", RIDGE * (1.0, factor), delimiter=",")
+    case = load(POINT | more | {"surface": {"2": {"file": "p.csv"}}})
+    found = [line for line in warnings(case, Scales.of(case)) if "hardly roughness" in line]
+    start = "surface.2: Rq 4.3e-05 um, hardly roughness: are the heights in another unit, "
+    assert len(found) == is_warned and all(line.startswith(start) for line in found)
+
+
+@pytest.mark.parametrize("more", [STRIP, LINE], ids=["strip", "line"])
+@pytest.mark.parametrize(("factor", "height"), [(1e4, "379"), (1e-9, "3.79e-11")])
+def test_heights_of_a_measured_layer_that_are_not_allowed_are_those_of_the_file(
+    tmp_path, monkeypatch, more, factor, height
+):
+    monkeypatch.chdir(tmp_path)
+    np.savetxt("p.csv", RIDGE * (1.0, factor), delimiter=",")
+    layer = {"model": "mixed", "asperity_height": "measured", "boundary_friction": 0.1}
+    given = POINT | more | {"surface": {"2": {"file": "p.csv", "short_cutoff": 20e-6}}}
+    fault = one_fault(load, given | {"contact": given["contact"] | layer})
+    found = f"short_cutoff removes waves of an rms height of {height} um; allowed: 1e-05 to 1 um; "
+    assert fault.startswith(
+        f'case: contact.asperity_height = "measured": {found}are the heights in another unit'
+    )
+
+
 DOUBTFUL = {
     "mm and um": ((1e3, 1e6), [], "warning: points 2e+03 um apart, hardly roughness: is x in another unit"),
     "um": ((4e5, 1e6), [], "warning: points 8e+05 um apart, hardly roughness: "),
     "heights in um": ((1, 1e6), [], "warning: Rq "),
     "heights in um, few": ((1, 1e2), [], "warning: slopes of "),
     "m as mm": ((1, 1), ["--set", "unit=mm", "--set", "x_unit=m"], "warning: Rq "),
+    "nm for um": ((1, 1e-3), [], "warning: Rq 4.3e-05 um, hardly roughness: are the heights in another unit"),
     "m": ((1, 1), [], None),
 }
 

@@ -37,11 +37,20 @@ def warnings(case: Case, scales: Scales, rough: Roughness | None = None) -> list
     """Warnings before a run, one message each; `rough`: surfaces of the case, None: read here."""
     notes = [*_scene_warnings(case, scales), *_oil_warnings(case), *domain_warnings(case, scales)]
     if case.surface.body_1 or case.surface.body_2:
-        from ehlpetsc.surfaces.motion.profile_checks import entry_warnings, mesh_warnings, step_warnings
+        from ehlpetsc.surfaces.motion.profile_checks import (
+            entry_warnings,
+            mesh_warnings,
+            smooth_warnings,
+            step_warnings,
+        )
         from ehlpetsc.surfaces.motion.roughness import Roughness
 
         profiles = rough or Roughness.of(case, scales)
-        notes += [*_tilt_warnings(case, profiles), *entry_warnings(case, scales, profiles)]
+        notes += [
+            *smooth_warnings(profiles),
+            *_tilt_warnings(case, profiles),
+            *entry_warnings(case, scales, profiles),
+        ]
         notes += [*mesh_warnings(profiles, scales), *strip_warnings(case, scales)]
         notes += step_warnings(case, profiles, scales, operation_of(case, scales).varies)
     notes += reversal_warnings(case, scales)

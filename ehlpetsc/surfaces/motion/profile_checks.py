@@ -19,7 +19,7 @@ MAX_SPACING = 0.25  # half-widths between two points: wider than asperities
 MAX_RQ = 0.1  # half-widths
 MAX_RQ_RATIO = 30.0  # Rq over the elastic approach a^2/R, or over the film
 MAX_SLOPE = 1.0  # root mean square
-SMALLEST_RQ = 0.1e-9  # m, of measured roughness
+SMALLEST_RQ = 1e-9  # m, of measured roughness: that of finest polish, and of ground steel in nm for um
 USUAL_SPACING, USUAL_RQ = 100e-6, 100e-6  # m, at most
 OTHER_SPACING = "is x in another unit, x_unit or unit, or spacing not in m?"
 OTHER_HEIGHTS = 'are the heights in another unit, unit = "mm", "um" or "nm", or is level or form needed?'
@@ -43,10 +43,24 @@ def absurd(surface: Topography, a: float, across: float, approach: float, film: 
 
 def doubts(surface: Topography) -> list[str]:
     """Warning of a profile or map whose spacings or heights are hardly those of roughness, a line or none."""
-    fault = _implausible(surface, (USUAL_SPACING, USUAL_SPACING), USUAL_RQ)
-    if fault is None and 0.0 < (rq := float(surface.z.std())) < SMALLEST_RQ:
-        fault = f"Rq {_um(rq)}", OTHER_HEIGHTS
+    fault = _implausible(surface, (USUAL_SPACING, USUAL_SPACING), USUAL_RQ) or _too_smooth(surface)
     return ["warning: {}, hardly roughness: {}".format(*fault)] if fault else []
+
+
+def smooth_warnings(rough: Roughness) -> list[str]:
+    """Warnings of measured surfaces whose heights are too low, mostly by a wrong unit."""
+    faults = {
+        side: _too_smooth(profile.given) for side, profile in rough.sides.items() if profile.given.measured
+    }
+    return [
+        "surface.{}: {}, hardly roughness: {}".format(side, *fault) for side, fault in faults.items() if fault
+    ]
+
+
+def _too_smooth(surface: Topography) -> tuple[str, str] | None:
+    """Words on an Rq of other than equal heights that is below that of roughness, as :func:`_implausible`."""
+    rq = float(surface.z.std())
+    return (f"Rq {_um(rq)}", OTHER_HEIGHTS) if 0.0 < rq < SMALLEST_RQ else None
 
 
 def _implausible(
