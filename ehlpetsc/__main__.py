@@ -34,6 +34,7 @@ COMMANDS = {
     "compare": ("compare", NUMERICS, "two results field by field"),
     "gears": ("gears", DRAWING, "path of contact of a gear pair, and a run along it"),
     "life": ("life", DRAWING, "wear against fatigue over many passes"),
+    "converge": ("converge", DRAWING, "a case on three meshes: order, limit and error bar"),
     "surface": ("surface", DRAWING, "roughness parameters of a profile or map file"),
     "explain": ("explain", FORECAST, "film, run time, effects of a case"),
     "keys": ("keys", READING, "keys of a case: meaning, unit, bounds, default"),

@@ -33,17 +33,24 @@ SHORT_VARIANCE = 0.01  # of the heights: waves of less are not counted where no 
 
 def wave_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     """Nodes on the waves of both surfaces, a line each, and the errors to expect; [] of smooth surfaces."""
-    lines, fewest = [], math.inf
+    found = waves(case, s, rough)
+    lines = [f"Waves of surface {side}: {words}" for side, (words, _) in found.items()]
+    if not lines or case.time is None or case.fluid is None:
+        return lines
+    fewest = min(shortest for _, shortest in found.values()) / s.grid.spacings[-1]
+    faster = s.u_max / abs(s.u) if s.u else math.inf
+    return [*lines, expected_errors(fewest, faster, case.contact, resolves_inlet(case, s))]
+
+
+def waves(case: Case, s: Scales, rough: Roughness | None) -> dict[str, tuple[str, float]]:
+    """Waves in words, and the shortest one along [m], of each surface that has any."""
+    found = {}
     for side, surface in (rough.sides if rough else {}).items():
         spec = case.surface.side(side)
         words, shortest = _of_keys(spec.synthetic or spec, s) or _of_heights(surface.given, s)
         if shortest:
-            fewest = min(fewest, shortest / s.grid.spacings[-1])
-            lines.append(f"Waves of surface {side}: {words}")
-    if not lines or case.time is None or case.fluid is None:
-        return lines
-    faster = s.u_max / abs(s.u) if s.u else math.inf
-    return [*lines, expected_errors(fewest, faster, case.contact, resolves_inlet(case, s))]
+            found[side] = words, shortest
+    return found
 
 
 def _of_keys(table: object, s: Scales) -> tuple[str, float] | None:
