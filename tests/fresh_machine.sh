@@ -62,24 +62,25 @@ expect() { # STATUS USER COMMAND WORDS ...: what it ends with and prints
     done
 }
 
-install_wheels() { # in the virtual environment ~/wheels of the guest; whether they are there
-    local python="python3 -c 'import sys; sys.exit(sys.version_info < (3, 12))'"
+install_wheels() { # in the virtual environment ~/wheels of the guest; status 1 where there are none to be had
+    local python="python3 -c 'import sys; sys.exit(sys.version_info < (3, 12))'" pip="~/wheels/bin/pip install -q"
     in_root root "$python" || { say "$release: no wheels for its Python"; return 1; }
     in_root root 'apt-get install -y -qq --no-install-recommends python3-venv' >/dev/null 2>&1 &&
-        in_root guest "python3 -m venv ~/wheels && ~/wheels/bin/pip install -q --retries 1 '.[wheel,test]'" ||
+        in_root guest "python3 -m venv ~/wheels && $pip --retries 1 hatchling" ||
         { say "$release: PyPI cannot be reached: the wheels are not tried"; return 1; }
+    in_root guest "$pip '.[wheel,test]'" || fail "the wheels cannot be installed"
 }
 
 try_wheels() { # imports in both orders, one case on one and two ranks, post, two MPIs, tests
-    local run="cd /tmp && ~/wheels/bin/ehlpetsc" case="~/ehlpetsc/cases/mixed.toml" python="~/wheels/bin/python"
+    local run="cd /tmp && ~/wheels/bin/ehlpetsc" python="~/wheels/bin/python"
     local solver="import ehlpetsc; ehlpetsc.Simulation" petsc="from petsc4py import PETSc" mpi="from mpi4py import MPI"
     local what="print('PETSc', *PETSc.Sys.getVersion(), MPI.Get_library_version())"
     expect 0 guest "$python -c \"$solver; $petsc; $mpi; $what\"" '^PETSc 3 [0-9 ]+MPICH'
     expect 0 guest "$python -c \"$mpi; $petsc; $solver; $what\"" '^PETSc 3 [0-9 ]+MPICH'
-    expect 0 guest "$run $case -o one.h5" ' 1 rank;' "^ehlpetsc: done $printed "
-    expect 0 guest "$run -n 2 $case -o two.h5" ' 2 ranks;' "^ehlpetsc: done $printed "
+    expect 0 guest "$run ~/ehlpetsc/$case -o one.h5" ' 1 rank;' "^ehlpetsc: done $printed "
+    expect 0 guest "$run -n 2 ~/ehlpetsc/$case -o two.h5" ' 2 ranks;' "^ehlpetsc: done $printed "
     expect 0 guest "$run post one.h5 --depths 0.1 && ~/wheels/bin/ehlpetsc plot one.h5" 'one.post.h5' '^one.png$'
-    expect 2 guest "PYTHONPATH=/usr/lib/python3/dist-packages; export PYTHONPATH; $run $case -o three.h5" \
+    expect 2 guest "PYTHONPATH=/usr/lib/python3/dist-packages; export PYTHONPATH; $run ~/ehlpetsc/$case -o three.h5" \
         '^ehlpetsc: petsc4py in .* needs libmpi.so.12, mpi4py in .* uses libmpi.so.40: '
     expect 0 guest "$python -m pytest -q -p no:cacheprovider $of_petsc" '[0-9]+ passed'
     expect 0 guest "~/wheels/bin/mpirun -n 2 $python -m pytest -q -p no:cacheprovider tests/mpi/test_ranks.py" \
@@ -110,7 +111,8 @@ for user in root guest; do
 done
 began=$SECONDS
 
-first='./run_mpi.sh cases/mixed.toml'
+case=cases/mixed.toml
+first="./run_mpi.sh $case"
 # as the README prints them, to the digits that do not depend on the processor
 digits='([0-9])\.(...)[0-9]*e'
 line="(.* newton=.)[0-9]* h_min=$digits-([0-9]+) p_max=$digits\\+([0-9]+) .*"
