@@ -7,21 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ehlpetsc.discretisation.contact import face_gap, smallest_film
+from ehlpetsc.discretisation.contact import smallest_film
 from ehlpetsc.discretisation.ehl_problem import Solution
-from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.step_inputs import (
     IsothermalOil,
     StepInputs,
-    mirrored,
-    shear_constants,
 )
-from ehlpetsc.discretisation.transport import carried, carried_with
-from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows, last_profile
+from ehlpetsc.effects.heat.film import FilmHeat, last_profile
 from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, T_MEAN, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
 from ehlpetsc.effects.heat.half_spaces import Body
 from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, mixing
+from ehlpetsc.effects.heat.solved_film import Flow, SolvedFilm
 from ehlpetsc.effects.heat.transport import (
     Film,
     explicit_transport,
@@ -34,9 +31,7 @@ from ehlpetsc.effects.step import Step
 from ehlpetsc.physics.flash_temperature import Solid
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
-NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 HEATED = 1.5  # half-widths: where a uniform flux gives the responses of the surfaces in a steady solve
-MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed
 MIN_RESPONSE = 0.01  # of the maximum
 NO_RESPONSE = 1e-30  # m^2 K/W: bodies without response share equally
 OF_CHANGE = 1e-3  # of the change between two solutions
@@ -61,6 +56,19 @@ class Temperatures(NamedTuple):
         return self.state[T_MEAN]
 
 
+class Heating(NamedTuple):
+    """Temperatures, film and heat of an accepted solution.
+
+    `source`, `spread`, `solved`: as of :class:`.record.HeatRecord`, shape (n,).
+    """
+
+    temperatures: Temperatures
+    film: Film
+    source: np.ndarray
+    spread: np.ndarray
+    solved: np.ndarray
+
+
 class HeatStep:
     """Steps of one scene."""
 
@@ -71,10 +79,10 @@ class HeatStep:
         solids = map(Solid, self.heat.conductivity, self.heat.density, self.heat.heat_capacity)
         dt = s.dt or 0.5 * s.spacing / s.u_max
         self.bodies = [Body(solid, u, s.grid, dt) for solid, u in zip(solids, (s.u1, s.u2), strict=True)]
-        self.capacity = self.heat.oil_density * self.heat.oil_heat_capacity
+        self.films = SolvedFilm(scene)
+        self.capacity, self.rows = self.films.capacity, self.films.rows
         # of films that close the shear would heat without limit, and not at all once they are closed
         self.thinnest = 0.0 if smallest_film(case.contact, s) else MOLECULES
-        self.gap, self.rows = face_gap(case.contact), s.grid.n // s.nx
         self.coldest = min(self.inlet, *self.bulk)
 
     def film_heat(self, record: HeatRecord, inputs: StepInputs, step: Step) -> FilmHeat:
@@ -97,7 +105,7 @@ class HeatStep:
             responses = [np.full(n, body.response) for body in bodies]
             if inputs.history is not None:
                 stored = self.capacity * self.scales.h * inputs.history.extrapolated / step.dt
-                old = self._carried(record.film, inputs.history)
+                old = self.films.carried(record.film, inputs.history)
                 flow = np.zeros_like(flow) if inputs.history.follows_path else flow
         balance = explicit_transport(self.rows, stored, flow, old, self.inlet)
         rows = *balance, record.source, record.spread
@@ -112,101 +120,28 @@ class HeatStep:
         oil = None if inputs.oil is None else IsothermalOil(inputs.fluid, self.scales)
         return FilmHeat(oil, law, of_nodes, guess, np.array(walls), stored, bodies)
 
-    def solve(
-        self, record: HeatRecord, solution: Solution, step: Step
-    ) -> tuple[Temperatures, Film, np.ndarray, np.ndarray, np.ndarray]:
+    def solve(self, record: HeatRecord, solution: Solution, step: Step) -> Heating:
         """Temperatures and heat of an accepted solution.
 
-        Returns both, and `source`, `spread`, `solved` of :class:`.record.HeatRecord`, shape (n,).
+        Its film flows at the temperatures of its solve. The flow carries heat along the film and dissipates
+        some of it; from these sources follow the temperatures at which film and surfaces balance all heat.
         """
-        s, loads = self.scales, solution.loads
         heat = solution.inputs.oil  # of the first steady solution, and without oil, isothermal
         if not isinstance(heat, FilmHeat):
             heat = self.film_heat(record, solution.inputs, step)
-        friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
-        rubbing = friction * loads.friction_pressure * s.p0
-        pressure, blank = loads.oil_pressure * s.p0, np.zeros(s.grid.n)
         if self.fluid is None:
-            thickness = np.where(loads.friction_pressure > 0.0, 0.0, NO_EXCHANGE)
-            no_oil = blank, blank, blank, np.zeros(s.grid.n + self.rows)
-            film = Film(blank, thickness, np.ones(s.grid.n), record.film, *no_oil, rubbing)
-            source = spread = blank
+            blank = np.zeros(self.scales.grid.n)
+            flow = Flow(heat.guess, np.zeros(blank.size + self.rows), blank, blank, blank)
+            film, source = self.films.dry_gap(record, solution, step, flow), blank
         else:
-            q = solution.nodes.reynolds_unknown
-            solved, couette, pressure_heat, spread, gradient = self._flow(solution, heat)
-            heat = heat._replace(guess=solved)
-            unit = self.capacity * s.u * s.h / s.spacing
-            thickness = np.where(loads.sheared_oil, loads.film * s.h, 0.0)
-            left, history = 1.0 + np.minimum(q, 0.0), solution.inputs.history
-            old, last_step = record.film, (blank, blank)
-            if history is not None:
-                in_rows, moved = s.grid.rows, history.nodes_carried
-                old = self._carried(old, history)
-                rate, beyond = (
-                    carried(in_rows(v), moved, 0.0).ravel() for v in (record.rate, record.extrapolated)
-                )
-                last_step = rate * step.dt, beyond / step.dt
-            film = Film(pressure, thickness, left, old, heat.stored, *last_step, unit * couette, rubbing)
-            source = np.where(loads.sheared_oil, pressure_heat, 0.0)
-            source = source + self._compression(record, film, gradient, step)
-        heat = heat.with_rows((G, SPREAD), (source, spread))
-        heat = heat._replace(law=heat.law._replace(thinnest=0.0))
-        temperatures = (
-            self._steady(record, heat, film, step) if heat.bodies is None else self._moving(heat, film)
-        )
-        return temperatures, film, source, spread, heat.guess[T_MEAN]
-
-    def _flow(
-        self, solution: Solution, heat: FilmHeat
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Temperatures of the film in the solve; results of `film.faces`."""
-        nodes, backward = solution.nodes, solution.inputs.conditions.entrainment < 0.0
-        given = solution.inputs, nodes.reynolds_unknown, nodes.film, solution.loads.oil_mask, heat.guess
-        inputs, q, h, oil, guess = map(mirrored, given) if backward else given
-        filled, at = inputs.oil.begin(), np.empty((inputs.oil.rows, len(q) + self.rows))
-        filled.fill(q, h, slice(0, len(q)), at)
-        solved = filled.guess if isinstance(filled, FilmHeat) else guess
-        s, table, max_flow = self.scales.grid, inputs.flow_table, self._max_flow(h, oil, inputs)
-        along, *across = (self._face_law(inputs, spacing) for spacing in reversed(s.increments))
-        of_faces = faces_in_rows(self.rows, at, along, table, oil, max_flow)
-        couette, pressure_heat, spread, gradient = of_faces
-        for law in across:
-            laws = law, inputs.flow, inputs.cross_flow_table
-            pressure_heat += cross_flow_heat(at, s.shape, s.periodic, laws, oil, max_flow)
-        if backward:
-            solved, couette, pressure_heat, spread, gradient = map(
-                mirrored, (solved, -couette, pressure_heat, spread, -gradient)
-            )
-        return solved, couette, pressure_heat, spread, gradient
-
-    def _carried(self, temperatures: np.ndarray, history: FilmHistory) -> np.ndarray:
-        """Temperatures of the film one step ago where the oil was that is now at each node [K]."""
-        rows = self.scales.grid.rows
-        given = rows(history.before), rows(temperatures), history.nodes_carried, self.inlet
-        return carried_with(*given).ravel()
-
-    def _face_law(self, inputs: StepInputs, spacing: float) -> tuple:
-        """Constants of :func:`.finite_volumes.flux_through` between nodes `spacing` half-widths apart."""
-        s = self.scales
-        return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), *self.gap
-
-    def _max_flow(self, h: np.ndarray, oil: np.ndarray, inputs: StepInputs) -> tuple[float, float]:
-        """Bounds of the pressure flow, see `film.faces`: direct contact makes oil, which flows off."""
-        if oil.all():
-            return np.inf, np.inf
-        speed, contact = MAX_FLOW_RATIO * abs(inputs.conditions.entrainment), self.scales.grid.inside(1.0)
-        return speed, speed * h[contact].mean() * self.scales.h
-
-    def _compression(
-        self, record: HeatRecord, film: Film, gradient: np.ndarray, step: Step
-    ) -> np.ndarray | float:
-        r"""Heat of compression :math:`\beta_vTh(\partial_t+u\partial_x)p` [W/m^2]."""
-        if not self.heat.thermal_expansion:
-            return 0.0
-        rate = step.conditions.entrainment * gradient
-        if step.dt:
-            rate = rate + (film.pressure - record.pressure) / step.dt
-        return self.heat.thermal_expansion * film.old * film.thickness * film.left * rate
+            flow = self.films.flow(solution, heat)
+            film = self.films.film(record, solution, step, flow, heat.stored)
+            source = self.films.source(record, solution, step, flow, film)
+        heat = heat._replace(guess=flow.state, law=heat.law._replace(thinnest=0.0))
+        heat = heat.with_rows((G, SPREAD), (source, flow.spread))
+        moves = heat.bodies is not None
+        temperatures = self._moving(heat, film) if moves else self._steady(record, heat, film, step)
+        return Heating(temperatures, film, source, flow.spread, flow.state[T_MEAN])
 
     def _nodes(
         self,
