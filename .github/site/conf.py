@@ -16,6 +16,7 @@ SECTIONS = {
         "cases/README",
         "cases/surfaces",
         "cases/contact",
+        "cases/rollers",
         "cases/heat",
         "cases/measured",
         "cases/gears",

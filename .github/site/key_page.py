@@ -10,8 +10,8 @@ from ehlpetsc.case.keys import default_of, own_keys, tables, value_of
 PAGE = """# Every key of a case file
 
 `ehlpetsc keys` prints them too, `ehlpetsc keys fluid` those of one table, `ehlpetsc keys asperity_height`
-one key; `ehlpetsc template roller`, `gears`, `point` and `strip` print a case to begin with. Numbers are in
-SI units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys,
+one key; `ehlpetsc template line`, `roller`, `gears`, `point` and `strip` print a case to begin with. Numbers
+are in SI units; a value may also have its unit: `load = "350 N/mm"`, `viscosity = "15 mPa s"`. Unknown keys,
 values out of bounds, nan and inf are rejected. A list of two is for surfaces 1 and 2. Defaults are bold; a
 key without one may be left out unless it is required.
 

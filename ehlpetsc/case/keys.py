@@ -11,7 +11,7 @@ from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.tables import CASE
 from ehlpetsc.case.values import nearest, value_text
 
-EXAMPLES = ("roller", "gears", "point", "strip")  # files beside this one
+EXAMPLES = ("line", "roller", "gears", "point", "strip")  # files beside this one
 
 
 def tables() -> dict[str, KeyTable]:

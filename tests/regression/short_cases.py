@@ -54,6 +54,7 @@ SHORT = {
     "optical": ("mesh.points_per_half_width=16",),
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
+    "roller": ("mesh.points_per_half_width=[10, 40]",),
     "running_in": (*QUICK, "time.travel=1.2", "time.passes=2", "contact.yield_pressure=1.1e9"),
     "stribeck": (
         *(*QUICK, "series.values=[5.0, 0.05]", "contact.asperity_height=10e-9"),

@@ -51,7 +51,7 @@ def test_load_has_the_unit_of_its_contact(tables, load_text, message):
 def test_load_of_a_point_is_converted_and_xdmf_is_not_of_a_line():
     assert load(copy.deepcopy(POINT), {"contact.load": "2 kN"}).contact.load == 2000.0
     assert load(copy.deepcopy(STRIP), {"contact.load": "50 N/mm"}).contact.load == 5e4
-    text = fault(tomllib.loads(template("roller")), output__xdmf=True)
+    text = fault(tomllib.loads(template("line")), output__xdmf=True)
     assert "output.xdmf: of strip, point and roller contacts, and this is a line" in text
 
 

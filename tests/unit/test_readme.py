@@ -188,7 +188,7 @@ def test_refused_density_constants_explain_the_textbook_form(tmp_path):
     np.testing.assert_allclose(density(p, fluid)[0], 1 + 0.6e-9 * p / (1 + 1.7e-9 * p), rtol=1e-14)
 
 
-@pytest.mark.parametrize("kind", ["roller", "gears"])
+@pytest.mark.parametrize("kind", ["line", "roller", "gears"])
 def test_template_is_a_case(tmp_path, kind):
     path = tmp_path / "mine.toml"
     path.write_text(template(kind))
@@ -205,7 +205,7 @@ def test_template_expects_contact_and_resolves_its_waves(kind):
 
 
 def test_commands_print_keys_and_a_template_that_shows_contact(capsys):
-    steps = ehlpetsc.solve(load(tomllib.loads(template("roller")))).steps
+    steps = ehlpetsc.solve(load(tomllib.loads(template("line")))).steps
     assert 0.1 < steps.contact_share[0] < 0.3 and 0.03 < steps.friction_coefficient[0] < 0.05
     for words, text in ((["keys"], keys()), (["keys", "mesh"], keys("mesh"))):
         assert main(words) == 0 and capsys.readouterr().out == text + "\n"
