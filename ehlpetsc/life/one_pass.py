@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -101,10 +101,13 @@ def run_pass(
         OfBody(s + offset, z, d, p, depth)
         for (s, z, d, p), offset, depth in zip(damage, offsets, _depths(before, records, "wear"), strict=True)
     )
-    yielded = 0.0
-    for old, new in _depths(before, records, "plastic_deformation"):
-        yielded = max(yielded, float(np.max(new.depth - old.means(new.edges), initial=0.0)))
+    yielded = deepest(_depths(before, records, "plastic_deformation"))
     return Pass(bodies, figures, records.get("plastic_deformation"), yielded)
+
+
+def deepest(pairs: Iterable[tuple[BodyField, BodyField]]) -> float:
+    """Largest depth added to a body anywhere [m]; `pairs`: depths of each body before and after."""
+    return max(float(np.max(new.depth - old.means(new.edges), initial=0.0)) for old, new in pairs)
 
 
 def _depths(before: dict[str, np.ndarray], after: dict, name: str) -> list[tuple[BodyField, BodyField]]:

@@ -185,7 +185,8 @@ def test_a_value_far_from_all_others_is_no_height_and_gaps_are_as_wide_as_a_circ
     assert gap_width(missing, DX, DY) == pytest.approx(2 * 2 * DY)
 
 
-def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
+@pytest.mark.parametrize("across", [1.5, 6.0, 0.2])  # spacing over that along
+def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path, across):
     axes, noise = (DX * np.arange(120), DX * np.arange(150)), np.random.default_rng(2)
     z = smoothed(axes, noise.standard_normal((120, 150)), 9 * DX, "short_cutoff")
     z = 1e-7 * (z / z.std() + 0.01 * np.random.default_rng(3).standard_normal(z.shape))
@@ -194,7 +195,8 @@ def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path):
     spoilt[70:73, 20:23] += 3e-6
     spoilt[100, 140] -= 3e-6
     np.save(tmp_path / "map.npy", spoilt)
-    found = read_map(tmp_path / "map.npy", replace(SPACED, bridge_spikes=True))
+    layout = replace(SPACED, spacing_across=across * DX, bridge_spikes=True)
+    found = read_map(tmp_path / "map.npy", layout)
     assert found.notes[0] == "spikes: 10 points in all, bridged"
     np.testing.assert_allclose(found.z, z, rtol=0, atol=2e-7)
 

@@ -18,6 +18,7 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.commands.surface import main
+from ehlpetsc.results.exports import GridField, gsf
 from ehlpetsc.results.reader import Result
 from ehlpetsc.surfaces.files.areal import read_map
 from ehlpetsc.surfaces.samples import areal_samples
@@ -36,6 +37,20 @@ def read_gsf(content):
     nx, ny = int(header["XRes"]), int(header["YRes"])
     values = np.frombuffer(content[begin:], "<f4").reshape(ny, nx)
     return values, float(header["XReal"]) / nx, float(header["YReal"]) / ny
+
+
+@pytest.mark.parametrize("name", ["a", "ab", "abc", "abcd"])
+def test_header_of_a_gsf_ends_in_one_to_four_nuls_at_a_multiple_of_four_bytes(name):
+    """Without a NUL a header of a multiple of four bytes has no end."""
+    content = gsf(GridField(Z, DX, DY, name, origin=(1e-4, -5e-5)))
+    header = content[: content.index(b"\0")]
+    assert header.endswith(b"\n") and header.startswith(b"Gwyddion Simple Field 1.0\n")
+    begin = len(content) - 4 * Z.size
+    assert begin % 4 == 0 and content[len(header) : begin] in [b"\0" * n for n in (1, 2, 3, 4)]
+    values = dict(line.split(" = ") for line in header.decode().splitlines()[1:])
+    ends = float(values["XOffset"]), float(values["YOffset"])
+    assert ends == pytest.approx((1e-4 - 0.5 * DX, -5e-5 - 0.5 * DY), rel=1e-12)  # of the cell of a point
+    np.testing.assert_array_equal(read_gsf(content)[0], Z.astype("<f4"))
 
 
 def read_x3p(content):

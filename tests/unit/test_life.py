@@ -17,7 +17,7 @@ from ehlpetsc.life.body import MAX_EXTRAPOLATION, MAX_FALL, LifeBody, Rates
 from ehlpetsc.life.driver import check_case, line_of
 from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.jumps import Jumps
-from ehlpetsc.life.one_pass import OfBody
+from ehlpetsc.life.one_pass import NO_DEPTH, OfBody, deepest
 from ehlpetsc.life.positions import GOLDEN, Positions, number_of_positions, with_shift
 from ehlpetsc.life.rounds import Round
 from ehlpetsc.physics.scales import Scales
@@ -371,6 +371,16 @@ def test_travel_too_short_is_named_before_a_pass_is_solved(tmp_path, keys, side)
     with pytest.raises(CaseError, match=rf"surface {side}: .*time.travel = [\d.]+, allowed: 6.[456] or more"):
         run_life(short_case(keys), tmp_path / "a.h5", unresolved=True, show=shown.append)
     assert shown == [] and not list(tmp_path.glob("*pass*"))
+
+
+def test_the_yield_of_a_pass_is_the_largest_depth_of_either_body_and_not_their_sum():
+    old = BodyField(1e-6, 0, np.full(6, 2e-9))
+    new = old._replace(depth=old.depth + 1e-9 * np.array([0.0, 1.0, 5.0, 2.0, 0.0, 0.0]))
+    less = old._replace(depth=old.depth + 1e-9 * np.array([0.0, 3.0, 3.0, 3.0, 0.0, 0.0]))
+    wider = BodyField(1e-6, -1, np.append(3e-9, new.depth))  # a cell more
+    assert deepest([(old, new), (old, less)]) == deepest([(old, less), (old, new)]) == pytest.approx(5e-9)
+    assert deepest([(old, wider), (old, old)]) == pytest.approx(5e-9)
+    assert deepest([(old, old), (NO_DEPTH, NO_DEPTH)]) < 1e-20
 
 
 @pytest.mark.parametrize("ratio, side", [(2.0, 2), (-2.0, 1)])

@@ -22,6 +22,7 @@ from ehlpetsc.nonlinear.plane import system as plane
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
+from ehlpetsc.nonlinear.plane.reduction import BOUND
 from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, fill, neighbour
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
@@ -159,6 +160,24 @@ def test_coarse_functions_around_an_isolated_node_are_independent():
     functions, deflections = space.chosen(mask.ravel())
     assert functions.shape[1] == len(deflections) == 10
     assert np.linalg.matrix_rank(functions.toarray()) == functions.shape[1]
+
+
+def test_rows_of_nodes_without_a_balance_reach_neither_the_coarse_space_nor_a_pressure():
+    """Of nodes at the bound of the film, whose Reynolds rows are not in the system."""
+    system, state, inputs = scene("direct")
+    bound = np.flatnonzero(system.problem.grid.distance < 0.8)[::5]
+    elimination = prepared(system, state, inputs)
+    system.jacobian.inactive_nodes = bound
+    elimination.renew()
+    with RunOptions(kind="point"):
+        elimination.prepare(system.jacobian)
+    assert (elimination.factors.sparse.kind[bound] == BOUND).all() and elimination.factors.coarse
+    rows, none = np.random.default_rng(5).standard_normal(system.n), np.zeros(system.n)
+    (changed := rows.copy())[bound] += 1e3
+    one, other = (elimination._pressures(system.jacobian, r, none)[0] for r in (rows, changed))
+    np.testing.assert_array_equal(one, other)
+    changed[bound + 1] += 1.0
+    assert not np.array_equal(one, elimination._pressures(system.jacobian, changed, none)[0])
 
 
 def test_options_of_a_run_inside_of_another_one_are_its_own():

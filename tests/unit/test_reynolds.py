@@ -12,10 +12,10 @@ petsc4py.init([])
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE
 from ehlpetsc.discretisation.film_history import FilmHistory
-from ehlpetsc.discretisation.finite_volumes import face_film, face_mean, flux_through
+from ehlpetsc.discretisation.finite_volumes import face_film, face_mean, flux_through, positive_extrapolation
 from ehlpetsc.discretisation.reynolds import NoOil, Reynolds
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, StepInputs
-from ehlpetsc.discretisation.transport import carried, carried_with
+from ehlpetsc.discretisation.transport import carried, carried_with, downstream_weights
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.line.jacobian import reynolds_columns
 from ehlpetsc.physics.contact.grid import Grid
@@ -173,6 +173,25 @@ def test_a_wave_keeps_its_amplitude(per_wave, loss):
     left = (moved * e)[inside].sum() / (wave * e)[inside].sum()
     assert 0.0 < 1.0 - abs(left) < loss
     assert np.angle(left) == pytest.approx(-np.pi / per_wave, abs=1e-9)
+
+
+@pytest.mark.parametrize("t", [0.1, 0.5, 0.83])
+def test_part_of_a_cell_is_exact_for_polynomials_of_degree_14(t):
+    """Order 15 of the integral: contents of cells of x^n, of which (-t)^(n+1) leaves cell 0 by its face."""
+    faces = np.arange(-8.0, 8.0) / 8.0
+    weights = downstream_weights(t)
+    for degree in (13, 14, 15):
+        contents = np.diff(faces ** (degree + 1) / (degree + 1))
+        error = abs(weights @ contents + (-t / 8.0) ** (degree + 1) / (degree + 1))
+        assert (error < 1e-18) == (degree < 15)
+
+
+def test_balance_of_unequal_steps_is_exact_for_a_film_quadratic_in_time():
+    for dt, older in ((1.0, 1.0), (0.5, 1.0), (1.0, 0.4)):
+        now, *levels = (np.array([1.0 + 0.3 * t + 0.2 * t * t]) for t in (0.0, -dt, -dt - older))
+        history = FilmHistory(*levels, dt, older)
+        rate = positive_extrapolation(now[0], history.m[0], history.k)[0] - history.extrapolated[0]
+        assert rate == pytest.approx(0.3 * dt, rel=1e-12)
 
 
 @pytest.mark.parametrize("left, right", [(1.0, 1.0), (1.0, 0.3), (0.02, 1.0), (1e-6, 1.0)])

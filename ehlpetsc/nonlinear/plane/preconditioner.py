@@ -30,7 +30,7 @@ from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.plane.factors import OVERLAP, CompleteLU, IncompleteLU
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import BOUND, PRESSURE, Reduction, reduction_of, unknowns_of
+from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, reduction_of, unknowns_of
 from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fitted_term, put, taken
 from ehlpetsc.nonlinear.ranks import global_sum
 
@@ -74,7 +74,7 @@ class SparseForm:
     `is_complete`: whether the factors are complete: for oil so viscous that pivots of incomplete ones vanish.
 
     `kind`, `p_s`: of the local nodes, as of :class:`.reduction.Reduction`.
-    `no_pressure`, `no_reynolds`: masks of the nodes of the window not `PRESSURE`, of the local nodes `BOUND`.
+    `no_pressure`: mask of the nodes of the window not `PRESSURE`.
     `by`: derivatives of the local Reynolds rows by v and separation, as `EHLProblem.reynolds` multiplies by
         them, shape (local nodes, 12).
     """
@@ -120,7 +120,6 @@ class SparseForm:
         first = self.own.start - rows.start
         self.by = self.of_rows[first : first + p.local]
         self.no_pressure = reduction.kind != PRESSURE
-        self.no_reynolds = self.kind == BOUND
 
     def solve(self, reynolds: np.ndarray, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressures and Reynolds unknowns of the local nodes.
@@ -251,7 +250,6 @@ class Elimination:
     def _coarsely(self, reynolds: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Local pressures and separation of the coarse correction, the Reynolds rows that they leave."""
         p, (sparse, coarse, _) = self.problem, self.factors
-        reynolds[sparse.no_reynolds] = 0.0
         changes = coarse(reynolds.astype(np.float32))
         changes[sparse.no_pressure, 0] = 0.0
         left = reynolds - p.reynolds.product(sparse.by, changes, p.owned.start)
