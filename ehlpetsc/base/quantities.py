@@ -19,7 +19,7 @@ from ehlpetsc.base.declarations import Column, Field, StepScalar, Values
 
 MIN_CONTINUUM_FILM = 1e-9  # m: thinner films are one or two molecules of oil
 HIGH_PRESSURE = 100e6  # Pa: of the second length in contact
-PER_METRE = {"N": "N/m", "W": "W/m", "m^2": "m", "m^3": "m^2"}
+PER_METRE = {"N": "N/m", "W": "W/m", "F": "F/m", "m^2": "m", "m^3": "m^2"}
 """Units of integrals over a contact, per metre of its width."""
 
 REDUCTIONS: dict[str, Callable] = {"sum": sum, "min": min, "max": max, "last": lambda values: values[-1]}
@@ -31,6 +31,7 @@ MEANS = ("friction_coefficient", "film_central", "lambda_ratio", "mean_gap_ratio
 SCENES: dict[str, Callable[[Any], bool]] = {
     "": lambda case: True,
     "fluid": lambda case: case.fluid is not None,
+    "permittivity": lambda case: case.fluid is not None and case.fluid.permittivity is not None,
     "mixed": lambda case: case.contact.has_contact_pressure,
     "compliant": lambda case: case.contact.asperity_height is not None,
     "tilted": lambda case: case.contact.tilt is not None or case.contact.self_aligning,
@@ -212,6 +213,19 @@ STEP_SCALARS = {
     ),
     "mean_gap_ratio": AtEnd(
         "1", "mean film over the combined Rq", of=lambda o: o.mean_film / o.scene.rq if o.scene.rq else np.nan
+    ),
+    "capacitance": AtEnd(
+        "F",
+        "electrical capacitance between the surfaces over the mesh, without nodes in contact",
+        integrated=True,
+        only="permittivity",
+        of=lambda o: o.capacitance,
+    ),
+    "capacitance_ratio": AtEnd(
+        "1",
+        "capacitance over that of oil between plates of the Hertz contact at the central film",
+        only="permittivity",
+        of=lambda o: o.capacitance / o.plate_capacitance,
     ),
     "oil_pressure": StepScalar(
         "Pa",

@@ -24,6 +24,7 @@ from ehlpetsc.stepping.state import State
 if TYPE_CHECKING:
     from ehlpetsc.physics.contact.roller_loads import RollerLoads
 
+VACUUM_PERMITTIVITY = 8.8541878188e-12  # F/m
 MIN_BALANCE_FILM = 1e-10  # m, size of an atom: smallest reference film of the mass error
 
 
@@ -119,6 +120,25 @@ class Observation:
         defect = problem.film_scale * np.abs(grid.rows(solution.residual)[:, 1:]).sum()
         carried = solution.mass[grid.inside(self.size)].mean()
         return float(defect / (max(carried, MIN_BALANCE_FILM / problem.scales.h) * grid.breadth))
+
+    @cached_property
+    def capacitance(self) -> float:
+        r"""Electrical capacitance of the gap [F/m].
+
+        :math:`\varepsilon_0\int[1+(\varepsilon-1)(1-\theta)]dA/h` of the oil and the void in it side by
+        side. Nodes in contact conduct and are left out.
+        """
+        fields, permittivity = self.fields, self.scene.case.fluid.permittivity
+        relative = 1.0 + (permittivity - 1.0) * (1.0 - fields["void_fraction"])
+        apart = ~self.loads.contact_mask
+        integral = (relative[apart] / fields["film_thickness"][apart]).sum()
+        return VACUUM_PERMITTIVITY * self.node_size * float(integral)
+
+    @property
+    def plate_capacitance(self) -> float:
+        """Capacitance of oil between plates of the size of the Hertz contact at its mean film [F/m]."""
+        area = self.node_size * self.scene.scales.grid.inside(self.size).sum()
+        return VACUUM_PERMITTIVITY * self.scene.case.fluid.permittivity * float(area) / self.mean_film
 
     @property
     def oil_pressure(self) -> np.ndarray:

@@ -238,6 +238,7 @@ FLUID_KEYS = {
         *("1/K", -0.02, 0.0),
         needs=("fluid.limiting_shear",),
     ),
+    "permittivity": Key("relative, for the electrical capacitance of the film", "", 1, 100),
     "inlet_film": Key("`h (1 - theta)` at the first node; left out: fully flooded", "m", 1e-10, 1e-2),
 }
 FLUID = KeyTable(
