@@ -162,10 +162,14 @@ class Positions:
                 continue
             s = body_points(x, self.scales.spacing, [travelled])
             s = s[passage(s, x, self.scales.spacing, travelled).complete]
-            if len(s[self._at_full_height(s, k)]) + (sum(self._margins) if k else 0) < 2:
+            if np.count_nonzero(self._at_full_height(s, k)) - self._columns_left_out(k) < 2:
                 faults.append(f"{self.case.path}: {self._too_short(k)}")
         if faults:
             raise CaseError(faults)
+
+    def _columns_left_out(self, k: int) -> int:
+        """Columns at either end of a stretch of body k that are not met in every round."""
+        return max(0, *(-margin for margin in self._margins)) if k else 0
 
     def _too_short(self, k: int) -> str:
         """Fault of a pass in which body k gets no column."""
@@ -173,12 +177,8 @@ class Positions:
         if self.case.conditions is not None:
             return f"{reason}; the conditions must last longer"
         scales, profile = self.scales, self.scene(0.0).roughness.side("12"[k])
-        columns = -min(sum(self._margins), 0) if k else 0
-        length = (
-            scales.x[-1]
-            - scales.x[0]
-            + (columns * scales.spacing + (profile.ramp if profile else 0.0)) / scales.a
-        )
+        ramp = profile.ramp if profile else 0.0
+        length = np.ptp(scales.x) + (self._columns_left_out(k) * scales.spacing + ramp) / scales.a
         ratio = scales.u_max / abs((scales.u1, scales.u2)[k])
         travel = ratio * (length + 1.0)  # a stretch of one half-width
         return f"{reason}; time.travel = {self.case.time.travel:g}, allowed: {travel:.2g} or more"

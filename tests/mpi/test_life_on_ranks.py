@@ -30,7 +30,7 @@ WAVES = {
 }
 LIVES = {
     "line": {"mesh.points_per_half_width": 20},
-    "positions": {"time.pass_shift": 50e-6, "life.partners": 3},
+    "positions": {"time.pass_shift": 50e-6, "life.partners": 3, "time.travel": 4.6},
     "strip": {  # with rows for three ranks, which differ; damage is a high power of the pressure
         "mesh.width": 1.5,
         "mesh.inlet": -1.4,
@@ -100,7 +100,7 @@ def test_lives_of_a_series_are_those_of_one_rank(tmp_path):
 
 def test_stop_in_one_position_ends_the_life_on_every_rank(tmp_path):
     world = MPI.COMM_WORLD
-    case = load(CASE, SHORT | {"time.pass_shift": 50e-6, "life.partners": 3})
+    case = load(CASE, SHORT | LIVES["positions"])
     folder = Path(world.bcast(str(tmp_path)))
     with pytest.raises(Stopped):
         run_life(case, folder / "a.life.h5", comm=world, stop=StopAtOnce(), unresolved=True)
