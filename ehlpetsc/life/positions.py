@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_down, whole_up
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.tables import Case
 from ehlpetsc.effects.depths import PlasticRecord, WearRecord
@@ -91,8 +92,8 @@ class Positions:
         shift = abs(self.case.time.pass_shift) if self.count > 1 or self.drifts else 0.0
         ahead, behind = (self.count - 1) * shift / self.scales.spacing, 0
         if self.drifts:
-            ahead, behind = math.floor(ahead), -math.ceil(shift / self.scales.spacing)
-        ahead = math.ceil(ahead)
+            ahead, behind = whole_down(ahead), -whole_up(shift / self.scales.spacing)
+        ahead = whole_up(ahead)
         is_turned = (directed_speeds(self.case, self.scales)[1] > 0.0) == (self.case.time.pass_shift > 0.0)
         return (ahead, behind) if is_turned else (behind, ahead)
 

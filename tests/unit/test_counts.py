@@ -1,6 +1,7 @@
 """Counts of steps and nodes, which must not depend on the last digit of the quotient behind them."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,8 @@ from support import CASES
 
 from ehlpetsc.base.counts import whole_down, whole_near, whole_up
 from ehlpetsc.case.loading import load
+from ehlpetsc.physics.contact.geometry import Dry
+from ehlpetsc.physics.contact.roller import rows_across
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.time_stepping import next_step, ramp_time
@@ -39,6 +42,14 @@ def test_steps_of_a_run_of_a_whole_number_of_them_do_not_depend_on_rounding():
         operation = ConstantOperation(Conditions(1.0, 1.0, speed, 0.5 * speed), 5e5 * nominal * speed)
         assert operation.step_count(nominal) == 500_000
         assert next_step(nominal, 0, nominal, 3 * nominal) == pytest.approx(nominal, rel=1e-12)
+
+
+@pytest.mark.parametrize("width, beyond", [(2.2, 2), (2.4, 4), (2.6, 6), (2.8, 8), (2.81, 9)])
+def test_rows_beyond_the_ends_of_a_roller_do_not_depend_on_rounding(width, beyond):
+    """Half of the length has 20: of width/2 - 1 the last digit is lost."""
+    mesh = SimpleNamespace(points_across=20, points_per_half_width=20, width=width)
+    contact = SimpleNamespace(end_radius=1e-4)
+    assert rows_across(contact, mesh, Dry(1e-4, 5e-3, 1e9)) == (20, beyond)
 
 
 @pytest.mark.parametrize("inlet", [-2.5, -2.45, -2.05, -2.85])

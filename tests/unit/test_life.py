@@ -374,6 +374,14 @@ def test_travel_too_short_is_named_before_a_pass_is_solved(tmp_path, keys, side)
     assert shown == [] and not list(tmp_path.glob("*pass*"))
 
 
+def test_columns_that_meet_partners_do_not_depend_on_rounding():
+    found, spacing = [], Scales.of(short_case({})).spacing
+    for rounding in (-1e-13, 1e-13):
+        keys = {"time.pass_shift": 5.0 * spacing * (1.0 + rounding), "life.partners": 3}
+        found.append(Positions(case := short_case(keys), Scales.of(case))._margins)
+    assert found[0] == found[1] == (10, -5)
+
+
 def test_the_yield_of_a_pass_is_the_largest_depth_of_either_body_and_not_their_sum():
     old = BodyField(1e-6, 0, np.full(6, 2e-9))
     new = old._replace(depth=old.depth + 1e-9 * np.array([0.0, 1.0, 5.0, 2.0, 0.0, 0.0]))

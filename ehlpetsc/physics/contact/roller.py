@@ -17,6 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ehlpetsc.base.counts import whole_near, whole_up
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.physics.contact.geometry import LINE, Dry, along
 from ehlpetsc.physics.contact.grid import Grid
@@ -157,14 +158,14 @@ def roller(contact: Values, modulus: float) -> Dry:
 
 def rows_across(contact: Values, mesh: Values, dry: Dry) -> tuple[int, int]:
     """Rows on half of the length and beyond each end."""
-    points = mesh.points_across or round(mesh.points_per_half_width * dry.b / dry.a / COARSENESS)
+    points = mesh.points_across or whole_near(mesh.points_per_half_width * dry.b / dry.a / COARSENESS)
     inside = max(points, MIN_ROWS)
     if not contact.end_radius:
         return inside, 0
     reach = min(math.sqrt(2.0 * contact.end_radius * ROUND_DROP), contact.end_radius) / dry.b
     if mesh.width:
         reach = 0.5 * mesh.width - 1.0
-    return inside, math.ceil(reach * inside)
+    return inside, whole_up(reach * inside)
 
 
 def roller_rows(contact: Values, mesh: Values, dry: Dry) -> int:
