@@ -7,10 +7,7 @@ is repeated with it. Mixed contact: ``newtonls`` on the semismooth system, whose
 complementarity in their sign and have no bounds; ``vinewtonrsls`` then takes the same iterations.
 """
 
-import ctypes
-import traceback
-import weakref
-from collections.abc import Callable
+from enum import Enum, auto
 from typing import Any
 
 import numpy as np
@@ -19,6 +16,7 @@ from petsc4py import PETSc
 from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns
+from ehlpetsc.nonlinear.callbacks import release_frames, set_function_domain_error, weakly
 from ehlpetsc.nonlinear.options import RunOptions, raise_refusal
 from ehlpetsc.nonlinear.two_fields import TwoFields, owned
 
@@ -35,6 +33,20 @@ REJECTED_STEP = (
     PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN,
     PETSc.SNES.ConvergedReason.DIVERGED_LINE_SEARCH,
 )
+
+
+class Phase(Enum):
+    """Where a solver is: no solve runs, before and after the first residual of one, after one that failed.
+
+    The first residual of a solve is that of its guess, which is evaluated already. After a solve PETSc's
+    objects count as failed until its solution is accepted: they keep a failed factorisation and are then
+    created anew.
+    """
+
+    IDLE = auto()
+    BEGUN = auto()
+    ITERATING = auto()
+    FAILED = auto()
 
 
 class NewtonSolver:
@@ -59,9 +71,9 @@ class NewtonSolver:
         self._options = options or RunOptions()
         self._petsc_objects = owned(self)
         self._watch: Watch = None
-        self._needs_renewal = False
+        self._phase = Phase.IDLE
         self._before, self._share = None, 1.0  # unknowns before the last step; share of the next one
-        self._unconstrained = self._reaches_bound = self._is_first = self._is_solving = False
+        self._unconstrained = self._reaches_bound = False
         # other line searches may end at another point than the last trial point
         self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
         self.snes: Any = None
@@ -117,9 +129,8 @@ class NewtonSolver:
         snes.setJacobian(weakly(self._jacobian), self.system.operator, self.system.preconditioned)
 
     def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
-        # the first residual is that of the guess, already evaluated unless SNESVI projects it onto the bounds
-        if self._is_first:
-            f.array[:], self._is_first = self.system.evaluation(x).residual, False
+        if self._phase is Phase.BEGUN:  # evaluated anew where SNESVI has projected the guess onto the bounds
+            f.array[:], self._phase = self.system.evaluation(x).residual, Phase.ITERATING
             return
         f.array[:] = self.system.evaluate(x, self._reaches_bound).residual
         if self.system.bound_reached:
@@ -128,7 +139,8 @@ class NewtonSolver:
     def _jacobian(
         self, snes: PETSc.SNES, x: PETSc.Vec, operator: PETSc.Mat, preconditioner: PETSc.Mat
     ) -> None:
-        self.system.linearise(x, self._accepts_last and self._is_solving)
+        is_solving = self._phase in (Phase.BEGUN, Phase.ITERATING)
+        self.system.linearise(x, self._accepts_last and is_solving)
         remaining = LINEAR_WORK * snes.max_it - snes.getLinearSolveIterations()
         snes.ksp.setTolerances(max_it=min(self._linear_max_it, max(remaining, 1)))
         operator.assemble()
@@ -209,7 +221,7 @@ class NewtonSolver:
         limit, unconstrained = max_it or self._max_it, snes is self._unconstrained_snes
         spent, share = 0, 1.0
         for _ in range(MAX_SHORTENED_STEPS):
-            if self._needs_renewal:
+            if self._phase is Phase.FAILED:
                 self._renew()
             snes = self._unconstrained_snes if unconstrained else self.snes
             self._unconstrained, self._share, self._before = unconstrained, share, None
@@ -221,14 +233,13 @@ class NewtonSolver:
                 break
             if snes.ksp.getConvergedReason() == PETSc.KSP.ConvergedReason.DIVERGED_NANORINF:
                 break
-            share, self._needs_renewal = 0.5 * share if taken == 0 else 0.5, True
+            share = 0.5 * share if taken == 0 else 0.5
             self.system.continue_from(self._before)
         return self._solution(snes, spent - 1)
 
     def _run(self, snes: PETSc.SNES, max_it: int) -> None:
         """Run SNES from the unknowns of the system."""
-        self._reaches_bound = False
-        self._is_first = self._needs_renewal = self._is_solving = True
+        self._reaches_bound, self._phase = False, Phase.BEGUN
         try:
             with np.errstate(over="ignore", invalid="ignore"):
                 self._set_tolerances(snes, max_it)
@@ -245,7 +256,7 @@ class NewtonSolver:
             release_frames(error)
             raise
         finally:
-            self._is_solving = False
+            self._phase = Phase.FAILED
         self.linear_iterations += snes.getLinearSolveIterations()
 
     def _set_tolerances(self, snes: PETSc.SNES, max_it: int) -> None:
@@ -265,8 +276,8 @@ class NewtonSolver:
 
     def _solution(self, snes: PETSc.SNES, iterations: int) -> tuple[Unknowns, int]:
         reason = snes.getConvergedReason()
-        # PETSc's solver objects keep a failed factorisation; a rejected step does not fail one
-        self._needs_renewal = reason <= 0 and reason not in REJECTED_STEP
+        if reason > 0 or reason in REJECTED_STEP:  # which fails no factorisation
+            self._phase = Phase.IDLE
         if reason <= 0:
             raise SolveFailed("SNES", REASONS.get(reason, str(reason)), iterations)
         solution = self.system.solution()
@@ -283,22 +294,3 @@ class NewtonSolver:
             self._petsc_objects.pop().destroy()
         self.system.matrices.renew()
         self._create()
-
-
-def release_frames(error: BaseException) -> None:
-    """Clear the frames of the callbacks that an exception left, with their references to PETSc's objects.
-
-    Kept alive by a traceback until Python ends, such an object would be destroyed by PetscFinalize, too late.
-    """
-    traceback.clear_frames(error.__traceback__)
-
-
-def set_function_domain_error(snes: PETSc.SNES) -> None:
-    """Report x outside the domain of the function (SNESSetFunctionDomainError, which petsc4py lacks)."""
-    ctypes.CDLL(PETSc.__file__).SNESSetFunctionDomainError(ctypes.c_void_p(snes.handle))
-
-
-def weakly(method: Callable) -> Callable:
-    """Function that calls a bound method without keeping its object alive."""
-    method = weakref.WeakMethod(method)
-    return lambda *arguments: method()(*arguments)
