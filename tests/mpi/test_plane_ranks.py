@@ -37,6 +37,21 @@ REVERSED = {"mesh.inlet": -2.0, "mesh.outlet": 2.0, "motion": None, "operation.t
 REVERSED |= {"operation.load": [1.5, 1.9], "operation.speed_1": [-0.05] * 2, "operation.speed_2": [-0.03] * 2}
 APPROACH = {"contact.load": None, "contact.approach": 2e-6}
 COATED = {"contact.coating": {"thickness": 2e-6, "youngs_modulus": 1e11, "poisson_ratio": 0.2}}
+ROLLER = {
+    "title": "a roller with free ends",
+    "contact": {"radius": 6e-3, "length": 4e-3, "load": 800.0, "material": "100Cr6", "tilt": 1e-3},
+    "fluid": {
+        "viscosity": 0.02,
+        "law": "roelands",
+        "pressure_viscosity": 2e-8,
+        "density": "dowson-higginson",
+    },
+    "motion": {"entrainment_speed": 3.0, "slide_roll_ratio": 0.1},
+    "mesh": {"inlet": -2.4, "outlet": 2.0, "points_per_half_width": [10, 20]},
+    "surface": {"1": {"synthetic": {"kind": "sine", "amplitude": 5e-8, "wavelength": 1e-4}}},
+    "time": {"travel": 0.5},
+}
+ROLLER["contact"]["profile"] = {"kind": "iso", "diameter": 12e-3}
 TIGHT = {"snes_atol": "1e-10"}
 CASES = {
     "point": (lambda: load(point(50.0, 5.0, 10)), 1),
@@ -48,6 +63,7 @@ CASES = {
     "coated point": (lambda: load(point(50.0, 5.0, 8), COATED), 1),
     "rough point": (lambda: load(point(50.0, 5.0, 8), MIXED), 1),
     "rough point, reversed": (lambda: load(point(50.0, 5.0, 8), MIXED | REVERSED), 1),
+    "roller": (lambda: load(ROLLER), 3),
     "strip": (lambda: load(CASE, STRIP), 12),
     "strip with a layer": (lambda: load(CASE, STRIP | LAYER), 12),
 }
