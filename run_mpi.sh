@@ -109,7 +109,8 @@ other_machine() {
 found:   $(command -v python3 || echo "no python3"), without $(python3 "$check" missing "$@" 2>/dev/null | paste -sd " ")
 needed:  Python 3.11 or newer with ${run_modules// /, }, and the mpirun of their MPI, first on the PATH:
   a cluster: module load ..., until python3 -c 'import petsc4py, mpi4py, h5py' works; or export PETSC_DIR=...
-  a virtual environment: pip install '${here}[solver,post]' (builds PETSc), then activate it
+  a virtual environment: pip install '${here}[wheel]' (Linux on x86-64, Python 3.12 or newer) or
+    '${here}[solver,post]' (builds PETSc), then activate it
   conda-forge, a container, WSL: see README.md"
 }
 

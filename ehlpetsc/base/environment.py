@@ -31,6 +31,7 @@ SIZE_VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE", "SL
 OLDEST_PYTHON = (3, 11)
 MPI_LIBRARY = rb"libmpi(?:ch)?\.so\.\d+"  # name by which a module asks for MPI, .12 of MPICH
 OPEN_MPI = "libmpi.so.40"
+WHEEL = "dolfinx-solver-real"  # PETSc with MPICH and mpi4py, of the extra wheel
 
 
 def prepare() -> list[str]:
@@ -146,15 +147,22 @@ def advice(lacks: list[str], arguments: list[str]) -> str:
             f"{reason}type: ./run_mpi.sh {command}   (installs what is missing on Debian 12 and newer and "
             f"runs Debian's Python), or, once installed: /usr/bin/python3 -m ehlpetsc {command}"
         )
-    of_petsc = (
-        "   (builds PETSc from source if that is missing), or take Debian's packages and a virtual "
-        "environment with --system-site-packages"
-    )
+    of_petsc = ""
+    if set(lacks) & set(SOLVER) and _suits_wheel():
+        lacks = [*(name for name in lacks if name not in SOLVER), WHEEL]
+    elif set(lacks) & set(SOLVER):
+        of_petsc = (
+            "   (builds PETSc from source if that is missing), or take Debian's packages and a virtual "
+            "environment with --system-site-packages"
+        )
     return (
-        f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}"
-        f"{of_petsc if set(lacks) & set(SOLVER) else ''}; "
+        f"{reason}type: {sys.executable} -m pip install {' '.join(lacks)}{of_petsc}; "
         "the section Install of the page README.md lists all ways"
     )
+
+
+def _suits_wheel() -> bool:
+    return sys.version_info >= (3, 12) and sys.platform == "linux" and os.uname().machine == "x86_64"
 
 
 def need_solver() -> None:

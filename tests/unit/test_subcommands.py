@@ -105,7 +105,9 @@ def test_ranks_are_started_by_the_script_of_a_clone(monkeypatch, capsys):
 def test_advice_of_an_installed_package_names_the_page(monkeypatch):
     monkeypatch.setattr(environment, "SCRIPT", ROOT / "none")
     assert "the section Install of the page README.md" in environment.advice(["petsc4py"], [])
-    assert "builds PETSc from source" in environment.advice(["petsc4py"], [])
+    for suits, words in ((False, "petsc4py   (builds PETSc from source"), (True, "dolfinx-solver-real; ")):
+        monkeypatch.setattr(environment, "_suits_wheel", lambda suits=suits: suits)
+        assert f"-m pip install {words}" in environment.advice(["petsc4py"], [])
     advice = environment.advice(["matplotlib"], ["plot", "result.h5"])  # which needs no PETSc
     assert "PETSc" not in advice and "-m pip install matplotlib; " in advice
 
