@@ -165,9 +165,10 @@ def _damage(paths: list[Path]) -> None:
 def _put(cases: list[Convergence], target: Path) -> None:
     """Print a table, and write it as CSV."""
     table = [columns(cases[0].points), *rows(cases)]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    for row in table:
-        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).strip())
+    shown = table if len(cases) > 1 else [row[1:] for row in table]
+    widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+    for row in shown:
+        print("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(table)
     atomic_write(target, text.getvalue().encode())

@@ -2,8 +2,9 @@
 
 ``python3 tests/benchmarks/waves.py [ROW ...] [--nodes 6 8 12 16 32]``: small waves that move with the film or
 past it, on a line and in the plane, and a pass of measured profiles in mixed contact with a layer. Prints
-lines of `waves.csv`, the error of each row relative to its value on the finest mesh, and then as comments
-that value, the steps, iterations and processor times of the passes. ``--draw PICTURE`` draws `waves.csv`.
+lines of `waves.csv`, the error of each row relative to its limit, extrapolated from both finest meshes by the
+order of `ORDERS`, and then as comments the limit, the steps, iterations and processor times of the passes.
+``--draw PICTURE`` draws `waves.csv`.
 """
 
 from __future__ import annotations
@@ -24,10 +25,12 @@ import petsc4py
 petsc4py.init(sys.argv[:1])
 from support.waves import line_wave, mixed_pass, point_wave
 
+from ehlpetsc.analysis.convergence import SPOT_ORDER, extrapolated
 from ehlpetsc.pictures import style
 
 FILE = Path(__file__).with_suffix(".csv")
 NODES = 6, 8, 12, 16, 32
+ORDERS = {"film": 2.0, "ripple": 2.0, "friction": SPOT_ORDER, "share": SPOT_ORDER, "damage": SPOT_ORDER}
 SHORTEST = 13.4  # a over the shortest wave of the profiles
 ROWS: dict[str, tuple[Callable, tuple[str, ...]]] = {  # by name: run on so many nodes a wave, what is printed
     "line, a/4, rolling": (lambda n: line_wave(0.25, n), ("film",)),
@@ -48,15 +51,18 @@ ROWS: dict[str, tuple[Callable, tuple[str, ...]]] = {  # by name: run on so many
 
 
 def lines(name: str, nodes: list[int]) -> list[str]:
-    """Lines of `FILE`: the error of each quantity on each mesh but the finest; comments on cost."""
+    """Lines of `FILE`: the error of each quantity on each mesh; comments on its limit and on cost."""
     run, quantities = ROWS[name]
     found = [run(n) for n in nodes]
     rows = []
     for quantity in quantities:
-        *values, finest = (getattr(one, quantity) for one in found)
-        errors = [f"{value / finest - 1.0:.4f}" for value in values]
-        rows += [f'"{name}: {quantity}",{n},{error}' for n, error in zip(nodes, errors, strict=False)]
-        rows.append(f"# {quantity} on {nodes[-1]} nodes: {finest:.4g}")
+        values = [getattr(one, quantity) for one in found]
+        limit = extrapolated(nodes[-2:], values[-2:], ORDERS[quantity])
+        rows += [
+            f'"{name}: {quantity}",{n},{value / limit - 1.0:.4f}'
+            for n, value in zip(nodes, values, strict=True)
+        ]
+        rows.append(f"# limit of {quantity}: {limit:.4g}")
     cost = [f"{one.steps} steps, {one.newton} iterations, {one.seconds:.1f} s" for one in found]
     return [*rows, f"# {'; '.join(cost)}"]
 

@@ -8,7 +8,14 @@ import pytest
 from support import CASES, is_line_with
 from support.running import SHORT, run, settings
 
-from ehlpetsc.analysis.convergence import NO_ORDER, NOT_MONOTONE, extrapolated, limit, observed_order
+from ehlpetsc.analysis.convergence import (
+    NO_ORDER,
+    NOT_MONOTONE,
+    SPOT_ORDER,
+    extrapolated,
+    limit,
+    observed_order,
+)
 
 NODES = (8, 12, 16)
 
@@ -35,6 +42,7 @@ def test_values_without_an_order_keep_that_of_the_finest_mesh_and_their_range():
         found = limit(NODES, given)
         assert np.isnan(found.order) and found.remark == remark
         assert found.value == given[-1] and found.bar == pytest.approx(max(given) - min(given))
+    assert limit(NODES, values(6.0)).remark == NO_ORDER
     equal = limit(NODES, (1.0, 1.0 + 1e-9, 1.0))
     assert equal.value == 1.0 and equal.bar < 1e-8 and equal.remark == "equal"
     assert np.isnan(observed_order(NODES, (1.0, 1.0, 1.1)))
@@ -47,6 +55,18 @@ def test_the_bar_covers_an_error_of_two_orders():
         found = limit(NODES, given)
         assert 1.0 < found.order < 2.0
         assert abs(found.value - 1.0) < found.bar < abs(given[0] - 1.0)
+
+
+def test_the_bar_of_spots_covers_what_mixed_contact_showed():
+    """Means of compliant_mixed.toml on 8, 12, 16 nodes a wave; limits by 16 and 32."""
+    for given, reference, within in (
+        ((0.017227, 0.016172, 0.015646), 0.01481, 0.005),  # friction
+        ((0.02017, 0.01372, 0.01029), 0.00477, 0.03),  # load on the solids
+    ):
+        found = limit(NODES, given, SPOT_ORDER)
+        assert 0.8 < found.order < 1.1
+        assert found.value == pytest.approx(reference, rel=within)
+        assert abs(found.value - reference) < found.bar
 
 
 COARSE = settings(
