@@ -14,11 +14,12 @@ from ehlpetsc.commands.life import main
 from ehlpetsc.effects.depths import PlasticRecord
 from ehlpetsc.life import laws, read_life, run_life
 from ehlpetsc.life.body import MAX_EXTRAPOLATION, MAX_FALL, LifeBody, Rates
-from ehlpetsc.life.driver import check_case, line_of
+from ehlpetsc.life.driver import _Life, check_case, line_of
 from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import NO_DEPTH, OfBody, deepest
 from ehlpetsc.life.positions import GOLDEN, Positions, number_of_positions, with_shift
+from ehlpetsc.life.remarks import wear_lines
 from ehlpetsc.life.rounds import Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import lives
@@ -372,6 +373,66 @@ def test_travel_too_short_is_named_before_a_pass_is_solved(tmp_path, keys, side)
     with pytest.raises(CaseError, match=f"surface {side}: .*{allowed}"):
         run_life(short_case(keys), tmp_path / "a.h5", unresolved=True, show=shown.append)
     assert shown == [] and not list(tmp_path.glob("*pass*"))
+
+
+def test_rates_of_a_round_are_means_and_body_2_of_gears_has_its_own_passes():
+    passes = [
+        SimpleNamespace(bodies=(of_pass(damage), of_pass(2.0 * damage)), yielded=0.0)
+        for damage in (0.01, 0.03)
+    ]
+    first, second = Round(passes, 0.5).rates((body(), body()))
+    alone = [Round([one], 0.5).rates((body(), body()))[0].damage for one in passes]
+    np.testing.assert_allclose(first.damage, np.mean(alone, axis=0), rtol=1e-12)
+    np.testing.assert_allclose(second.damage, first.damage, rtol=1e-12)
+    np.testing.assert_allclose(first.wear, 0.01, rtol=1e-12)
+    np.testing.assert_allclose(second.wear, 0.005, rtol=1e-12)
+    assert second.volume == pytest.approx(0.5 * first.volume, rel=1e-12)
+
+
+def test_columns_of_a_strip_have_a_width_across_and_along():
+    strip = LifeBody.new(np.array([2.0, 2.5, 3.0]), np.zeros((4, 3)), EDGES)._replace(
+        y=np.array([1.0, 4.0, 7.0, 10.0])
+    )
+    assert strip.widths == (3.0, 0.5) and body().widths == (1.0,)
+    assert strip.column_area == pytest.approx(0.125)
+
+
+def test_lines_on_wear_state_both_rates_and_the_change_of_damage_in_the_last_round():
+    class Rows(SimpleNamespace):
+        def __call__(self, name):
+            return {"damage_1": np.array([0.1, 0.5, 0.52]), "damage_2": np.array([0.1, 0.5, 0.45])}[name]
+
+    life = Rows(rows=[{"contact_share": 0.2}] * 3, limiting_wear=lambda k: 10.0 * k)
+    wear = SimpleNamespace(coefficient=(1e-17, 3e-17), load_coefficient=None)
+    case = SimpleNamespace(wear=wear, life=SimpleNamespace(break_out="none"))
+    rate_1, limit_1, _, limit_2 = wear_lines(life, case)
+    assert (
+        "k = 1e-17 m^2/N of the load of the solids, 2e-18 of the whole load; the solids carry 20 %" in rate_1
+    )
+    assert "from k = 1e-16 m^2/N on; D changed by 4 % in" in limit_1
+    assert "from k = 6e-16 m^2/N on; D changed by -10 % in" in limit_2
+    assert (
+        next(
+            wear_lines(
+                life,
+                SimpleNamespace(
+                    wear=SimpleNamespace(coefficient=None, load_coefficient=(2e-18,)), life=case.life
+                ),
+            )
+        )
+        == rate_1
+    )
+
+
+@pytest.mark.parametrize("done, shares", [(100, [0.2, 0.5, 1.0]), (800, [0.8, 0.8, 1.0])])
+def test_the_share_shown_is_that_of_the_solved_passes_or_of_the_life(done, shares):
+    shown = []
+    one = {"_line": SimpleNamespace(reach=shown.append), "ranks": SimpleNamespace(groups=2), "_passes": 1}
+    one["history"] = SimpleNamespace(solved=2, done=done)
+    one["case"], one["jumps"] = SimpleNamespace(life=SimpleNamespace(max_solved=10)), jumps(passes=1000)
+    for passes, of_pass_done in ((0, 0.0), (1, 0.5), (9, 0.5)):
+        _Life._show_share(SimpleNamespace(**one | {"_passes": passes}), of_pass_done)
+    assert shown == shares
 
 
 def test_columns_that_meet_partners_do_not_depend_on_rounding():
