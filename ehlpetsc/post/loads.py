@@ -206,6 +206,8 @@ def _warnings(prepared: Prepared) -> Iterator[str]:
         yield f'the run\'s status is "{status}": only its stored frames are used'
     if (every := prepared.loads.case.output.every) > 1:
         yield f"stored with output.every = {every}: peaks between frames are lost, too little damage"
+    if of_ends := refusal(prepared.loads.case, "stresses near the ends", ("half-spaces",)):
+        yield of_ends
     for surface, motion in prepared.motions.items():
         passed = np.count_nonzero(motion.complete)
         distance = prepared.loads.travelled[surface]

@@ -1,6 +1,7 @@
 """Rollers of finite length: profiles, nodes, dry contact against conjugate gradients, what is said before."""
 
 import copy
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from ehlpetsc.elasticity.images import image_factor
 from ehlpetsc.physics.contact.profiles import Design, drop_of
 from ehlpetsc.physics.contact.roller import gap_across
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.post.loads import _warnings
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation
 
@@ -196,3 +198,13 @@ def test_ends_and_highest_load_are_said_before_the_run():
     assert "mesh.outlet = 1.5 is near the highest load" in text
     finer = copy.deepcopy(OIL) | {"mesh": OIL["mesh"] | {"points_per_half_width": [20, 400]}}
     assert "rows are too far apart" not in explain(load(roller(BLEND) | finer))
+
+
+def test_post_says_that_stresses_near_free_ends_are_those_of_half_spaces():
+    def warnings_of(**contact):
+        loads = SimpleNamespace(attrs={"status": "done"}, case=load(roller(ISO, **contact)))
+        return list(_warnings(SimpleNamespace(loads=loads, motions={})))
+
+    [text] = warnings_of()
+    assert text.startswith("stresses near the ends: assumes half-spaces, and this case has free end faces")
+    assert warnings_of(free_ends=False) == []
