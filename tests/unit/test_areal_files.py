@@ -419,7 +419,7 @@ DOUBTFUL = {
     "heights in um": ((1, 1e6), [], "warning: Rq "),
     "heights in um, few": ((1, 1e2), [], "warning: slopes of "),
     "m as mm": ((1, 1), ["--set", "unit=mm", "--set", "x_unit=m"], "warning: Rq "),
-    "nm for um": ((1, 1e-3), [], "warning: Rq 4.3e-05 um, hardly roughness: are the heights in another unit"),
+    "nm for um": ((1, 1e-3), [], "warning: Rq "),
     "m": ((1, 1), [], None),
 }
 
