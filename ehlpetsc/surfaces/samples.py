@@ -13,7 +13,8 @@ from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.surfaces import synthetic
 from ehlpetsc.surfaces.files import areal, profiles
 from ehlpetsc.surfaces.files.areal import Map, is_map, read_map
-from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, UNITS, Layout, read_profile
+from ehlpetsc.surfaces.files.instruments import LAYOUT_KEYS
+from ehlpetsc.surfaces.files.profiles import UNITS, Layout, read_profile
 from ehlpetsc.surfaces.filters import SPACING_TOLERANCE, deviations, levelled, smoothed, without_form
 from ehlpetsc.surfaces.random_maps import RANDOM_MAPS, random_map
 from ehlpetsc.surfaces.synthetic import POINTS_PER_WAVE

@@ -1,11 +1,13 @@
 """Areal maps as files: read, filled, levelled, filtered, turned, or refused with the key that settles it."""
 
 import io
+import os
 import pickle
 import re
+import struct
 import sys
 from dataclasses import replace
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -16,8 +18,9 @@ from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.results.exports import GridField, x3p
 from ehlpetsc.run.forecast.validity import warnings
-from ehlpetsc.surfaces.files.areal import gap_width, read_map
+from ehlpetsc.surfaces.files.areal import gap_width, is_map, read_map
 from ehlpetsc.surfaces.files.profiles import Layout
 from ehlpetsc.surfaces.filters import smoothed, without_form
 from ehlpetsc.surfaces.samples import areal_samples, inscribed, turned
@@ -36,12 +39,68 @@ def write_text(path, z):
     path.write_text("# heights\n" + as_text(z))
 
 
-def by_package(name):
-    return lambda path, z: optional(name).write(str(path), z, x_scale=DX, y_scale=DY)
+def write_x3p(path, z):
+    optional("SurfaceTopography")  # by which it is read
+    path.write_bytes(x3p(GridField(z, DX, DY)))
 
 
-FORMATS = {".npy": (np.save, SPACED), ".txt": (write_text, SPACED)}
-FORMATS |= {f".{kind}": (by_package(f"{kind}io"), Layout()) for kind in ("x3p", "sdf")}
+def write_sdf(path, z):
+    """ASCII SDF of ISO 25178-71, heights in nm."""
+    ny, nx = z.shape
+    entries = {"NumPoints": nx, "NumProfiles": ny, "Xscale": DX, "Yscale": DY, "Zscale": 1e-9, "DataType": 7}
+    head = "".join(f"{name} = {value}\n" for name, value in entries.items())
+    heights = " ".join("BAD" if np.isnan(value) else f"{1e9 * value:.12g}" for value in z.ravel())
+    path.write_text(f"aISO-1.0\n{head}*\n{heights}\n*\nmade up\n*\n")
+
+
+def write_binary_sdf(path, z, kind=7, scale=1e-9, version=1):
+    stored = np.dtype({3: "<f4", 5: "<i2", 6: "<i4", 7: "<f8"}[kind])
+    lowest = np.iinfo(stored).min if stored.kind == "i" else np.finfo(stored).min
+    count = "I" if version > 1 else "H"
+    head = struct.pack(
+        f"<8s34s{count}{count}4d3B",
+        f"bISO-{version}.0".encode(),
+        b"",
+        *z.shape[::-1],
+        DX,
+        DY,
+        scale,
+        0,
+        0,
+        kind,
+        0,
+    )
+    data = np.where(np.isnan(z), 0.0, z / scale)
+    data = (np.rint(data) if stored.kind == "i" else data).astype(stored)
+    path.write_bytes(head + np.where(np.isnan(z), lowest, data).astype(stored).tobytes())
+
+
+FORMATS = {
+    ".npy": (np.save, SPACED),
+    ".txt": (write_text, SPACED),
+    ".x3p": (write_x3p, Layout()),
+    ".sdf": (write_sdf, Layout()),
+    "b.sdf": (write_binary_sdf, Layout()),
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "scale", "version", "exact"), [(3, 1e-9, 1, 1e-14), (5, 1e-11, 1, 1e-11), (6, 1e-13, 2, 1e-13)]
+)
+def test_a_binary_sdf_has_numbers_of_any_type(tmp_path, kind, scale, version, exact):
+    write_binary_sdf(tmp_path / "map.sdf", Z, kind, scale, version)
+    found = read_map(tmp_path / "map.sdf")
+    np.testing.assert_allclose(found.z, Z, rtol=0, atol=exact)
+    assert (found.dx, found.dy) == pytest.approx((DX, DY))
+    content = (tmp_path / "map.sdf").read_bytes()
+    for faulty, message in (
+        (content[:-1], "^SDF: 2399 heights, NumPoints NumProfiles = 2400 "),
+        (content[:40], "^SDF: its header is not complete"),
+        (content.replace(bytes([0, kind, 0]), bytes([1, kind, 0]), 1), "^SDF: compression 1, data type "),
+    ):
+        (tmp_path / "faulty.sdf").write_bytes(faulty)
+        with pytest.raises(ProfileError, match=message):
+            read_map(tmp_path / "faulty.sdf")
 
 
 @pytest.mark.parametrize("suffix", FORMATS)
@@ -62,31 +121,73 @@ def test_formats_give_the_same_map_with_missing_heights_filled(tmp_path, suffix)
         read_map(path, layout)
 
 
-def test_surfalize_reads_other_formats(tmp_path, monkeypatch):
-    surface = SimpleNamespace(data=1e6 * Z, step_x=1e6 * DX, step_y=1e6 * DY)
-    package = ModuleType("surfalize")
-    package.Surface = SimpleNamespace(load=lambda path: surface)
-    monkeypatch.setitem(sys.modules, "surfalize", package)
-    path = tmp_path / "map.sur"
-    path.touch()
-    z, dx, dy, _ = read_map(path)
-    np.testing.assert_allclose(z, Z, rtol=1e-12)
-    assert (dx, dy) == pytest.approx((DX, DY))
+class StoredByPackage:
+    """What SurfaceTopography returns: heights over (x, y), in a unit of length."""
+
+    dim, unit, pixel_size = 2, "um", (1e6 * DX, 1e6 * DY)
+
+    def __init__(self, z, factor=1e6):
+        self.z, self.factor = z, factor
+
+    def to_unit(self, unit):
+        assert unit == "m"
+        found = type(self)(self.z, 1.0)
+        found.pixel_size = DX, DY
+        return found
+
+    def heights(self):
+        return np.ma.masked_invalid(self.factor * self.z.T)
+
+    def positions_and_heights(self):
+        return X, self.factor * self.z
 
 
-PACKAGES = {".x3p": "x3pio", ".sdf": "sdfio", ".plux": "surfalize"}
+def with_package(monkeypatch, found):
+    package = ModuleType("SurfaceTopography")
+    package.read_topography = lambda path: found
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
 
 
-@pytest.mark.parametrize(("suffix", "package"), PACKAGES.items())
-def test_a_missing_package_is_named(tmp_path, monkeypatch, suffix, package):
-    monkeypatch.setitem(sys.modules, package, None)
+@pytest.mark.parametrize("suffix", [".sur", ".al3d", ".plux", ".opd", ".xlsx"])
+def test_surface_topography_reads_other_formats(tmp_path, monkeypatch, suffix):
     path = tmp_path / f"map{suffix}"
     path.touch()
-    with pytest.raises(ProfileError, match=rf"pip install {package}\).* \.npy or text, a matrix"):
+    holed = Z.copy()
+    holed[10:13, 20:24] = np.nan
+    with_package(monkeypatch, StoredByPackage(holed))
+    z, dx, dy, notes = read_map(path, Layout(fill_gaps=1e-5))
+    np.testing.assert_allclose(z[~np.isnan(holed)], Z[~np.isnan(holed)], rtol=1e-12)
+    assert (dx, dy) == pytest.approx((DX, DY)) and notes[0].startswith("12 missing heights filled")
+
+
+def test_a_profile_of_a_roughness_meter_is_ridges_and_a_file_without_a_unit_refused(tmp_path, monkeypatch):
+    path = tmp_path / "p.xlsx"
+    path.touch()
+    found = StoredByPackage(Z[3])
+    found.dim = type(found).dim = 1
+    monkeypatch.setattr(StoredByPackage, "dim", 1)
+    with_package(monkeypatch, found)
+    surface = areal_samples(tmp_path, spec(path), 1e-4, False)
+    assert surface.is_ridge and not is_map(path, Layout())
+    np.testing.assert_allclose(surface.z[0], Z[3] - Z[3].mean(), atol=1e-20)
+    with pytest.raises(ProfileError, match="^a profile; allowed here: a map$"):
+        read_map(path)
+    found.unit = None
+    os.utime(path, (1, 1))
+    with pytest.raises(ProfileError, match="^no unit of length in it; allowed: "):
         read_map(path)
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".mat", ".xlsx", ".tif"])
+@pytest.mark.parametrize("suffix", [".x3p", ".plux", ".nms"])
+def test_a_missing_package_is_named(tmp_path, monkeypatch, suffix):
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    path = tmp_path / f"map{suffix}"
+    path.touch()
+    with pytest.raises(ProfileError, match=r"pip install SurfaceTopography\).* \.npy or text, a matrix"):
+        read_map(path)
+
+
+@pytest.mark.parametrize("suffix", [".npz", ".mat", ".xls", ".jpg", ".vti"])
 def test_a_format_without_a_reader_is_refused_whatever_is_stated(tmp_path, suffix):
     path = tmp_path / f"map{suffix}"
     path.touch()
@@ -95,12 +196,11 @@ def test_a_format_without_a_reader_is_refused_whatever_is_stated(tmp_path, suffi
             read_map(path, layout)
 
 
-@pytest.mark.parametrize("suffix", [".x3p", ".sdf"])
-def test_a_damaged_file_is_refused(tmp_path, suffix):
-    package = optional(PACKAGES[suffix]).__name__
-    path = tmp_path / f"map{suffix}"
+def test_a_damaged_file_is_refused(tmp_path):
+    optional("SurfaceTopography")
+    path = tmp_path / "map.x3p"
     path.write_bytes(b"\x01\x02 nothing")
-    with pytest.raises(ProfileError, match=f"^{package} cannot read it: "):
+    with pytest.raises(ProfileError, match="^SurfaceTopography cannot read it: "):
         read_map(path)
 
 
@@ -111,11 +211,10 @@ def test_units_named_in_a_header_are_asked_for_and_profiles_refused(tmp_path):
     np.testing.assert_allclose(read_map(tmp_path / "map.txt", replace(SPACED, unit="um")).z, Z, atol=1e-15)
     path = tmp_path / "p.x3p"
     path.touch()
-    with pytest.raises(ProfileError, match=r"^spacing: '\.x3p' includes it; leave it out$"):
+    with pytest.raises(
+        ProfileError, match=r"^spacing: for text files alone, '\.x3p' includes it; leave it out$"
+    ):
         read_map(path, SPACED)
-    optional("x3pio").Profile.from_array(Z[3], x_scale=DX).save(str(path))
-    with pytest.raises(ProfileError, match="^no map in it; allowed: "):
-        read_map(path)
 
 
 INFINITE, HOLES = Z.copy(), np.where(np.random.default_rng(1).random(Z.shape) < 0.6, np.nan, Z)

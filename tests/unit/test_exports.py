@@ -21,6 +21,7 @@ from ehlpetsc.commands.surface import main
 from ehlpetsc.results.exports import GridField, gsf
 from ehlpetsc.results.reader import Result
 from ehlpetsc.surfaces.files.areal import read_map
+from ehlpetsc.surfaces.files.text import Layout
 from ehlpetsc.surfaces.samples import areal_samples
 from ehlpetsc.surfaces.topography import difference, displacement
 
@@ -93,9 +94,9 @@ def test_the_command_writes_the_map_as_used_and_a_profile_as_one_row(tmp_path, c
     assert "exists; give another -o, or --overwrite" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["map.npy", f"out{ending}"]
     assert target.read_text() == "measured"
-    if ending != ".x3p":
+    if ending == ".vti":
         assert main([str(target)]) == 2
-        assert f"format '{ending}' is written, not read; allowed: " in capsys.readouterr().err
+        assert "format '.vti' is not read; allowed: " in capsys.readouterr().err
     np.savetxt(tmp_path / "p.csv", np.transpose([DX * np.arange(60), Z[0]]), delimiter=",")
     target = tmp_path / f"row{ending}"
     assert main([str(tmp_path / "p.csv"), "-o", str(target), "--set", "level=false"]) == 0
@@ -104,14 +105,41 @@ def test_the_command_writes_the_map_as_used_and_a_profile_as_one_row(tmp_path, c
     assert dx == pytest.approx(DX, rel=1e-9)
 
 
-def test_x3pio_reads_what_is_written(tmp_path):
-    optional("x3pio")
+@pytest.mark.parametrize(("ending", "exact"), [(".x3p", 1e-20), (".gsf", 1e-13)])
+def test_what_is_written_is_read(tmp_path, ending, exact):
+    ending == ".gsf" or optional("SurfaceTopography")
     np.save(tmp_path / "map.npy", Z)
     words = ["--set", f"spacing={DX}", "--set", f"spacing_across={DY}", "--set", "level=false"]
-    assert main([str(tmp_path / "map.npy"), "-o", str(tmp_path / "map.x3p"), *words]) == 0
-    found = read_map(tmp_path / "map.x3p")
-    np.testing.assert_allclose(found.z, Z - Z.mean(), atol=1e-20)
+    target = tmp_path / f"map{ending}"
+    assert main([str(tmp_path / "map.npy"), "-o", str(target), *words]) == 0
+    found = read_map(target)
+    np.testing.assert_allclose(found.z, Z - Z.mean(), atol=exact)
     assert (found.dx, found.dy) == pytest.approx((DX, DY))
+    assert main([str(target), "--no-picture"]) == 0
+
+
+@pytest.mark.parametrize("title", ["a", "ab", "abc", "abcd"])
+def test_a_gsf_is_read_whatever_the_length_of_its_header_in_any_unit_of_length(tmp_path, title):
+    field = GridField(1e6 * np.where(Z > 2e-7, np.nan, Z), DX, DY, title, "um", (1e-3, 2e-3))
+    (tmp_path / "map.gsf").write_bytes(gsf(field))
+    found = read_map(tmp_path / "map.gsf", Layout(fill_gaps=1e-5))
+    np.testing.assert_allclose(found.z[Z <= 2e-7], Z[Z <= 2e-7], atol=1e-13)
+    assert (found.dx, found.dy) == pytest.approx((DX, DY)) and "missing heights filled" in found.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (b"ZUnits = m", b"ZUnits = Pa", '^GSF: ZUnits = "Pa"; allowed: a unit of length, as m$'),
+        (b"XRes = 60", b"XRes = 61", "^GSF: 2400 heights, XRes YRes = 2440 in its header; "),
+        (b"YRes", b"Rows", "^GSF: YRes is missing; "),
+        (b"Gwyddion", b"Gwiddion", r"^its first line is that of no format of '\.gsf'; "),
+    ],
+)
+def test_a_faulty_gsf_is_refused(tmp_path, old, new, message):
+    (tmp_path / "map.gsf").write_bytes(gsf(GridField(Z, DX, DY)).replace(old, new))
+    with pytest.raises(ProfileError, match=message):
+        read_map(tmp_path / "map.gsf")
 
 
 def stored(tmp_path, is_plane=True):

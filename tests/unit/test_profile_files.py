@@ -173,15 +173,14 @@ def test_refused_profile_names_the_layout_key(tmp_path, text, layout, message):
 
 def test_other_formats_are_read_by_surface_topography(tmp_path, monkeypatch):
     class Topography:
-        dim = 2
+        dim, unit, pixel_size = 2, "m", (1e-6, 2e-6)
 
         def to_unit(self, unit):
             assert unit == "m"
             return self
 
-        def positions_and_heights(self):
-            x, y = np.meshgrid(np.arange(6) * 1e-6, np.arange(3) * 1e-6, indexing="ij")
-            return x, y, 0.1 * x + y
+        def heights(self):
+            return 0.1e-6 * np.arange(6)[:, None] + 1e-6 * np.arange(3)
 
     package = type(sys)("SurfaceTopography")
     package.read_topography = lambda path: Topography()

@@ -22,7 +22,8 @@ from ehlpetsc.physics.oil.laws import density
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast.cost import banner
 from ehlpetsc.run.forecast.explain import explain
-from ehlpetsc.surfaces.files.profiles import LAYOUT_KEYS, TEXT_ENDINGS
+from ehlpetsc.surfaces.files.instruments import LAYOUT_KEYS
+from ehlpetsc.surfaces.files.profiles import TEXT_ENDINGS
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
 sys.path.append(str(ROOT / ".github" / "site"))

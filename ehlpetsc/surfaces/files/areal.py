@@ -1,69 +1,34 @@
-"""Areal maps as files: text, ``.npy``, formats of the packages x3pio, sdfio and surfalize; their gaps."""
+"""Areal maps as files: text, ``.npy``, formats of instruments; their gaps."""
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.format import MAGIC_PREFIX, read_array
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.surfaces.files.profiles import (
-    KEYS_OF_TEXT,
-    MAX_ABSCISSA,
-    TEXT_ENDINGS,
-    UNITS,
-    Layout,
-    by_package,
-    read_once,
-)
-from ehlpetsc.surfaces.files.text import text_columns
+from ehlpetsc.surfaces.files.instruments import by_package, read_instrument, read_once
+from ehlpetsc.surfaces.files.profiles import MAX_ABSCISSA, TEXT_ENDINGS
+from ehlpetsc.surfaces.files.softgauges import Map, Trace, read_softgauge
+from ehlpetsc.surfaces.files.text import UNITS, Layout, text_columns
 from ehlpetsc.surfaces.files.text_maps import MIN_POINTS, MIN_PRESENT, in_metres, is_matrix, listed, with_axes
 from ehlpetsc.surfaces.filters import SPIKE_WIDTH, map_spikes, without_no_data
 
-OF_PROFILES = {".smd"}  # besides text
-WRITTEN_ONLY = {".gsf", ".vti"}
-NO_HEIGHTS = {
-    ".npz",
-    ".mat",
-    ".xls",
-    ".xlsx",
-    ".h5",
-    ".json",
-    ".png",
-    ".jpg",
-    ".jpeg",
-    ".bmp",
-    ".tif",
-    ".tiff",
-}
-
-
-class Map(NamedTuple):
-    """Heights on a uniform grid.
-
-    `z`: m, positive out of the metal, shape (ny, nx).
-    `dx`, `dy`: distances of the columns and of the rows [m].
-    `notes`: notes on the processing of the numbers.
-    """
-
-    z: np.ndarray
-    dx: float
-    dy: float
-    notes: tuple[str, ...] = ()
-
 
 def is_map(path: str | PathLike, layout: Layout) -> bool:
-    """Whether a file holds a map: by its suffix or, of text, by its numbers."""
+    """Whether a file holds a map; one that cannot be read as a profile counts as one."""
     path = Path(path)
-    if path.suffix.lower() not in TEXT_ENDINGS:
-        return path.suffix.lower() not in OF_PROFILES
     if not path.is_file():
-        return False
+        return path.suffix.lower() not in TEXT_ENDINGS
+    if path.suffix.lower() == ".npy":
+        return True
+    if not _is_text(path):
+        try:
+            return isinstance(read_instrument(path, layout), Map)
+        except ProfileError:
+            return True
     columns, header = _columns_of(path, layout)
     return listed(columns, header) is not None or is_matrix(columns, header, layout)
 
@@ -73,10 +38,12 @@ def read_map(path: Path, layout: Layout) -> Map:
     """Map in a file, missing heights filled.
 
     Text: a matrix, one line a row along x, in the layouts of profile files. ``.npy``: a matrix. Other formats
-    by the packages named in `READERS`, if they are installed.
+    as of :func:`.instruments.read_instrument`.
     """
-    is_matrix = path.suffix.lower() in TEXT_ENDINGS | {".npy"}
-    found = (_matrix if is_matrix else _instrument_file)(path, layout)
+    is_matrix = path.suffix.lower() == ".npy" or _is_text(path)
+    found = (_matrix if is_matrix else read_instrument)(path, layout)
+    if isinstance(found, Trace):
+        raise ProfileError("a profile; allowed here: a map")
     if layout.mask:
         found = found._replace(z=_masked(found.z, path.parent / layout.mask))
     found = checked(found, layout)
@@ -93,6 +60,11 @@ def _matrix(path: Path, layout: Layout) -> Map:
         raise ProfileError(f"numbers of type {z.dtype}; allowed: real numbers")
     _check_shape(z)
     return Map(*in_metres(with_axes(z.astype(float), ""), "", layout))
+
+
+def _is_text(path: Path) -> bool:
+    """Whether a file is read as text, by its name, and is not one of the formats that any name may have."""
+    return path.suffix.lower() in TEXT_ENDINGS and read_softgauge(path) is None
 
 
 def _masked(z: np.ndarray, path: Path) -> np.ndarray:
@@ -121,51 +93,6 @@ def _by_numpy(path: Path) -> np.ndarray:
 @read_once
 def _columns_of(path: Path, layout: Layout) -> tuple[np.ndarray, str]:
     return text_columns(path, layout.decimal, layout.header_lines)
-
-
-def _instrument_file(path: Path, layout: Layout) -> Map:
-    """Map in a file that includes its units and spacings."""
-    ending, otherwise = path.suffix.lower(), ".npy or text, a matrix of heights in m, with spacing"
-    if ending in NO_HEIGHTS:
-        raise ProfileError(f"format {ending!r} is not read; allowed: {otherwise}, or a format of instruments")
-    stated = [key for key in KEYS_OF_TEXT if getattr(layout, key) is not None]
-    if stated:
-        raise ProfileError(f"{stated[0]}: {path.suffix!r} includes it; leave it out")
-    if ending in WRITTEN_ONLY:
-        raise ProfileError(f"format {ending!r} is written, not read; allowed: {otherwise}, or .x3p")
-    package, read = READERS.get(ending, ("surfalize", _by_surfalize))
-    return by_package(package, read, path, otherwise)
-
-
-def _by_x3pio(path: Path) -> Map:
-    import x3pio
-
-    layer = x3pio.read(str(path)).layers[0]
-    if not isinstance(layer, x3pio.SurfaceLayer):
-        raise ProfileError("no map in it; allowed: a surface on a grid")
-    return Map(layer.z, *layer.spacing)
-
-
-def _by_sdfio(path: Path) -> Map:
-    import sdfio
-
-    file = sdfio.read(str(path))
-    return Map(file.data, file.header.x_scale, file.header.y_scale)
-
-
-def _by_surfalize(path: Path) -> Map:
-    import surfalize
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # that spacings differ
-        surface = surfalize.Surface.load(str(path))
-    return Map(UNITS["um"] * surface.data, UNITS["um"] * surface.step_x, UNITS["um"] * surface.step_y)
-
-
-READERS: dict[str, tuple[str, Callable[[Path], Map]]] = {
-    ".x3p": ("x3pio", _by_x3pio),
-    ".sdf": ("sdfio", _by_sdfio),
-}  # all others: surfalize
 
 
 def checked(found: Map, layout: Layout) -> Map:

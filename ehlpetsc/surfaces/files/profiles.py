@@ -1,19 +1,16 @@
-"""Measured profiles: text in many layouts, softgauges, and the formats of the package SurfaceTopography."""
+"""Measured profiles: text in many layouts, and the formats of instruments."""
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
-from os import PathLike
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.base.toml_file import similar_file
 from ehlpetsc.surfaces.files.headers import units_named
-from ehlpetsc.surfaces.files.text import UNITS, Layout, read_softgauge, text_columns, units_in
+from ehlpetsc.surfaces.files.instruments import read_instrument, read_once
+from ehlpetsc.surfaces.files.softgauges import Map, Trace, read_softgauge
+from ehlpetsc.surfaces.files.text import UNITS, Layout, text_columns, units_in
 from ehlpetsc.surfaces.files.text_maps import (
     MIN_MATRIX_COLUMNS,
     MIN_POINTS,
@@ -30,77 +27,31 @@ MIN_EQUAL_FRACTION = 0.9  # of equal spacings in files with missing lines
 MAX_ABSCISSA = 1e6  # m: beyond it squares and cubes of a spline overflow
 
 
-DETECTED = Layout()
-LAYOUT_KEYS = tuple(Layout.__dataclass_fields__)
-KEYS_OF_TEXT = LAYOUT_KEYS[: LAYOUT_KEYS.index("fill_gaps")]
-
-
-R = TypeVar("R")
-
-
-def read_once(read: Callable[[Path, Layout], R]) -> Callable[..., R]:
-    """Reading of a file, remembered for check, summary and run; ProfileError where it cannot be read."""
-
-    @functools.lru_cache(maxsize=4)
-    def remembered(path: Path, layout: Layout, _modified: int, _size: int) -> R:
-        return read(path, layout)
-
-    @functools.wraps(read)
-    def reading(path: str | PathLike, layout: Layout = DETECTED) -> R:
-        path = Path(path)
-        try:
-            if not path.is_file():
-                fault = "a folder" if path.is_dir() else "no such file"
-                raise ProfileError(f"{fault}: {path}{similar_file(path)}")
-            state = path.stat()
-            return remembered(path, layout, state.st_mtime_ns, state.st_size)
-        except (OSError, ValueError) as error:  # ValueError: a name no file system takes
-            raise ProfileError(f"cannot be read: {error}") from None
-
-    return reading
-
-
-def by_package(package: str, read: Callable[[Path], R], path: Path, otherwise: str) -> R:
-    """Content of a file, read by a package that need not be installed; `otherwise`: what needs none."""
-    try:
-        return read(path)
-    except ModuleNotFoundError as error:
-        if error.name != package:
-            raise ProfileError(f"{package} cannot be loaded: {error}") from None
-        raise ProfileError(
-            f"format {path.suffix!r} needs the package {package} (pip install {package}); without it, "
-            f"allowed: {otherwise}"
-        ) from None
-    except ProfileError:
-        raise
-    except Exception as error:  # various exceptions on a damaged file
-        raise ProfileError(f"{package} cannot read it: {str(error).partition(chr(10))[0]}") from None
-
-
 @read_once
 def read_profile(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
     """Abscissas, from 0 on, and heights of a profile file.
 
     Text: columns of numbers, by default two, x and z in metres, separated by comma, semicolon, tab or blanks;
-    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. SMD, PRF and
-    ASCII SDF, see :mod:`.files.text`. Any other format through the package SurfaceTopography if it is
-    installed.
+    header lines, ``#`` comments, decimal comma, UTF-8, UTF-16 or Latin-1, x rising or falling. Any other
+    format as of :func:`.instruments.read_instrument`, of a map the central trace.
 
     Returns X and z [m], X increasing, heights positive out of the metal, shape (n,), and notes on the
     processing of the numbers.
     """
-    from_softgauge, text_keys = read_softgauge(path), [key for key in KEYS_OF_TEXT if getattr(layout, key)]
-    is_text = from_softgauge is None and path.suffix.lower() in TEXT_ENDINGS
-    if text_keys and not is_text:
-        raise ProfileError(f"{text_keys[0]}: for text files alone, {path.suffix!r} includes it; leave it out")
-    if is_text:
-        read = _from_text(path, layout)
-    else:
-        otherwise = ".csv or two-column text, x and z in m"
-        read = from_softgauge or by_package("SurfaceTopography", _from_surface_topography, path, otherwise)
+    if path.suffix.lower() == ".npy":
+        raise ProfileError("a map of heights, not a profile; allowed: text, x and z in m")
+    is_text = path.suffix.lower() in TEXT_ENDINGS and read_softgauge(path) is None
+    read = _from_text(path, layout) if is_text else _trace(read_instrument(path, layout))
     x, z, notes = checked(*read, layout)
     x.flags.writeable = z.flags.writeable = False
     return x, z, notes
+
+
+def _trace(found: Map | Trace) -> Trace:
+    """Profile, of a map its middle row."""
+    if isinstance(found, Trace):
+        return found
+    return Trace(found.dx * np.arange(found.z.shape[1]), found.z[len(found.z) // 2])
 
 
 def _from_text(path: Path, layout: Layout) -> tuple[np.ndarray, np.ndarray]:
@@ -156,17 +107,6 @@ def _check_map(columns: np.ndarray, header: str, chosen: tuple[int, ...]) -> Non
         f"{size}: a map of heights, not a profile; points and strips read it, a line contact one line of it "
         "in a file of its own, with spacing = distance of its points [m]"
     )
-
-
-def _from_surface_topography(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    from SurfaceTopography import read_topography
-
-    topography = read_topography(str(path)).to_unit("m")
-    if topography.dim == 1:
-        return topography.positions_and_heights()
-    x, _, z = topography.positions_and_heights()
-    middle = z.shape[1] // 2  # of an areal map the central trace
-    return x[:, middle], z[:, middle]
 
 
 def checked(x: np.ndarray, z: np.ndarray, layout: Layout) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
