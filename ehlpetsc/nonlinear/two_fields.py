@@ -1,4 +1,4 @@
-"""The nonlinear system of a case for PETSc: two unknowns a node, vectors, matrices, bounds, step limits.
+"""The nonlinear system of a case for PETSc: two unknowns a node, vectors, matrices, bounds.
 
 Each rank stores the unknowns of its own nodes, (q_0, w_0, q_1, w_1, ...), the last rank the border behind,
 and evaluates its own rows (:mod:`ehlpetsc.discretisation.ehl_problem`) with data of other ranks from
@@ -24,7 +24,8 @@ from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, n_dofs, nodes_of_w, pairs, q_of, w_of
 from ehlpetsc.nonlinear.options import ASSEMBLY, PRODUCT, RESIDUAL
-from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_max, global_sum
+from ehlpetsc.nonlinear.ranks import Exchange, all_ranks, gathered, global_sum
+from ehlpetsc.nonlinear.step_limit import StepLimit
 
 
 class Jacobian:
@@ -102,8 +103,6 @@ def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> 
 LAST_DIGIT = 1.1e-16  # relative rounding error of a number
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
-STEP_LIMIT = 0.3  # p0: largest change of pressure in one Newton step
-FILM_AFTER_RELEASE = 1e-3  # film given to a node that leaves contact, over the expected film
 
 
 class Matrices:
@@ -142,6 +141,7 @@ class TwoFields:
     `problem`: of the nodes of this rank.
     `exchange`: of unknowns and pressures between ranks.
     `matrices`: Jacobian and preconditioner of the kind of contact.
+    `limit`: of its steps.
 
     `x`, `f`: unknowns and residual.
     `lower`, `upper`: bounds of the unknowns.
@@ -151,9 +151,15 @@ class TwoFields:
     """
 
     def __init__(
-        self, problem: EHLProblem, exchange: Exchange, matrices: Matrices, comm: PETSc.Comm = PETSc.COMM_WORLD
+        self,
+        problem: EHLProblem,
+        exchange: Exchange,
+        matrices: Matrices,
+        limit: StepLimit,
+        comm: PETSc.Comm = PETSc.COMM_WORLD,
     ):
         self.problem, self.exchange, self.matrices, self.comm = problem, exchange, matrices, comm
+        self.limit = limit
         self.n, self.local, self.model = problem.n, problem.local, problem.model
         self.ranks = comm.tompi4py()
         self._create_vectors()
@@ -186,6 +192,7 @@ class TwoFields:
 
     def set_initial_guess(self, guess: Unknowns, inputs: StepInputs) -> None:
         """Set the unknowns to an initial guess on the whole mesh, and the inputs of the solve."""
+        self.limit.begin()
         self._given, self.inputs, self.x_evaluated, self.rows = inputs, inputs.begin(), None, None
         local = slice(self.problem.first, self.problem.last)
         q_of(self.x.array, self.local)[:], w_of(self.x.array, self.local)[:] = guess.q[local], guess.w[local]
@@ -246,19 +253,8 @@ class TwoFields:
         return self.inputs.contact or self.model
 
     def limit_step(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """Shorten a step y, to be subtracted from x, and limit single entries of it.
-
-        All of y is scaled by one factor, so that linear rows remain satisfied, to `STEP_LIMIT` p0 in any
-        pressure, because the viscosity is exponential in p; the contact model limits single entries.
-        """
-        now, step = pairs(x.array_r, self.local), pairs(y.array, self.local)
-        change = global_max(self.ranks, self.contact.pressure_change(now, step))
-        if change > STEP_LIMIT:
-            y.scale(STEP_LIMIT / change)
-        step = pairs(y.array, self.local)
-        self.contact.clip_step(now, step, FILM_AFTER_RELEASE * self.problem.film_scale)
-        if self.inputs.rests:  # any void would be a solution: no flow fills it
-            step[:, 0] = np.minimum(step[:, 0], now[:, 0])
+        """Limit a step y, to be subtracted from x."""
+        self.limit(self.inputs, self.contact, x.array_r, y.array)
 
     def reaches_bound(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
         """Whether the step y brings a film of this rank to its bound."""

@@ -42,7 +42,7 @@ from ehlpetsc.discretisation.line.deflection import SymmetricToeplitz
 from ehlpetsc.discretisation.step_inputs import StepInputs, Watch
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, q_of, w_of
 from ehlpetsc.nonlinear.line.system import line_problem
-from ehlpetsc.nonlinear.two_fields import STEP_LIMIT
+from ehlpetsc.nonlinear.step_limit import STEP_LIMIT
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
 

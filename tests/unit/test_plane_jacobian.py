@@ -18,7 +18,7 @@ from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.elasticity.half_space import free_kernel
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
-from ehlpetsc.nonlinear.plane import system as plane
+from ehlpetsc.nonlinear.plane import step_limit
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
@@ -331,7 +331,7 @@ def test_complete_factors_follow_incomplete_ones_that_break_down(monkeypatch):
 def test_pressures_are_settled_in_the_first_steps_of_each_solve(monkeypatch):
     """Later on it would keep a cycle alive, as of a node whose film gives way at once."""
     calls = []
-    monkeypatch.setattr(plane, "settle", lambda cells, q, changed: calls.append(len(changed)))
+    monkeypatch.setattr(step_limit, "settle", lambda cells, q, changed: calls.append(len(changed)))
     (system, state, inputs), counts = scene("rolling"), []
     for _ in range(2):
         system.set_initial_guess(state, inputs)

@@ -23,6 +23,7 @@ from ehlpetsc.nonlinear.line.exchange import LineExchange, first_nodes
 from ehlpetsc.nonlinear.line.jacobian import JacobianOperator, NearFieldMatrix
 from ehlpetsc.nonlinear.line.node_pairs import node_pairs
 from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
+from ehlpetsc.nonlinear.step_limit import Linearised
 from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
 
@@ -128,4 +129,5 @@ def line_system(
     first, last = cuts[comm.rank : comm.rank + 2]
     problem = line_problem(case, scales, film_scale, first, last, bound_tolerance)
     exchange = LineExchange(problem, cuts, ranks)
-    return TwoFields(problem, exchange, LineMatrices(problem, exchange, ranks, case.mesh.near_field), comm)
+    matrices = LineMatrices(problem, exchange, ranks, case.mesh.near_field)
+    return TwoFields(problem, exchange, matrices, Linearised(problem, ranks), comm)
