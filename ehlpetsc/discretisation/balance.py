@@ -9,8 +9,6 @@ array, shape (unknowns,), and call the methods below.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ehlpetsc.base.case import Case
@@ -49,7 +47,7 @@ class Load:
         """Unknowns that add the same gap at every node."""
         return np.array([gap])
 
-    def gap(self, border: np.ndarray, nodes: slice = slice(None)) -> Any:
+    def gap(self, border: np.ndarray, nodes: slice = slice(None)) -> float | np.ndarray:
         """Gap that the unknowns add at nodes of the mesh; a number where it is the same at all of them."""
         return border[0]
 

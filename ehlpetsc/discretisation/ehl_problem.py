@@ -15,7 +15,7 @@ the unknowns of its window, see :mod:`.deflection`.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -67,7 +67,35 @@ class Solution:
     inputs: StepInputs
 
 
-class EHLProblem:
+class Sums(Protocol):
+    """Sums over the pressures of the whole mesh, from the exchange of a kind of contact for its own rows."""
+
+    @property
+    def forces(self) -> np.ndarray:
+        """Of the border, see :mod:`.balance`."""
+
+
+S = TypeVar("S", bound=Sums, contravariant=True)
+
+
+class Deflection(Protocol[S]):
+    """Deflection rows of a kind of contact: :mod:`.line.deflection`, :mod:`.plane.deflection`."""
+
+    @property
+    def largest_eigenvalue(self) -> float:
+        """Bound of the eigenvalues of `integral`."""
+
+    def residual(self, separation: np.ndarray, of_border: float | np.ndarray, sums: S) -> np.ndarray:
+        """Local rows, from the separation at the nodes of the window and the gap of the border."""
+
+    def integral(self, pressure: np.ndarray) -> np.ndarray:
+        """Elastic deflection at every node of the mesh, in a^2/R, by the pressures there."""
+
+
+D = TypeVar("D", bound=Deflection)
+
+
+class EHLProblem(Generic[D]):
     """Residual and derivatives of the nodes of a rank.
 
     `scales`: with the nodes of the mesh.
@@ -84,7 +112,7 @@ class EHLProblem:
         scales: Scales,
         share: Share,
         model: ContactModel,
-        deflection: Any,
+        deflection: D,
         reynolds: NoOil,
         film_scale: float,
     ):
@@ -145,10 +173,10 @@ class EHLProblem:
         loads = self.model.surface_loads(q, w, nodes.film, residual)
         return Solution(unknowns, nodes, loads, residual, self._mass(nodes, inputs.fluid), inputs)
 
-    def evaluate(self, unknowns: Unknowns, inputs: StepInputs, sums: Any = None) -> Evaluation:
+    def evaluate(self, unknowns: Unknowns, inputs: StepInputs, sums: Sums) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.
 
-        `sums` of the pressures at these unknowns are required unless the window is the whole mesh.
+        `sums`: of the pressures at these unknowns, from the exchange of the kind of contact.
         """
         (q, w, border), model = unknowns, inputs.contact or self.model
         state = model.state(q, w)
@@ -156,7 +184,6 @@ class EHLProblem:
         # the parabola's second difference is dx^2 exactly
         undeformed = self.grid.undeformed(self.scales.R / inputs.conditions.radius, self.window)
         separation = state.separation - undeformed - inputs.phi[self.window]
-        sums = self.deflection.sums(state.pressure) if sums is None else sums
         approach = self.balance.gap(border, self.share.local)
         q_of(residual, self.local)[:] = self.deflection.residual(separation, approach, sums)
         reynolds, derivatives = self.reynolds.evaluate(state.reynolds_unknown, state.film, inputs)
@@ -171,10 +198,10 @@ def problem_of(
     scales: Scales,
     film_scale: float,
     share: Share,
-    deflection: Any,
+    deflection: D,
     has_sides: tuple[bool, bool] | None = None,
     bound_tolerance: float = 0.0,
-) -> EHLProblem:
+) -> EHLProblem[D]:
     """Problem of the nodes of a rank.
 
     `film_scale`: expected film in a^2/R.

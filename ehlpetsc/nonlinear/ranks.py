@@ -7,13 +7,14 @@ from typing import Any, Protocol
 import numpy as np
 from mpi4py import MPI
 
+from ehlpetsc.discretisation.ehl_problem import Sums
 from ehlpetsc.discretisation.unknowns import Unknowns
 
 
 class Exchange(Protocol):
     """Exchange of unknowns and pressures of a kind of contact between ranks."""
 
-    def unknowns(self, vector: np.ndarray, pressure: np.ndarray, flag: bool) -> tuple[Unknowns, tuple, bool]:
+    def unknowns(self, vector: np.ndarray, pressure: np.ndarray, flag: bool) -> tuple[Unknowns, Sums, bool]:
         """Unknowns at the nodes of the window, sums over all pressures, whether a flag is set on any rank.
 
         `vector`, `pressure`: local unknowns, interleaved, and pressures.

@@ -36,6 +36,12 @@ def state(case, scales):
     return q, w, np.zeros(1)
 
 
+def evaluated(problem, at):
+    """Rows and derivatives of the whole mesh."""
+    sums = problem.deflection.sums(problem.model.state(*at[:2]).pressure)
+    return problem.evaluate(Unknowns(*at), problem.inputs(), sums)
+
+
 def dense(problem, at, inactive_nodes):
     """The matrix in q and w, its far deflection by exponentials; second unknowns of inactive nodes held."""
     n, d = problem.n, problem.deflection
@@ -48,7 +54,7 @@ def dense(problem, at, inactive_nodes):
     for end in (0, n - 1):
         by_pressure[end], by_film[end] = d.end_row(end), 0.0
         by_film[end, end] = d.end_row_coefficient
-    evaluation = problem.evaluate(Unknowns(*at), problem.inputs())
+    evaluation = evaluated(problem, at)
     nodes, derivatives = evaluation.state, evaluation.reynolds_derivatives
     matrix = np.zeros((2 * n + 1, 2 * n + 1))
     leak = np.where((nodes.p_q > 0.0) | (nodes.p_w != 0.0), 0.0, PIVOT_REGULARISATION)
@@ -83,7 +89,7 @@ def test_distributed_lu_solves_its_matrix(model):
     lu = DistributedLU(BandedJacobian(part), -part.deflection.end_row_coefficient, ranks)
     mine = inactive_nodes[(inactive_nodes >= first) & (inactive_nodes < last)] - first
     nodes = part.model.state(at[0][part.window], at[1][part.window])
-    derivatives = whole.evaluate(Unknowns(*at), whole.inputs()).reynolds_derivatives[first:last]
+    derivatives = evaluated(whole, at).reynolds_derivatives[first:last]
     entries, unknowns = node_pairs(nodes, part.model.compliance, derivatives, lu.band.stencil)
     other = entries._replace(
         p_first=np.zeros_like(entries.p_first),

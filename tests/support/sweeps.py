@@ -123,7 +123,8 @@ class GaussSeidelSolver:
     def _evaluate(self, q: np.ndarray, h: np.ndarray, border: np.ndarray, inputs: StepInputs) -> float:
         """Store residual and coefficients at a state; return the norm of the rows off the bound."""
         with np.errstate(over="ignore", invalid="ignore"):
-            evaluation = self.problem.evaluate(Unknowns(q, h, border), inputs)
+            sums = self.deflection.sums(self.problem.model.state(q, h).pressure)
+            evaluation = self.problem.evaluate(Unknowns(q, h, border), inputs, sums)
             rows, self.derivatives = evaluation.residual, evaluation.reynolds_derivatives
             reynolds = w_of(rows, self.problem.n)
             self.rows = Rows(

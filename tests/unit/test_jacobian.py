@@ -70,7 +70,9 @@ class Scene:
         system = self.solver.system
         n = system.n
         unknowns = Unknowns(q_of(state, n).copy(), w_of(state, n).copy(), state[-1:])
-        return system.problem.evaluate(unknowns, self.inputs).residual.copy()
+        model = self.inputs.contact or system.problem.model
+        sums = system.problem.deflection.sums(model.state(unknowns.q, unknowns.w).pressure)
+        return system.problem.evaluate(unknowns, self.inputs, sums).residual.copy()
 
 
 def scene(name):

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import fft, ifft, irfft, next_fast_len, rfft
@@ -147,7 +147,9 @@ class Deflection:
         mirrored = None if kernel.mirrored is None else stiffness * kernel.mirrored
         self.convolution = Convolution(self.compliances, periodic, ranks or Transposition(), mirrored)
 
-    def residual(self, separation: np.ndarray, of_border: Any, sums: PressureSums) -> np.ndarray:
+    def residual(
+        self, separation: np.ndarray, of_border: float | np.ndarray, sums: PressureSums
+    ) -> np.ndarray:
         """Local rows, from the separation at the nodes of the window and the gap of the border."""
         return self.row_scale * (separation[self.owned] - of_border - sums.deflection)
 
