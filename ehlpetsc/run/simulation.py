@@ -14,6 +14,7 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.errors import CaseError, NoSteadyStart, NotConverged, Stopped, UsageError
 from ehlpetsc.case.loading import Case, load
 from ehlpetsc.case.tables.surface import check_unchanged
@@ -290,7 +291,7 @@ class Simulation:
         pressure spikes move by a node an iteration when the film changes; else the last.
         """
         case, points = self.case, self.case.mesh.points_per_half_width
-        is_hertz = case.fluid is None and self.roughness is None
+        is_hertz = case.fluid is None and self.roughness is None and not KINDS[case.kind].has_ends
         resolved = points * self.scales.size(self.operation.at(0.0))
         is_heated = case.heat is not None and case.fluid is not None and resolved >= 2 * MIN_HEATED_POINTS
         is_first = is_heated or self.scales.grid.n > MANY_NODES and not is_hertz
