@@ -207,6 +207,29 @@ def test_ends_and_highest_load_are_said_before_the_run():
     assert "rows are too far apart" not in explain(load(roller(BLEND) | finer))
 
 
+@pytest.mark.parametrize(
+    ("contact", "mesh", "message"),
+    [
+        ({}, {"width": 2.1}, "mesh.width = 2.1: of a roller, in halves of its length; allowed: 2, as sharp"),
+        ({"end_radius": 0.3e-3}, {"width": 1.9}, "mesh.width = 1.9: of a roller, .*; allowed: from 2 to 2.1"),
+        ({"end_radius": 0.3e-3}, {"width": 2.2}, "mesh.width = 2.2"),
+        ({"tilt": 2e-3}, {}, "mesh.inlet = -1.3: the dry contact is 1.5. a wide at the highest load"),
+        ({"tilt": 2e-3}, {"inlet": -2.0}, "mesh.outlet = 1.3: the dry contact is"),
+    ],
+)
+def test_meshes_that_do_not_fit_a_roller_are_refused(contact, mesh, message):
+    tables = roller(ISO, **contact)
+    tables["mesh"] |= {"inlet": -1.3, "outlet": 1.3} | mesh
+    with pytest.raises(CaseError, match=message):
+        Simulation(load(tables))
+
+
+def test_rows_reach_as_far_beyond_round_ends_as_the_mesh():
+    tables = roller(ISO, end_radius=0.3e-3)
+    tables["mesh"]["width"] = 2.1
+    assert len(Scales.of(load(tables)).grid.axes[0]) == 64  # two of 0.2 mm beyond each end, for 0.3 mm
+
+
 def test_post_says_that_stresses_near_free_ends_are_those_of_half_spaces():
     def warnings_of(**contact):
         loads = SimpleNamespace(attrs={"status": "done"}, case=load(roller(ISO, **contact)))

@@ -69,6 +69,8 @@ def domain_faults(case: Case, scales: Scales) -> list[str]:
     varies = case.conditions is not None and case.conditions.varies
     if case.time is not None and case.time.tolerance and not varies:
         return [f"{case.path}: time.tolerance: allowed: with [operation] or [gears], conditions that vary"]
+    if found := KINDS[case.kind].part("forecast").faults(case, scales):
+        return [f"{case.path}: {fault}" for fault in found]
     if case.fluid is None or case.contact.has_contact_pressure:  # the boundary film remains
         return []
     film, opening = _inlet(case, scales)

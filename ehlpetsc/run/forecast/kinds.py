@@ -17,7 +17,7 @@ from ehlpetsc.physics.film_formulas import (
     rolling_outside,
     smooth_films,
 )
-from ehlpetsc.physics.scales import Scales
+from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
 
 if TYPE_CHECKING:
     from ehlpetsc.physics.contact.roller import RollerGrid
@@ -40,6 +40,7 @@ class Forecast(NamedTuple):
     `formulas`: of the films that are expected.
     `near`, `rolling`: warnings of load, film and rolling friction outside the mesh, in oil.
     `ends`: warnings of the ends of the contact across.
+    `faults`: of the mesh, with what is allowed.
     `found`: lines at the end of a run, from the scalars of its last step.
     """
 
@@ -48,6 +49,7 @@ class Forecast(NamedTuple):
     near: Callable[[Case, Scales], list[str]]
     rolling: Callable[[Case, Scales], list[str]]
     ends: Callable[[Case, Scales], list[str]]
+    faults: Callable[[Case, Scales], list[str]]
     found: Callable[[dict[str, Any]], list[str]]
 
 
@@ -104,6 +106,31 @@ def _roller_ends(case: Case, scales: Scales) -> list[str]:
             f"{1e6 * scales.b / rows:.3g} um"
         )
     return notes
+
+
+def _no_faults(case: Case, scales: Scales) -> list[str]:
+    return []
+
+
+def _roller_faults(case: Case, scales: Scales) -> list[str]:
+    """Rows beside a sharp end or that leave the roller out, and a mesh narrower than the dry contact."""
+    mesh, grid, faults = case.mesh, cast("RollerGrid", scales.grid), []
+    rounds = 2.0 + 2.0 * (case.contact.end_radius or 0.0) / scales.b
+    if mesh.width is not None and not 2.0 <= mesh.width <= rounds * (1.0 + NODE_TOLERANCE):
+        allowed = (
+            f"from 2 to {rounds:.4g}" if not grid.is_sharp else "2, as sharp ends have no rows beside them"
+        )
+        faults.append(
+            f"mesh.width = {mesh.width:g}: of a roller, in halves of its length; allowed: {allowed}"
+        )
+    widest = grid.widening
+    for key, reach in (("inlet", -mesh.inlet), ("outlet", mesh.outlet)):
+        if reach <= widest:
+            faults.append(
+                f"mesh.{key} = {getattr(mesh, key):g}: the dry contact is {widest:.3g} a wide at the highest "
+                "load per length; allowed: further out"
+            )
+    return faults
 
 
 def _nothing(scalars: dict[str, Any]) -> list[str]:
@@ -218,7 +245,7 @@ def _point_rolling(case: Case, scales: Scales) -> list[str]:
     ]
 
 
-LINE = Forecast(_line_shape, "Moes", _near_inlet, _line_rolling, _no_ends, _nothing)
+LINE = Forecast(_line_shape, "Moes", _near_inlet, _line_rolling, _no_ends, _no_faults, _nothing)
 STRIP = LINE._replace(shape=_strip_shape)
 POINT = Forecast(
     _point_shape,
@@ -226,6 +253,9 @@ POINT = Forecast(
     _near_edges,
     _point_rolling,
     _no_ends,
+    _no_faults,
     _nothing,
 )
-ROLLER = LINE._replace(shape=_roller_shape, near=_roller_near, ends=_roller_ends, found=_along_roller)
+ROLLER = LINE._replace(
+    shape=_roller_shape, near=_roller_near, ends=_roller_ends, faults=_roller_faults, found=_along_roller
+)
