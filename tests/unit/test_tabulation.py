@@ -1,0 +1,52 @@
+"""Tables over conditions: refinement, interpolation, fits of traction curves."""
+
+import numpy as np
+import pytest
+
+from ehlpetsc.analysis.tabulation import Axis, tabulate
+from ehlpetsc.base.errors import UsageError
+
+AXES = (Axis("speed", "m/s", 0.5, 20.0), Axis("pressure", "Pa", 0.5e9, 1.2e9))
+
+
+def power_law(points):
+    return np.array(
+        [[0.02 * u**-0.3 * (p / 1e9) ** 0.5, 1e-7 * u**0.7 * (p / 1e9) ** -0.1] for u, p in points]
+    )
+
+
+def test_powers_of_a_logarithmic_axis_need_no_more_lines():
+    table = tabulate(AXES, ("friction", "film"), power_law, 0.03)
+    assert [len(line) for line in table.lines] == [3, 3]
+    assert table.lines[0][1] == pytest.approx(np.sqrt(10.0), rel=1e-5)
+    assert table.errors.max() < 0.03
+    np.testing.assert_allclose(table.at([(3.0, 0.85e9)]), power_law([(3.0, 0.85e9)]), rtol=0.01)
+
+
+def test_lines_gather_where_values_bend():
+    def bend(points):
+        return np.array([[1.0 + np.tanh(8.0 * (np.log(u) - 1.5))] for u, p in points])
+
+    table = tabulate(AXES, ("share",), bend, 0.03)
+    line = np.log(table.lines[0])
+    assert len(table.lines[1]) == 3 < len(line)
+    assert np.diff(line).argmin() == pytest.approx(np.searchsorted(line, 1.5), abs=3)
+    others = [(float(u), 0.7e9) for u in np.geomspace(0.6, 19.0, 50)]
+    assert np.abs(table.at(others) - bend(others)).max() < 0.06
+
+
+def test_every_point_is_computed_once():
+    asked = []
+
+    def counted(points):
+        asked.extend(points)
+        return power_law(points)
+
+    tabulate(AXES, ("friction", "film"), counted, 0.001)
+    assert len(asked) == len(set(asked))
+
+
+def test_noise_ends_in_a_sentence():
+    random = np.random.default_rng(1)
+    with pytest.raises(UsageError, match="narrower ranges"):
+        tabulate(AXES, ("noise",), lambda points: random.uniform(1.0, 2.0, (len(points), 1)), 0.03)
