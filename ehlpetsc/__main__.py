@@ -33,6 +33,7 @@ COMMANDS = {
     "summary": ("summary", NUMERICS, "means, percentiles and extremes as CSV"),
     "compare": ("compare", NUMERICS, "two results field by field"),
     "gears": ("gears", DRAWING, "path of contact of a gear pair, and a run along it"),
+    "table": ("table", packages.NEEDED, "friction and film over conditions, for other programs"),
     "stiffness": ("stiffness", packages.NEEDED, "stiffness and damping of a smooth contact"),
     "life": ("life", DRAWING, "wear against fatigue over many passes"),
     "converge": ("converge", DRAWING, "a case on three meshes: order, limit and error bar"),

@@ -1,14 +1,13 @@
 r"""Tables of quantities over conditions, refined until held-out points agree.
 
 A table has lines on each axis, and values at all their crossings. Between them values are multilinear: in the
-coordinate, or its logarithm where the axis has decades; of the logarithm of the quantity where that is positive
-everywhere. A program that reads the table can do the same in ten lines, and the stated error is that of this
-interpolation.
+coordinate, or its logarithm where the axis has decades; of the logarithm of the quantity where that is
+positive everywhere. The stated error is that of this interpolation.
 
 Refinement begins with three lines an axis. The error of an interval follows from the line between it and its
-neighbour: what that line changes, over four, as the error of a linear interpolation falls with the square of the
-interval. The interval with the largest error is halved until none is above the tolerance. Points between the
-lines that are computed but not used are the measure of success: where one is off by more, refinement continues.
+neighbour: the change by that line over four, as the error of a linear interpolation falls with the square of
+the interval. Intervals with an error above the tolerance are halved. Points between the lines, computed but
+not used, then measure the error: where one is off by more, refinement continues.
 """
 
 from __future__ import annotations
@@ -91,35 +90,35 @@ class Table:
         """Interpolated values, shape (points, quantities)."""
         from scipy.interpolate import RegularGridInterpolator
 
-        interpolator = RegularGridInterpolator(self._coordinates, self._logarithms)
+        interpolator = RegularGridInterpolator(self._coordinates, self.logarithms)
         columns = zip(self.axes, np.array(points, float).T, strict=True)
         out = interpolator(np.stack([axis.coordinate(column) for axis, column in columns], axis=1))
-        return np.where(self._positive, np.exp(out), out)
+        return np.where(self.positive, np.exp(out), out)
 
     @property
     def _coordinates(self) -> list[np.ndarray]:
         return [axis.coordinate(np.array(line)) for axis, line in zip(self.axes, self.lines, strict=True)]
 
     @property
-    def _positive(self) -> np.ndarray:
+    def positive(self) -> np.ndarray:
         """Whether a quantity is positive at all crossings, shape (quantities,)."""
         return (self.values > 0.0).reshape(-1, len(self.names)).all(axis=0)
 
     @property
-    def _logarithms(self) -> np.ndarray:
+    def logarithms(self) -> np.ndarray:
         """Values at the crossings, of positive quantities their logarithms."""
-        values, positive = self.values, self._positive
+        values, positive = self.values, self.positive
         return np.where(positive, np.log(np.where(positive, values, 1.0)), values)
 
     def relative(self, error: np.ndarray) -> np.ndarray:
         """Relative errors of differences of what is interpolated; last axis: quantities."""
         largest = np.abs(self.values).reshape(-1, len(self.names)).max(axis=0)
-        scale = np.where(self._positive, 1.0, np.maximum(largest, np.finfo(float).tiny))
+        scale = np.where(self.positive, 1.0, np.maximum(largest, np.finfo(float).tiny))
         return np.abs(error) / scale
 
     def interval_errors(self) -> list[list[float]]:
         """Expected relative errors of the intervals of each axis, as of the module."""
-        grid, found = self._logarithms, []
+        grid, found = self.logarithms, []
         for number, coordinate in enumerate(self._coordinates):
             along, errors = np.moveaxis(grid, number, 0), [0.0] * (len(coordinate) - 1)
             for k in range(1, len(coordinate) - 1):
@@ -159,8 +158,8 @@ def tabulate(
     while True:
         if len(table.points) > MAX_POINTS:
             raise UsageError(
-                f"{len(table.points)} points would be needed for errors within {100 * tolerance:g} %; allowed: "
-                f"{MAX_POINTS}; take narrower ranges, or a larger --tolerance"
+                f"{len(table.points)} points would be needed for errors within {100 * tolerance:g} %; "
+                f"allowed: {MAX_POINTS}; take narrower ranges, or a larger --tolerance"
             )
         _complete(table, table.points, compute)
         intervals = [

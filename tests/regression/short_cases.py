@@ -29,7 +29,7 @@ VISCOSITIES = "series.values=[0.010, 0.006]"
 MESHES = "series.values=[40, 60]"
 SHORT = {
     "ball": ("mesh.points_per_half_width=12", "time.travel=1.5", "surface.1.synthetic.sq=0.05e-6"),
-    "cam": ("mesh.points_per_half_width=10",),
+    "cam": ("mesh.points_per_half_width=25",),
     "cmod": ("mesh.points_per_half_width=25", "time.travel=1.0"),
     "coated_ball": ("mesh.points_per_half_width=8", "time.travel=0.3", "series.values=[207e9, 150e9]"),
     "compliant_mixed": (*QUICK, "fluid.viscosity=0.001"),

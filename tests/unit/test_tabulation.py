@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from ehlpetsc.analysis.tabulation import Axis, tabulate
+from ehlpetsc.analysis.traction_fits import fitted_stribeck, fitted_traction, stribeck, traction
 from ehlpetsc.base.errors import UsageError
 
 AXES = (Axis("speed", "m/s", 0.5, 20.0), Axis("pressure", "Pa", 0.5e9, 1.2e9))
@@ -50,3 +52,20 @@ def test_noise_ends_in_a_sentence():
     random = np.random.default_rng(1)
     with pytest.raises(UsageError, match="narrower ranges"):
         tabulate(AXES, ("noise",), lambda points: random.uniform(1.0, 2.0, (len(points), 1)), 0.03)
+
+
+def test_traction_curve_gives_back_its_constants():
+    """A curve with its maximum of 0.06 at 0.8 m/s, falling to 0.04."""
+    slip = np.geomspace(0.01, 10.0, 30)
+    x = brentq(lambda x: 0.04 * np.exp(-x) / (x - 1.0) - 0.02, 1.01, 20.0)
+    c = x / 0.8
+    constants = np.array([-0.04, -0.04 * c / (1.0 - x), c, 0.04])
+    found = fitted_traction(slip, traction(slip, constants))
+    assert found[:4] == pytest.approx((0.0, 0.04, 0.06, 0.8), rel=1e-3)
+    assert found.misfit < 1e-5
+
+
+def test_stribeck_curve_gives_back_its_constants():
+    speed = np.geomspace(0.01, 10.0, 30)
+    found = fitted_stribeck(speed, stribeck(speed, np.array([0.12, 0.02, 0.3, 1.4, 0.001])))
+    assert found[:5] == pytest.approx((0.12, 0.02, 0.3, 1.4, 0.001), rel=1e-3)
