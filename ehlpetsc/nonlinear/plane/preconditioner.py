@@ -256,23 +256,40 @@ class Elimination:
         return changes[p.owned, 0], changes[p.owned, 1], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
-        """Unknowns for a local right-hand side, both of the whole system."""
-        p, (sparse, _, of_border) = self.problem, self.factors
-        exchange, local, scale = operator.exchange, n_dofs(p.local), p.deflection.row_scale
+        """Unknowns for a local right-hand side, both of the whole system: the three steps of the module."""
+        p, exchange = self.problem, operator.exchange
         self.applications += 1
-        b_g = full[0:local:2] / scale
-        pressure, r, forces = self._pressures(operator, full[1:local:2], b_g)
-        by_unit = np.array([by_unit for _, _, by_unit in of_border])
-        forces, of_rows = exchange.with_border(forces, full)
-        border = p.balance.change(of_rows, forces, by_unit)
-        for change, (by_pressure, by_r, _) in zip(border, of_border, strict=True):
-            pressure, r = pressure + change * by_pressure, r + change * by_r
+        of_deflection, of_reynolds = full[: n_dofs(p.local)].reshape(-1, 2).T
+        given = of_deflection / p.deflection.row_scale  # separation besides the deflection
+        pressure, r, forces = self._pressures(operator, of_reynolds, given)
+        forces, of_border = exchange.with_border(forces, full)
+        pressure, r, border = self._with_border(pressure, r, forces, of_border)
         deflection = exchange.deflection(pressure, precision_of(operator))
-        separation = deflection + p.balance.gap(border, p.share.local) + b_g
-        out, back = np.empty(operator.size), np.ascontiguousarray(self.reduction.back[:, p.owned])
-        out[:local] = unknowns_of(sparse.kind, back, pressure, r, separation).ravel()
+        separation = deflection + p.balance.gap(border, p.share.local) + given
+        out = self._whole(operator, (pressure, r, separation), border)
+        operator.remember(out, pressure, deflection)
+        return out
+
+    def _with_border(
+        self, pressure: np.ndarray, r: np.ndarray, forces: np.ndarray, of_border: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pressures and Reynolds unknowns with the border's change, and that change.
+
+        `forces`: by the pressures without it. `of_border`: right-hand side of its rows.
+        """
+        units = self.factors.of_border
+        by_unit = np.array([forces_of_unit for _, _, forces_of_unit in units])
+        border = self.problem.balance.change(of_border, forces, by_unit)
+        for change, (by_pressure, by_r, _) in zip(border, units, strict=True):
+            pressure, r = pressure + change * by_pressure, r + change * by_r
+        return pressure, r, border
+
+    def _whole(self, operator: PlaneJacobian, of_nodes: tuple, border: np.ndarray) -> np.ndarray:
+        """Local unknowns of the whole system from pressure, Reynolds unknown and separation of the nodes."""
+        p, out = self.problem, np.empty(operator.size)
+        back = np.ascontiguousarray(self.reduction.back[:, p.owned])
+        out[: n_dofs(p.local)] = unknowns_of(self.factors.sparse.kind, back, *of_nodes).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
         if p.owns_border:
             border_of(out, p.local)[:] = border
-        operator.remember(out, pressure, deflection)
         return out
