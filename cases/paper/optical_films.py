@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ehlpetsc.case.loading import Case, load
-from ehlpetsc.physics.contact.geometry import hamrock_dowson_films
+from ehlpetsc.physics.contact.films import hamrock_dowson_films
 from ehlpetsc.physics.oil.laws import density
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures import style

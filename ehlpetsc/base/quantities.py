@@ -208,7 +208,7 @@ STEP_SCALARS = {
     ),
     "lambda_ratio": AtEnd(
         "1",
-        "expected smooth minimum film over the combined Rq",
+        "minimum film of the smooth contact, of the start where computed, over the combined Rq",
         of=lambda o: o.smooth_film / o.scene.rq if o.scene.rq else np.nan,
     ),
     "mean_gap_ratio": AtEnd(

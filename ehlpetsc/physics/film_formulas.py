@@ -7,11 +7,13 @@ import math
 import numpy as np
 
 from ehlpetsc.base.case import Case, Fluid
-from ehlpetsc.physics.contact.geometry import Geometry, rigid_factors
+from ehlpetsc.physics.contact.films import rigid_factors
+from ehlpetsc.physics.contact.geometry import Geometry
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
 
 MAX_FILM_ITERATIONS = 200
+MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 FAR_INLET, GRUBIN_POINTS = 100.0, 1000  # half-widths in place of infinity in Grubin's integral; its points
 OIL_REACH, ROLLING_ANGLES = 1.0 / 3.0, 64  # radii along x to which oil reaches before a point contact
 
@@ -22,9 +24,9 @@ def load_outside(scales: Scales, film: float, inlet: float, half_width: float) -
     .. math:: p=4\eta_0u\varphi\,\frac{2\mathcal L}{\pi}\,\frac{-x}{h^2},\qquad
        h=h_c+\frac{x^2}{2R_x}+\frac{y^2}{2R_y},\qquad x<0
 
-    of rigid bodies and ambient viscosity (Kapitza 1955), to the load of :func:`.geometry.brewe_rigid_film`,
-    integrated
-    outside :math:`x>-` `inlet`, :math:`|y|<` `half_width`. It falls as slowly as 1 over the distance.
+    of rigid bodies and ambient viscosity (Kapitza 1955), to the load of
+    :func:`.contact.films.brewe_rigid_film`, integrated outside :math:`x>-` `inlet`, :math:`|y|<`
+    `half_width`. It falls as slowly as 1 over the distance.
 
     Parameters
     ----------
@@ -67,15 +69,16 @@ def film_on_mesh(case: Case, scales: Scales, inlet: float, half_width: float) ->
 def smooth_films(scales: Scales, fluid: Fluid, conditions: Conditions) -> tuple[float, float]:
     r"""Expected central and minimum film of the smooth, flooded contact [m].
 
-    .. math:: h_c=h_{Moes}\,\frac{\rho_0}{\rho(p_0)},\qquad
-       h_{min}=0.75\,h_{Moes}\left(\frac{\rho_0}{\rho(p_0)}\right)^{1/4}.
+    .. math:: h_c=h_{c,0}\left(\frac{\rho_0}{\rho(p_0)}\right)^m,\qquad
+       h_{min}=h_{min,0}\left(\frac{\rho_0}{\rho(p_0)}\right)^n
 
-    The inlet entrains the mass of an incompressible oil, which passes the contact with its density at p0;
-    the pressure of the exit constriction is lower. Both are within 4 % of computed films, compressible
-    and incompressible, for M from 9 to 100 and L from 3 to 11 (`tests/unit/test_scales.py`), where
-    :math:`h_{Moes}` alone exceeds the central film by 22 to 27 %.
+    of the films of an incompressible oil, :attr:`.geometry.Geometry.smooth_films`, and the exponents
+    `compression` there. The inlet entrains the mass of an incompressible oil, which passes the contact with
+    its density at p0; the pressure of the exit constriction is lower.
 
-    In a point contact the minimum over the central film is that of Hamrock and Dowson (1977).
+    Line contacts: within 4 % of computed films, compressible and incompressible, for M from 9 to 100 and L
+    from 3 to 11 (`tests/unit/test_scales.py`); :math:`h_{c,0}` alone exceeds the central film by 22 to 27 %.
+    Point contacts: see :func:`.contact.films.fitted_point_films`.
     """
     return contact_films(scales.geometry, scales.E, scales.extent, fluid, conditions)
 
@@ -90,9 +93,11 @@ def contact_films(
     if speed == 0.0:
         return 0.0, 0.0
     groups = fluid.viscosity, speed, fluid.pressure_viscosity, load, radius, modulus
-    incompressible, lowest, p0 = geometry.smooth_films(*groups, extent)
-    ratio = 1.0 / float(density(np.array([p0]), fluid)[0][0])
-    return incompressible * ratio, incompressible * min(ratio, lowest * ratio**0.25)
+    *incompressible, p0 = geometry.smooth_films(*groups, extent)
+    under_p0 = float(density(np.array([p0]), fluid)[0][0])
+    pairs = zip(incompressible, geometry.compression, strict=True)
+    central, minimum = (film * under_p0**-exponent for film, exponent in pairs)
+    return central, min(central, minimum)
 
 
 def inlet_opening(film: float, points: float) -> float:

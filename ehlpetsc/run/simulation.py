@@ -6,7 +6,7 @@ import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from os import PathLike
 from typing import Any
 
@@ -233,12 +233,23 @@ class Simulation:
             except NotConverged as error:
                 raise NotConverged(str(error), self.state) from error
         problem, effects = self.stepper.problem, self.stepper.effects
-        scalars, fields, in_contact = diagnostics(self.scene, problem, effects, state, started)
+        scalars, fields, in_contact = diagnostics(
+            self.scene, problem, effects, state, started, self._smooth_film
+        )
         scalars |= {"step": state.step, "time": state.time, "gmres": self._linear_iterations - gmres}
         shape = self.scales.grid.shape
         fields = {name: values.reshape(shape) for name, values in fields.items()}
         self.state = AcceptedState(scalars, fields, in_contact.reshape(shape), state)
         return self.state
+
+    @cached_property
+    def _smooth_film(self) -> float:
+        """Minimum film of the smooth contact over that of the formulas; asked for after the start."""
+        if self.case.fluid is None:
+            return 1.0
+        from ehlpetsc.stepping.smooth_film import computed_over_expected
+
+        return computed_over_expected(self.scene, self.stepper.problem, self.stepper.baseline)
 
     @property
     def _linear_iterations(self) -> int:

@@ -34,6 +34,7 @@ class Observation:
 
     `fields`: in SI units by name, without those of effects.
     `started`: monotonic clock at the beginning of the step [s].
+    `smooth`: minimum film of the smooth contact over that of the formulas, at time 0.
     """
 
     scene: Scene
@@ -42,6 +43,7 @@ class Observation:
     conditions: Conditions
     fields: dict[str, np.ndarray]
     started: float
+    smooth: float = 1.0
 
     @property
     def loads(self) -> SurfaceLoads:
@@ -100,9 +102,9 @@ class Observation:
 
     @property
     def smooth_film(self) -> float:
-        """Minimum film of smooth surfaces by formulas [m]; nan without oil."""
+        """Minimum film of smooth surfaces [m]: that of the start, then as by formulas; nan without oil."""
         fluid = self.scene.case.fluid
-        return smooth_films(self.scene.scales, fluid, self.conditions)[1] if fluid else np.nan
+        return self.smooth * smooth_films(self.scene.scales, fluid, self.conditions)[1] if fluid else np.nan
 
     @property
     def mass_error(self) -> float:
@@ -157,11 +159,16 @@ class Observation:
 
 
 def diagnostics(
-    scene: Scene, problem: EHLProblem, effects: list[Effect], state: State, started: float
+    scene: Scene,
+    problem: EHLProblem,
+    effects: list[Effect],
+    state: State,
+    started: float,
+    smooth: float = 1.0,
 ) -> tuple[dict, dict, np.ndarray]:
     """Scalars of the step, fields and mask of the nodes in contact, in SI units.
 
-    `started` is the monotonic clock at the beginning of the step [s].
+    `started`: monotonic clock at the beginning of the step [s]. `smooth`: see :class:`Observation`.
     """
     case, conditions, solution = scene.case, scene.operation.at(state.time), state.solution
     present = [effect for effect in effects if effect.is_in(case)]
@@ -169,7 +176,7 @@ def diagnostics(
     for effect in present:
         shear = effect.film_shear(state.records[effect.name], solution, shear)
     fields = _fields(scene, conditions, solution, shear)
-    observation = Observation(scene, problem, state, conditions, fields, started)
+    observation = Observation(scene, problem, state, conditions, fields, started, smooth)
     fields_of, scalars = (
         {name: of(observation) for name in of_case(table, case) if (of := table[name].of)}
         for table in (FIELDS, STEP_SCALARS)

@@ -94,6 +94,24 @@ def test_expected_errors_are_those_of_the_page_of_accuracy():
         assert errors == pytest.approx([table[k] for k in (1, 3, 4)]), name
 
 
+def test_first_page_rounds_the_expected_errors_of_meshes():
+    """On 8, 16 and 32 nodes, each within half a unit of its last digit."""
+    page = (ROOT / "README.md").read_text()
+    rows = {
+        "error of waves of film and pressure": (100.0, WAVE_ERRORS),
+        "the same of surfaces that move against each other": (100.0, OPPOSED_ERRORS),
+        "error of friction in mixed contact": (100.0, FRICTION_ERRORS),
+        "load on the solids there": (1.0, SHARE_RATIOS),
+    }
+    for name, (factor, table) in rows.items():
+        (line,) = [line for line in page.splitlines() if line.startswith(f"| {name}")]
+        printed = re.findall(r"\| ([\d.]+)(?= %? ?\|)", line)
+        assert len(printed) == 3
+        for text, value in zip(printed, [factor * table[k] for k in (1, 3, 4)], strict=True):
+            unit = 10.0 ** -len(text.partition(".")[2])
+            assert float(text) == pytest.approx(value, abs=0.5001 * unit), name
+
+
 def test_mesh_errors_of_a_layer_and_of_rigid_solids():
     strip = ["mesh.points_per_half_width=50", "surface.1.synthetic.short_cutoff=40e-6"]
     (line,) = starting(lines("fzg_strip.toml", *strip), "Mesh error: ")

@@ -15,7 +15,7 @@ from ehlpetsc.case import loading as case
 from ehlpetsc.case.keys import template
 from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics import film_formulas
-from ehlpetsc.physics.contact import geometry
+from ehlpetsc.physics.contact import films
 from ehlpetsc.physics.contact.geometry import line_groups
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line, hertz_pressure
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
@@ -129,10 +129,10 @@ def test_expected_films_within_four_percent():
         assert central * 1e6 == pytest.approx(film.h_central, rel=0.025)
         assert minimum * 1e6 == pytest.approx(film.h_min, rel=0.04)
     for point in published_values.MOES_POINTS:
-        film = geometry.moes_central_film(point.M, point.L)
-        assert geometry.MIN_OVER_CENTRAL_FILM * film == pytest.approx(point.h_min, rel=0.04)
+        film = films.moes_central_film(point.M, point.L)
+        assert films.MIN_OVER_CENTRAL_FILM * film == pytest.approx(point.h_min, rel=0.04)
     for point in published_values.MOES_POINTS:
-        assert geometry.moes_central_film(point.M, point.L) == pytest.approx(point.h_central, rel=0.04)
-    assert geometry.moes_central_film(1e-4, 1e-6) == pytest.approx(3e4, rel=0.01)
+        assert films.moes_central_film(point.M, point.L) == pytest.approx(point.h_central, rel=0.04)
+    assert films.moes_central_film(1e-4, 1e-6) == pytest.approx(3e4, rel=0.01)
     elastic = 1.311 * 1e5**-0.125 * 30**0.75
-    assert geometry.moes_central_film(1e5, 30.0) == pytest.approx(elastic, rel=0.1)
+    assert films.moes_central_film(1e5, 30.0) == pytest.approx(elastic, rel=0.1)

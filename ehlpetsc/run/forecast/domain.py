@@ -13,16 +13,17 @@ from ehlpetsc.case.tables import Case
 from ehlpetsc.discretisation.contact import film_scale_of
 from ehlpetsc.physics.contact.geometry import POINT_WIDTH
 from ehlpetsc.physics.film_formulas import (
+    MAX_FILM_SLOPE,
     expected_film,
     inlet_opening,
     points_for_opening,
 )
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast.kinds import MESH_MARGIN
 
 if TYPE_CHECKING:
     from ehlpetsc.physics.variable_operation import ConditionsTable
-from ehlpetsc.run.forecast.kinds import MAX_FILM_SLOPE, MESH_MARGIN
 
 MAX_ROLLING = 1e-3  # slide/roll ratio below which friction is that of rolling
 MAX_OPENING = 5.0  # films by which the gap opens from node to node: there is no smooth film

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 from ehlpetsc.base.counts import whole_up
 from ehlpetsc.case.tables import Case
 from ehlpetsc.physics.film_formulas import (
+    MAX_FILM_SLOPE,
     expected_film,
     film_left_by_inlet,
     film_on_mesh,
@@ -27,7 +28,6 @@ PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the prop
 MIN_ROLLING_FRICTION, PROPOSED_ROLLING_FRICTION = 0.95, 0.97  # over that of a flooded contact
 MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
 MAX_OUTSIDE, PROPOSED_OUTSIDE = 0.05, 0.02  # of the load of a point contact, outside the mesh
-MAX_FILM_SLOPE = 0.25  # films by which the gap opens from node to node: the film is 5 % too thin
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
 MIN_END_LOAD = 0.05  # of the largest load per length: the oil beside a contact carries less
 OUTLET_ROOM, PROPOSED_OUTLET = 1.2, 1.5  # over the widest half-width of a roller
@@ -249,7 +249,7 @@ LINE = Forecast(_line_shape, "Moes", _near_inlet, _line_rolling, _no_ends, _no_f
 STRIP = LINE._replace(shape=_strip_shape)
 POINT = Forecast(
     _point_shape,
-    "Nijenbanning, Venner and Moes; Hamrock and Dowson",
+    "fit of computed points",
     _near_edges,
     _point_rolling,
     _no_ends,
