@@ -25,7 +25,7 @@ from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case
 from ehlpetsc.pictures.frames import choice as frames
 from ehlpetsc.pictures.frames.data import described
-from ehlpetsc.pictures.frames.line import draw_courses, draw_map, draw_temperatures
+from ehlpetsc.pictures.frames.line import draw_courses, draw_map, draw_scalar, draw_temperatures
 from ehlpetsc.pictures.report import save_report
 from ehlpetsc.pictures.series import draw_running_in, draw_stribeck, draw_traction
 from ehlpetsc.results.index import in_order, open_all
@@ -49,7 +49,7 @@ NOT_DRAWN = {  # that are no pictures: endings of their files, help
     "movie": ((".gif",), "pressure and film over time, as a GIF"),
 }
 OF_ONE = ("over_time", "map", "temperatures", "report", *MAPS)  # kinds of a single result
-OF_SCALARS = ("over_time", "stribeck", "traction")  # kinds that show no field
+OF_SCALARS = ("over_time", "steps", "stribeck", "traction")  # kinds that show no field
 IN_PLANE = (None, "movie", "report", *MAPS)  # kinds that show a point contact or strip in both directions
 OF_FIELDS = (None, "map", "movie", "report")  # kinds that show another field in the place of the film
 
@@ -73,16 +73,21 @@ def arguments() -> CommandParser:
     for name, (*_, text) in (FIGURES | {name: (text,) for name, text in MAPS.items()} | NOT_DRAWN).items():
         option = f"--{name.replace('_', '-')}"
         kind.add_argument(option, dest="kind", action="store_const", const=name, help=text)
+    kind.add_argument(
+        "--steps", metavar="NAME", help="one scalar of every step over time, as friction_coefficient"
+    )
     return parser
 
 
 def main(words: list[str]) -> int:
     """Run the command; returns its exit status."""
     options = arguments().parse_args(words)
+    if options.steps:
+        options = argparse.Namespace(**vars(options) | {"kind": "steps"})
     allowed = NOT_DRAWN[options.kind][0] if options.kind in NOT_DRAWN else PICTURES
     kind = f".{options.kind}" if options.kind in FIGURES | MAPS else ""
     kind = kind or ("" if options.section is None else ".section")
-    kind += f".{options.field}" if options.field else ""
+    kind += "".join(f".{name}" for name in (options.steps, options.field) if name)
     output = options.output or Path(_stem(options.results) + kind + allowed[0])
     return exit_status("plot", lambda: _run(options, output, allowed), (ValueError,), output)
 
@@ -141,6 +146,8 @@ def _function(kind: str | None) -> Callable:
         from ehlpetsc.pictures.frames import plane  # which no line contact needs
 
         return plane.draw_fringes if kind == "fringes" else plane.draw_contacts
+    if kind == "steps":
+        return draw_scalar
     return FIGURES[kind][0] if kind else frames.draw_instant
 
 

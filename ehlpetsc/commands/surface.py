@@ -4,7 +4,8 @@ FILE is a profile or map as in ``[surface.1]``, whose keys ``--set unit=um``, ``
 on set. The least-squares line or plane is subtracted, except with ``--set level=false``. Without a cutoff the
 parameters are those of the primary profile. ``--csv FILE.csv`` writes the power spectral density, of a map
 those along and across its rows. ``-o FILE.gsf``, ``.x3p`` or ``.vti`` writes the surface as used, in place of
-the picture. ``--minus OTHER`` takes the difference of two maps of one part, with the same keys.
+the picture. ``--minus OTHER`` takes the difference of two maps of one part, with the same keys, and prints
+the worn volume and depth.
 """
 
 from __future__ import annotations
@@ -26,10 +27,11 @@ from ehlpetsc.pictures import style
 from ehlpetsc.pictures.surface import csv, draw_map, draw_profile, rows, spectra
 from ehlpetsc.results.exports import WRITERS, GridField
 from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived, check_new, check_table
+from ehlpetsc.surfaces.differences import difference, wear_of
 from ehlpetsc.surfaces.motion.profile_checks import doubts
 from ehlpetsc.surfaces.parameters import MIN_PARAMETER_POINTS, equally_spaced, profile_parameters
 from ehlpetsc.surfaces.samples import measured_samples
-from ehlpetsc.surfaces.topography import Topography, difference
+from ehlpetsc.surfaces.topography import Topography
 
 TABLE = "surface.1."
 
@@ -83,7 +85,8 @@ def run(chosen: argparse.Namespace) -> None:
     if chosen.csv is not None:
         check_table(Path(chosen.csv), table.partition("\n")[0], chosen.overwrite, "--csv")
     notes = [*surface.notes, *doubts(surface)]
-    print("\n".join([f"{chosen.file}: {surface.extent_text}", *notes, *rows(parameters)]))
+    wear = [wear_of(surface).text] if chosen.minus else []
+    print("\n".join([f"{chosen.file}: {surface.extent_text}", *notes, *wear, *rows(parameters)]))
     if chosen.csv is not None:
         atomic_write(Path(chosen.csv), table.encode())
         print(chosen.csv)

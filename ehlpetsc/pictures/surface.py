@@ -19,6 +19,7 @@ from ehlpetsc.surfaces.topography import Topography
 
 SURFACE_SIZE, MAP_SIZE = (9.0, 6.0), (13.0, 4.2)  # inches
 HEADING = "wavelength [m],wavenumber [rad/m],power spectral density [m^3]"
+DECIMALS = {"/m": 1}  # shown; of others four
 FACTORS = {"um": 1e6, "%": 100.0}  # of the shown units
 NO_LENGTH = {
     "R": "stays above 1/e up to half the profile",
@@ -44,7 +45,7 @@ def rows(found: dict[str, float]) -> list[str]:
     for pattern, unit, meaning in PARAMETERS:
         value = FACTORS.get(unit, 1.0) * found.get(name := pattern.replace("?", letter), np.inf)
         text = meaning.format(**core) + (f"; none: {reasons.get(name, reason)}" if np.isnan(value) else "")
-        lines += [f"{name:4s}{value:10.4f} {unit:2s}  {text}"] * (name in found)
+        lines += [f"{name:4s}{value:10.{DECIMALS.get(unit, 4)}f} {unit:2s}  {text}"] * (name in found)
     return lines
 
 

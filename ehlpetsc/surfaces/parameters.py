@@ -37,6 +37,7 @@ PARAMETERS = (
     ("Vvv", "um", "volume of the valleys below 80% of material, per area"),
     ("Rdq", "", "root mean square slope"),
     ("Sdq", "", "root mean square gradient"),
+    ("curv", "/m", "root mean square curvature, of a map of its mean curvature"),
     ("Sdr", "%", "developed interfacial area ratio"),
     ("l", "um", "correlation length, autocorrelation 1/e"),
     ("Sal", "um", "autocorrelation length, 0.2 in the direction of its fastest decay"),
@@ -59,6 +60,7 @@ def profile_parameters(z: np.ndarray, dx: float, section: float | None = None) -
     return _of_heights(z, "R") | {
         "Rz": mean_maximum_height(z, dx, section),
         "Rdq": float(np.sqrt(np.mean(slopes(z, dx) ** 2))),
+        "curv": rms_curvature(z, dx),
         "l": correlation_length(z, dx),
     }
 
@@ -78,6 +80,7 @@ def areal_parameters(z: np.ndarray, dx: float, dy: float) -> dict[str, float]:
         "Vmp": float(np.maximum(z - upper, 0.0).mean()),
         "Vvv": float(np.maximum(lower - z, 0.0).mean()),
         "Sdq": rms_gradient(z, dx, dy),
+        "curv": rms_curvature(z, dx, dy),
         "Sdr": developed_ratio(z, dx, dy),
         "Sal": fastest,
         "Str": fastest / slowest,
@@ -199,6 +202,20 @@ def binned(q: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def rms_gradient(z: np.ndarray, dx: float, dy: float) -> float:
     """Sdq: root mean square of the gradient, by the formula of :func:`slopes` along rows and columns."""
     return float(np.sqrt(np.mean(slopes(z, dx) ** 2) + np.mean(slopes(z.T, dy) ** 2)))
+
+
+def rms_curvature(z: np.ndarray, *steps: float) -> float:
+    r"""Root mean square of :math:`z_{xx}` [1/m], of a map of :math:`(z_{xx}+z_{yy})/2`, by three points.
+
+    `z`: shape (n,) or (ny, nx), three points or more along each axis.
+    `steps`: distance of the points, of a map dx and dy [m].
+    """
+    inner = [slice(1, -1)] * z.ndim
+    second = [
+        (np.roll(z, -1, axis) - 2.0 * z + np.roll(z, 1, axis))[tuple(inner)] / step**2
+        for axis, step in zip(range(z.ndim - 1, -1, -1), steps, strict=True)
+    ]
+    return float(np.sqrt(np.mean((sum(second) / z.ndim) ** 2)))
 
 
 def autocorrelation(z: np.ndarray) -> np.ndarray:

@@ -81,6 +81,16 @@ def test_developed_area_of_a_plane(shape):
     assert areal_parameters(z, STEP, STEP)["Sdr"] == pytest.approx(np.sqrt(1.25) - 1.0, rel=1e-12)
 
 
+def test_curvature_of_a_paraboloid_a_cylinder_and_a_wave():
+    x, y = STEP * np.arange(50), 2 * STEP * np.arange(40)[:, np.newaxis]
+    found = areal_parameters(150.0 * x**2 + 50.0 * y**2, STEP, 2 * STEP)["curv"]
+    assert found == pytest.approx((300.0 + 100.0) / 2, rel=1e-6)
+    assert areal_parameters(150.0 * x**2 + 0.0 * y, STEP, 2 * STEP)["curv"] == pytest.approx(150.0, rel=1e-6)
+    wave = 1e-7 * np.cos(2 * np.pi * np.arange(800) / 80.0)
+    k = 2 * np.pi / (80.0 * STEP)
+    assert profile_parameters(wave, STEP)["curv"] == pytest.approx(1e-7 * k**2 / np.sqrt(2.0), rel=2e-3)
+
+
 @pytest.mark.parametrize("angle", [0.0, 30.0, 90.0, 135.0, 172.0])
 @pytest.mark.parametrize("stretch", [1.0, 2.0])
 def test_texture_direction_is_that_of_the_lay(angle, stretch):
@@ -128,7 +138,7 @@ SMOOTH = {
 def test_the_command_gives_the_reason_for_parameters_of_a_smooth_map(tmp_path, capsys, z, words):
     np.save(tmp_path / "map.npy", z)
     assert main([str(tmp_path / "map.npy"), "--set", f"spacing={STEP!r}", *words]) == 0
-    _, note, *shown = capsys.readouterr().out.splitlines()[:18]
+    _, note, *shown = capsys.readouterr().out.splitlines()[:19]
     assert note == "all heights are equal, or on the form subtracted: smooth"
     values = {line.split()[0]: line.split()[1] for line in shown}
     assert [name for name, value in values.items() if value == "nan"] == ["Ssk", "Sku", "Sal", "Str", "Std"]

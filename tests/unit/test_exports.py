@@ -2,6 +2,7 @@
 
 import base64
 import io
+import re
 import xml.etree.ElementTree as ET
 import zipfile
 from dataclasses import replace
@@ -20,10 +21,11 @@ from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.commands.surface import main
 from ehlpetsc.results.exports import GridField, gsf
 from ehlpetsc.results.reader import Result
+from ehlpetsc.surfaces.differences import difference, displacement, wear_of
 from ehlpetsc.surfaces.files.areal import read_map
 from ehlpetsc.surfaces.files.text import Layout
 from ehlpetsc.surfaces.samples import areal_samples
-from ehlpetsc.surfaces.topography import difference, displacement
+from ehlpetsc.surfaces.topography import Topography
 
 DX, DY = 2e-6, 3e-6
 Z = 1e-7 * np.random.default_rng(1).standard_normal((40, 60))
@@ -258,7 +260,15 @@ def test_the_difference_is_what_was_worn(tmp_path, capsys):
     words = [str(tmp_path / "before.npy"), "--minus", str(tmp_path / "after.npy"), *KEYS]
     target = tmp_path / "worn.gsf"
     assert main([*words, "--set", "level=false", "-o", str(target)]) == 0
-    assert "\nsecond map moved by -14." in capsys.readouterr().out
+    assert "\nsecond map moved by -14." in (printed := capsys.readouterr().out)
+    lines = [line for line in printed.splitlines() if line.startswith("worn ")]
+    volume, area, raised = map(
+        float, re.match(r"worn volume (\S+) um\^3 on (\S+) um\^2, raised (\S+) um", lines[0]).groups()
+    )
+    assert volume == pytest.approx(40 * 29 * 4 * 0.2, rel=0.01)
+    assert area == pytest.approx(40 * 29 * 4, rel=0.06), "the spline of the moved map rounds the edges"
+    assert raised < 0.02 * volume and lines[1].startswith("worn depth 0.2")
+    assert float(lines[1].split()[6]) == pytest.approx(0.2, rel=0.06)
     moved, correlation = displacement(before, after)
     assert moved == pytest.approx([5.0, -22 / 3], abs=0.05) and correlation > 0.9
     z = np.frombuffer(target.read_bytes()[-4 * 195 * 233 :], "<f4").reshape(195, 233)
@@ -266,6 +276,22 @@ def test_the_difference_is_what_was_worn(tmp_path, capsys):
     assert z[10:60, 20:220].std() < 2e-9
     assert main(words) == 0  # beside the picture of the first map, not in its place
     assert [file.name for file in tmp_path.glob("*.png")] == ["before.minus.png"]
+
+
+def test_worn_volume_is_beyond_the_noise_and_beside_what_was_raised():
+    noise = 5e-9 * RANDOM.standard_normal((100, 120))
+    unchanged = Topography(DX * np.arange(120), DY * np.arange(100), noise - 4e-8)
+    found = wear_of(unchanged)
+    assert found.limit == pytest.approx(15e-9, rel=0.05) and found.volume < 0.01 * 12_000 * DX * DY * 15e-9
+    assert wear_of(replace(unchanged, z=0.0 * noise)) == (0.0, 0.0, 0.0, 0.0, 0.0)
+    z = unchanged.z.copy()
+    z[20:60, 30:50] += 3e-7
+    z[20:60, 50:54] -= 1e-7  # a ridge of displaced metal beside the groove
+    found = wear_of(replace(unchanged, z=z))
+    assert found.volume == pytest.approx(800 * DX * DY * 3e-7, rel=0.01)
+    assert found.area == pytest.approx(800 * DX * DY, rel=0.03)
+    assert found.raised == pytest.approx(160 * DX * DY * 1e-7, rel=0.05)
+    assert 3e-7 < found.depth < 3.3e-7
 
 
 def test_maps_of_other_places_have_no_difference_and_profiles_no_mask(tmp_path, capsys):

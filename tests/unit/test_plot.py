@@ -1,5 +1,6 @@
 """Pictures of results and cases: drawn arrays, the chosen instant, formats and options, refusals."""
 
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import h5py
@@ -83,6 +84,24 @@ def test_picture_of_one_result(tmp_path, result, drawn, capsys, options, name, t
     assert figure._suptitle.get_text() == f"{title}\n{conditions}"
     assert figure.axes[0].get_xlim() == pytest.approx(window)
     assert [axes.get_ylabel() for axes in figure.axes] == panels
+
+
+def test_any_scalar_is_drawn_over_time_of_several_results(tmp_path, capsys):
+    one, two = (make_result(tmp_path / f"{v}.h5", viscosity=v, steps=5) for v in (0.005, 0.01))
+    assert plot.main([str(one), str(two), "--steps", "p_max"]) == 0
+    assert capsys.readouterr().out.strip().endswith(".p_max.png")
+    options = SimpleNamespace(steps="p_max")
+    with read_result(one) as first, read_result(two) as second:
+        (axes,) = line.draw_scalar([first, second], options).axes
+        assert axes.get_ylabel() == "maximum pressure [Pa]"
+        for curve, result, words in zip(axes.lines, (first, second), ("0.005", "0.01"), strict=True):
+            np.testing.assert_array_equal(curve.get_ydata(), result.steps("p_max"))
+            np.testing.assert_allclose(curve.get_xdata(), 1e3 * result.steps("time"))
+            assert curve.get_label() == f"viscosity = {words}"
+    assert plot.main([str(one), "--steps", "p_maximum"]) == 2
+    assert f"{one}: --steps p_maximum: not stored; allowed: step, " in capsys.readouterr().err
+    assert plot.main([str(make_result(tmp_path / "steady.h5", steps=1)), "--steps", "p_max"]) == 2
+    assert "is steady; allowed: --steps of runs over time" in capsys.readouterr().err
 
 
 def test_steps_of_a_cycle_are_drawn_over_time(tmp_path):

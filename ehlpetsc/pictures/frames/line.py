@@ -6,6 +6,7 @@ Over time: maps over x, temperatures, the course of all steps.
 from __future__ import annotations
 
 import argparse
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -31,11 +32,13 @@ from ehlpetsc.pictures.frames.data import (
     described,
 )
 from ehlpetsc.pictures.style import ACROSS
+from ehlpetsc.results.index import distinguishing_names
 from ehlpetsc.results.means import filled_from
 from ehlpetsc.results.reader import Result
 
 LINE_SIZE = (8.4, 5.6)  # inches
 HEIGHT_WITH_SURFACES = 7.6  # inches
+SCALAR_SIZE, SCALAR_LABEL = (8.4, 4.0), 40  # inches, characters of a line
 FILL_DEPTH = 1e3  # µm, to which solids are filled
 
 
@@ -220,6 +223,30 @@ def temperatures_at(axes: Axes, result: Result, index: int, window: Sequence[flo
     celsius.set_ylabel("[°C]")
     axes.grid(lw=0.3)
     axes.legend(loc="upper left", **style.SMALL)
+
+
+def draw_scalar(results: list[Result], options: argparse.Namespace) -> Figure:
+    """One scalar of the steps over time, of one or several results."""
+    name = options.steps
+    for result in results:
+        if name not in result.scalars:
+            allowed = ", ".join(found for found in result.scalars if found != "time")
+            raise OutputError(f"{result.path}: --steps {name}: not stored; allowed: {allowed}")
+        if len(result.steps("time")) < 2:
+            raise OutputError(f"{result.path}: is steady; allowed: --steps of runs over time")
+    figure, axes = style.new_figure(1, 1, SCALAR_SIZE)
+    names = distinguishing_names(results) or [str(result.attrs["title"]) for result in results]
+    for result, words in zip(results, names, strict=True):
+        axes.plot(1e3 * result.steps("time"), result.steps(name), lw=1.0, label=words)
+    described = str(results[0][f"steps/{name}"].attrs.get("long_name", name))
+    unit = results[0].unit(f"steps/{name}")
+    label = described if unit == "1" else f"{described} [{unit}]"
+    axes.set(xlabel="time [ms]", ylabel=textwrap.fill(label, SCALAR_LABEL))
+    axes.grid(lw=0.3)
+    if len(results) > 1:
+        axes.legend(fontsize="small")
+    style.set_title(figure, str(results[0].attrs["title"]), style.conditions(results), "")
+    return figure
 
 
 def draw_courses(results: list[Result], _options: argparse.Namespace | None) -> Figure:
