@@ -26,7 +26,7 @@ from ehlpetsc.base.environment import need_solver, other_mpi
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, Stopped, UsageError
 from ehlpetsc.case.loading import load
 from ehlpetsc.results.index import open_all
-from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived, inputs_of
+from ehlpetsc.results.output_guard import PICTURES, atomic_write, check_derived, check_table, inputs_of
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -73,6 +73,7 @@ def _prepared(chosen: Namespace) -> tuple[Case, Path]:
     case = load(chosen.case, chosen.set)
     target = chosen.output or Path(f"{case.path.stem}.converge.csv")
     check_derived(target, inputs_of(case), (".csv",))
+    check_table(target, ",".join(columns(())[:2]), chosen.overwrite)
     if not chosen.no_picture:
         check_derived(target.with_suffix(".png"), inputs_of(case), PICTURES)
     series = over_meshes(tomllib.loads(case.text).get("series"), meshes(case, chosen.nodes))

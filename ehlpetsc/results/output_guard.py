@@ -66,12 +66,16 @@ def check_new(path: Path, overwrite: bool, option: str = "-o") -> None:
 
 
 def check_table(path: Path, heading: str, overwrite: bool, option: str = "-o") -> None:
-    """Refuse to replace a file that does not begin with the heading of the table, without `overwrite`."""
+    """Refuse to replace a file that does not begin with the heading of the table, without `overwrite`.
+
+    `heading`: names of the columns, or the first ones that all such tables have.
+    """
     if overwrite or not path.exists():
         return
+    begin = heading.strip().encode()
     with open(path, "rb") as file:
-        first = file.readline(len(heading.encode()) + 2).strip()
-    if first != heading.strip().encode():
+        first = file.read(len(begin))
+    if first != begin:
         raise OutputError(
             f"{path}: exists, and its first line is not that of this table; give another {option}, or "
             "--overwrite to replace it"

@@ -100,6 +100,14 @@ def test_a_series_on_three_meshes_is_computed_once(tmp_path):
     assert [path.stat().st_mtime_ns for path in sorted(tmp_path.glob("out_*.h5"))] == written
 
 
+def test_a_table_of_other_programs_is_kept(tmp_path):
+    (tmp_path / "p.csv").write_text("0,1e-7\n1e-6,2e-7\n")
+    done = run("converge", CASES / "dry_hertz.toml", "-o", "p.csv", "--no-picture", cwd=tmp_path)
+    assert done.returncode == 2
+    assert is_line_with(done.stderr, "p.csv: exists, and its first line is not that of this table; ")
+    assert (tmp_path / "p.csv").read_text() == "0,1e-7\n1e-6,2e-7\n"
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -99,7 +99,7 @@ def test_any_scalar_is_drawn_over_time_of_several_results(tmp_path, capsys):
             np.testing.assert_allclose(curve.get_xdata(), 1e3 * result.steps("time"))
             assert curve.get_label() == f"viscosity = {words}"
     assert plot.main([str(one), "--steps", "p_maximum"]) == 2
-    assert f"{one}: --steps p_maximum: not stored; allowed: step, " in capsys.readouterr().err
+    assert f"{one}: --steps p_maximum: not stored; allowed: " in capsys.readouterr().err
     assert plot.main([str(make_result(tmp_path / "steady.h5", steps=1)), "--steps", "p_max"]) == 2
     assert "is steady; allowed: --steps of runs over time" in capsys.readouterr().err
 

@@ -88,7 +88,7 @@ def test_keys_and_parameters_on_the_page_of_surfaces_are_current(capsys):
     file = "cases/profiles/alicona_meander_profile.csv"
     assert surface([str(ROOT / file), "--no-picture"]) == 0
     _, *lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 10 and all(line in TEXTS["cases/surfaces"] for line in lines)
+    assert len(lines) == 11 and all(line in TEXTS["cases/surfaces"] for line in lines)
 
 
 def test_case_file_and_output_on_the_page_are_current(tmp_path):
