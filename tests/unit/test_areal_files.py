@@ -298,6 +298,15 @@ def test_spikes_of_a_map_are_bridged_and_ridges_are_not(tmp_path, across):
     found = read_map(tmp_path / "map.npy", layout)
     assert found.notes[0] == "spikes: 10 points in all, bridged"
     np.testing.assert_allclose(found.z, z, rtol=0, atol=2e-7)
+    # two side by side are wider than one along the finer spacing, but not along the coarser one
+    first, second = ((slice(70, 75), slice(k, k + 4)) for k in (20, 24))
+    if across < 1.0:
+        first, second = ((slice(k, k + 4), slice(20, 25)) for k in (70, 74))
+    spoilt = z.copy()
+    spoilt[first] += 3e-6
+    spoilt[second] -= 3e-6
+    np.save(tmp_path / "map.npy", spoilt)
+    assert read_map(tmp_path / "map.npy", layout).notes[0] == "spikes: 40 points in all, bridged"
 
 
 def test_gaps_of_an_inclined_map_are_filled_exactly_and_equal_heights_at_its_edges_kept(tmp_path):
