@@ -62,6 +62,7 @@ def test_run_statistics_are_time_means_extremes_and_damage_quantiles(tmp_path):
         file["damage/s"], file["damage/z_over_a"] = np.arange(102.0), [0.01]
         file["damage/2"] = [[*np.linspace(0.0, 1.0, 101), np.nan]]
         file["damage/2_complete"] = [1] * 101 + [0]
+        file["smooth/depth"], file["smooth/damage/2"] = [0.0, 1e-3, 2e-3], [1e-9, 2e-9, 1e-9]
         for name in ("highest", "mean", "flash"):
             file[f"temperature/2_{name}"] = [*np.linspace(20.0, 120.0, 101), np.nan]
     with read_result(path) as result:
@@ -111,6 +112,8 @@ def test_ensemble_of_strips_has_lives_of_the_worst_points(tmp_path):
             file["damage/s"], file["damage/y"], file["damage/z_over_a"] = s, y, [0.0, 0.01]
             file["damage/2"] = np.stack([damage[::-1] / 10.0, damage])
             file["damage/2_complete"] = np.ones(50)
+            file["smooth/depth"], file["smooth/damage/2"] = [0.0, 1e-3, 2e-3], [1e-9, 2e-9, 1e-9]
+            file["smooth/criteria/fatemi_socie/2_damage"] = [1e-9, 2e-9, 1e-9]
             file["criteria/fatemi_socie/2_damage"] = np.stack([2.0 * damage, damage])
             file["criteria/dang_van/2_utilisation"] = np.stack([damage, damage])
     with read_result(paths[0]) as result:
@@ -118,6 +121,7 @@ def test_ensemble_of_strips_has_lives_of_the_worst_points(tmp_path):
     assert found["damage_2 z/a=0.01 largest"] == pytest.approx(2e-4)
     assert found["life_2 worst"] == pytest.approx(5000.0)
     ranked = np.linspace(1e-6, 2e-4, 200)
+    assert found["smooth_life_2"] == pytest.approx(5e8) and found["smooth_depth_2"] == pytest.approx(1e-3)
     assert found["share_2 D>0.1"] == 0.0 == found["fatemi-socie share_2 D>0.1"]
     for share in (0.01, 0.1):
         assert found[f"life_2 q={share:g}"] == pytest.approx(1.0 / np.quantile(ranked, 1.0 - share))

@@ -50,8 +50,8 @@ def tables(kind, contact):
     [  # of all steps
         ("line", "rigid", 87, 177, 0),
         ("line", "layer", 120, 286, 0),
-        ("strip", "rigid", 147, 1010, 39),
-        ("strip", "layer", 161, 1342, 26),
+        ("strip", "rigid", 147, 1010, 45),
+        ("strip", "layer", 161, 1407, 26),
         ("point", "rigid", 183, 868, 87),
         ("point", "layer", 207, 1351, 104),
     ],

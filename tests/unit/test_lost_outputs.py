@@ -194,7 +194,7 @@ def test_restart_reports_the_name_of_another_file_and_a_changed_one_is_refused(p
     simulation = ehlpetsc.Simulation(case)
     with simulation.options, Recorder(simulation, tmp_path / "o.h5") as recorder:
         _, *notes = recorder.resume(restart)
-    assert notes == ["surface.1.file was profile.csv, is copy.csv"]
+    assert notes == ['surface.1.file was "profile.csv", is "copy.csv"']
     case = read(path)
     assert list(case.digests) == ["surface.1.file"] and len(case.digests["surface.1.file"]) == 64
     turn_over(path)
