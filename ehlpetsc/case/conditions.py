@@ -280,9 +280,7 @@ def approach_faults(data: Tables, kind: str) -> list[Fault]:
     beside = ["contact.load"] * ("load" in contact)
     beside += [f"[{name}]" for name in ("operation", "gears") if name in data]
     if "radius" in contact and kind not in CONTACT.keys["approach"].contacts:
-        reason = (
-            "of point contacts, and one radius is of a line or a strip; allowed: two radii, or contact.load"
-        )
+        reason = f"of point contacts, and this is a {kind}; allowed: two radii, or contact.load"
     elif beside:
         reason = f"in place of the load, which {' and '.join(beside)} would give; leave out one of both"
     else:

@@ -265,7 +265,7 @@ def test_mixed_contact_keeps_its_approach_while_the_load_varies_also_restarted(t
     "changes, message",
     [
         ({"contact.load": 20.0}, "approach = 1.2e-06: in place of the load, which contact.load would"),
-        ({"contact.radius": 0.01}, "contact.approach = 1.2e-06: of point contacts, and one radius"),
+        ({"contact.radius": 0.01}, "contact.approach = 1.2e-06: of point contacts, and this is a strip"),
         ({"operation": {"time": [0, 1], "speed_1": [1, 2], "speed_2": [1, 2]}}, r"which \[operation\] would"),
         ({"gears": {"speed": 1}}, r"which \[gears\] would give; leave out one of both"),
         ({"contact.approach": 0.0}, "contact.approach = 0.0: allowed: a number >= 1e-09"),

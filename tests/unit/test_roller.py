@@ -199,6 +199,9 @@ def test_ends_and_highest_load_are_said_before_the_run():
     text = said(BLEND)
     assert "beside it the gap opens by 1.6 films from one row to the next" in text
     assert "try mesh.points_per_half_width = [20, 338], 17.8 um" in text
+    assert "one row to the next, the film there is too thin; try" in text
+    text = said({"kind": "circular", "radius": 0.005, "straight": 0.0115})
+    assert "films from one row to the next, which leaves no film there; try" in text
     text = said({"kind": "lundberg"})
     assert "the contact reaches the end of the roller, y = -6 mm and y = 6 mm" in text
     text = said(BLEND, tilt=0.5e-3)

@@ -30,6 +30,7 @@ MAX_INLET = 100.0  # half-widths: maximum distance of the proposed inlet
 MAX_OUTSIDE, PROPOSED_OUTSIDE = 0.05, 0.02  # of the load of a point contact, outside the mesh
 MESH_MARGIN = 1.1  # a mesh with a few percent too few points causes no warning
 MIN_END_LOAD = 0.05  # of the largest load per length: the oil beside a contact carries less
+MAX_END_OPENING = 3.0  # films: arcs of 20 mm on rows of 120 um, 4.2, have false contact at the ends
 OUTLET_ROOM, PROPOSED_OUTLET = 1.2, 1.5  # over the widest half-width of a roller
 
 
@@ -99,9 +100,12 @@ def _roller_ends(case: Case, scales: Scales) -> list[str]:
     if opening > MESH_MARGIN * MAX_FILM_SLOPE:
         inside = round(scales.b / scales.grid.spacings[0])
         rows = whole_up(inside * (opening / MAX_FILM_SLOPE) ** (2.0 / 3.0))
+        consequence = (
+            "which leaves no film there" if opening > MAX_END_OPENING else "the film there is too thin"
+        )
         notes.append(
             f"the rows are too far apart for the ends of the contact: beside it the gap opens by "
-            f"{opening:.2g} films from one row to the next: the film there comes out too thin; try "
+            f"{opening:.2g} films from one row to the next, {consequence}; try "
             f"mesh.points_per_half_width = [{case.mesh.points_per_half_width}, {rows}], "
             f"{1e6 * scales.b / rows:.3g} um"
         )
