@@ -44,6 +44,21 @@ def starting(found, word):
     return [line for line in found if line.startswith(word)]
 
 
+def test_the_pressure_viscosity_coefficient_of_a_grade_is_shown():
+    oil = {
+        "fluid": {
+            "grade": "ISO VG 100",
+            "temperature": 343.15,
+            "law": "roelands",
+            "density": "incompressible",
+        }
+    }
+    loaded = case.load(CASES / "table1_smooth.toml", oil)
+    (film,) = starting(explain(loaded).splitlines(), "Film: ")
+    alpha = 1e9 * loaded.fluid.pressure_viscosity
+    assert 15.0 < alpha < 25.0 and f"pressure-viscosity coefficient {alpha:.3g} 1/GPa; " in film
+
+
 def test_explain_figures_oil_friction_and_start_of_cases():
     text = "\n".join(lines("table1_rough.toml"))
     parts = ["a = 0.335682 mm", "p0 = 0.999455 GPa", "M = 56.53, L = 3.70", "801 nodes", "1603 unknowns"]

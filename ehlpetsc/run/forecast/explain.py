@@ -109,7 +109,8 @@ def _film(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     oil = [f"Oil {case.fluid.oil}: {OILS[case.fluid.oil].source}"] if case.fluid.oil else []
     return [
         *oil,
-        f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure; Moes M = {s.moes_m:.2f}, "
+        f"Film: {case.fluid.law} viscosity, {s.eta0:g} Pa s at ambient pressure, pressure-viscosity "
+        f"coefficient {1e9 * case.fluid.pressure_viscosity:.3g} 1/GPa; Moes M = {s.moes_m:.2f}, "
         f"L = {s.moes_l:.2f}",
         f"Expected smooth film ({formulas}, and the density under p0): central {central * 1e6:.3g} um, "
         f"minimum {minimum * 1e6:.3g} um",
