@@ -19,6 +19,7 @@ petsc4py.init([])
 
 from benchmarks import (
     accuracy,
+    bars,
     endurance,
     extremes_plane,
     plane,
@@ -308,11 +309,19 @@ def test_processes_and_endurance(capsys):
 def test_errors_of_waves(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "argv", ["waves.py", "line, a/2, rolling", "--nodes", "6", "8", "12"])
     waves.main()
-    (coarse,), (fine,) = lines_of(capsys, '"line, a/2, rolling: film",')
-    assert abs(fine) < abs(coarse) < 0.5
+    (coarse,), (middle,), (fine,) = lines_of(capsys, '"line, a/2, rolling: film",')
+    assert abs(fine) < abs(middle) < abs(coarse) < 0.5
     monkeypatch.setattr(sys, "argv", ["waves.py", "--draw", str(tmp_path / "waves.png")])
     waves.main()
     assert (tmp_path / "waves.png").stat().st_size > 10_000
+
+
+def test_error_bars_of_mixed_contacts(capsys, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["bars.py", "thin film", "--nodes", "3", "4", "6", "8"])
+    bars.main()
+    friction, share, film = lines_of(capsys, "thin film,")
+    for first, third, limit, bar, _ in (friction, share, film):
+        assert abs(third) < abs(first) and abs(limit) < bar
 
 
 def test_errors_over_run_time(capsys, monkeypatch, tmp_path):
