@@ -12,7 +12,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import OutputError, UsageError
 from ehlpetsc.base.quantities import STEP_SCALARS
-from ehlpetsc.results.index import distinguishing_names, groups
+from ehlpetsc.results.index import differences, distinguishing_names, groups, key_with_unit, setting_of
 from ehlpetsc.results.means import bootstrap_bounds, filled_weights, mean, weighted_percentiles
 from ehlpetsc.results.post_result import DAMAGED, PostResult, damage_beside, is_damaged
 from ehlpetsc.results.reader import Result
@@ -118,9 +118,9 @@ def ensemble_table(results: list[Result]) -> list[Sequence]:
                 deviation = values.std(ddof=1) if values.size > 1 else np.nan
                 bounds = bootstrap_bounds(values)
             reduced = values.mean(), deviation, values.min(), values.max(), *bounds
-            others = (unit for word, unit in UNITS.items() if word in name)
-            unit = results[0].unit(f"steps/{name}") if name in results[0].scalars else next(others, "1")
-            rows.append((ensemble, name, unit, values.size, *(f"{v:.6g}" for v in reduced)))
+            rows.append(
+                (ensemble, name, _unit(results[0], name), values.size, *(f"{v:.6g}" for v in reduced))
+            )
     return rows
 
 
@@ -153,6 +153,43 @@ def table(results: list[Result]) -> list[tuple]:
     for result, case in zip(results, cases, strict=True):
         rows += [(result.path.name, case, *row) for row in statistics(result)]
     return rows
+
+
+def wide_table(results: list[Result]) -> list[Sequence]:
+    """Names with units of keys in which the cases differ and of all scalars; a row of means for each result.
+
+    Values of keys in SI units, as of the case, not as texts with a unit.
+    """
+    keys = list(differences(results))
+    scalars = [run_scalars(result) for result in results]
+    names = list(dict.fromkeys(name for of_result in scalars for name in of_result))
+    units = [_unit(results[0], name) for name in names]
+    rows: list[Sequence] = [
+        [
+            "result",
+            *(key_with_unit(key, results[0].case.kind) for key in keys),
+            *(f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)),
+        ]
+    ]
+    for result, found in zip(results, scalars, strict=True):
+        settings = [_as_cell(setting_of(result.case, key)) for key in keys]
+        rows.append([result.path.name, *settings, *(_as_cell(found.get(name, "")) for name in names)])
+    return rows
+
+
+def _as_cell(value: object) -> str:
+    """Text of a cell: nine digits of a number, a blank between those of a list."""
+    if isinstance(value, list | tuple):
+        return " ".join(map(_as_cell, value))
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    return f"{value:.9g}" if is_number else "" if value is None else str(value)
+
+
+def _unit(result: Result, name: str) -> str:
+    """Unit of a scalar of a run, by its name."""
+    if name in result.scalars:
+        return result.unit(f"steps/{name}")
+    return next((unit for word, unit in UNITS.items() if word in name), "1")
 
 
 def steps_table(result: Result) -> list[Sequence]:

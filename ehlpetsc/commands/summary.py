@@ -7,7 +7,8 @@ run if it ends before (column ``from_s``). SI units. Means and percentiles are w
 ``--steps`` prints the scalars of every step of one result, ``--frame STEP`` its fields at a stored step,
 ``--ensemble`` mean and deviation of each scalar over results that differ only in their seeds, by ensemble,
 and the bounds within which 90 % of the means of resampled runs lie (bootstrap); with maxima and quantiles of
-damage, and lives, where RESULT.post.h5 exists.
+damage, and lives, where RESULT.post.h5 exists. ``--wide`` prints a row for each result: the keys in which the
+cases differ and the mean of every scalar, as columns.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from ehlpetsc.analysis.summary import ensemble_table, frame_table, steps_table, table
+from ehlpetsc.analysis.summary import ensemble_table, frame_table, steps_table, table, wide_table
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.results.index import in_order, open_all
@@ -36,6 +37,7 @@ def main(words: Sequence[str]) -> int:
     kinds.add_argument("--steps", action="store_true", help="scalars of every step of one result, over time")
     kinds.add_argument("--frame", type=int, metavar="STEP", help="fields of one result at a stored step")
     kinds.add_argument("--ensemble", action="store_true", help="mean and deviation over seeds")
+    kinds.add_argument("--wide", action="store_true", help="a row for each result, a column for each scalar")
     chosen = parser.parse_args(words)
     return exit_status("summary", lambda: _put_table(chosen), output=chosen.output)
 
@@ -59,6 +61,8 @@ def _put_table(chosen: argparse.Namespace) -> None:
 def _rows(results: list[Result], chosen: argparse.Namespace) -> Iterable[Sequence]:
     if chosen.ensemble:
         return ensemble_table(results)
+    if chosen.wide:
+        return wide_table(results)
     if not chosen.steps and chosen.frame is None:
         return table(results)
     if len(results) > 1:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ehlpetsc.base.errors import OutputError
+from ehlpetsc.case.checking import attribute, in_kind
+from ehlpetsc.case.tables import CASE, key_of
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, atomic_write, check_output_path, inputs_of
 from ehlpetsc.results.reader import Result, read_result
 
@@ -140,12 +142,24 @@ def _settings(results: list[Result], varied: str | None = None) -> list[str]:
 
 def _setting(case: Case, key: str, label: str, value: object) -> str:
     if value is None:  # left out: its default
-        value = case
-        for name in key.split("."):
-            value = getattr(value, name, None)
+        value = setting_of(case, key)
     if value is None:
         return f"no {label}"
     return f"{label} = {value:g}" if isinstance(value, int | float) else f"{label} = {value}"
+
+
+def setting_of(case: Case, key: str) -> Any:
+    """Value of a dotted key in a case, in SI units; None: left out, without a default."""
+    value: Any = case
+    for name in key.split("."):
+        value = getattr(value, attribute(name), None)
+    return value
+
+
+def key_with_unit(key: str, kind: str) -> str:
+    """A dotted key with the unit of its values in a kind of contact."""
+    declared = key_of(key, in_kind(CASE, kind))
+    return f"{key} [{declared.unit or '1'}]" if declared and declared.kind in (int, float) else key
 
 
 def flat_keys(table: dict, prefix: str = "") -> dict[str, Any]:

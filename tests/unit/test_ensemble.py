@@ -6,8 +6,10 @@ import json
 import h5py
 import numpy as np
 import pytest
+from support import CASES
 from support.made_results import change_case, make_result, with_solids
 
+from ehlpetsc.__main__ import main as program
 from ehlpetsc.analysis.summary import ensemble_table, ensembles, run_scalars
 from ehlpetsc.commands.summary import main as summary
 from ehlpetsc.results.means import bootstrap_bounds, both_fill
@@ -134,3 +136,22 @@ def test_ensemble_of_strips_has_lives_of_the_worst_points(tmp_path):
     assert (row["unit"], row["runs"]) == ("passes", 3)
     assert float(row["mean"]) == pytest.approx(lives.mean(), rel=1e-5)
     assert lives.min() <= float(row["low"]) < float(row["mean"]) < float(row["high"]) <= lives.max()
+
+
+def test_wide_table_has_a_row_for_each_result_in_si_units(tmp_path):
+    paths = []
+    for number, load in enumerate(('"400 N/mm"', "5e5")):
+        words = ["--set", f"contact.load={load}", "--set", "mesh.points_per_half_width=10"]
+        words += ["--set", "output.fields=[]", "-o"]  # scalars alone
+        paths.append(str(tmp_path / f"{number}.h5"))
+        assert program([str(CASES / "table1_smooth.toml"), *words, paths[-1]]) == 0
+    assert summary(["--wide", *paths, "-o", str(tmp_path / "wide.csv")]) == 0
+    with open(tmp_path / "wide.csv") as file:
+        first, second = csv.DictReader(file)
+    assert (first["result"], first["contact.load [N/m]"], second["contact.load [N/m]"]) == (
+        "0.h5",
+        "400000",
+        "500000",
+    )
+    with read_result(paths[1]) as result:
+        assert float(second["film_central [m]"]) == pytest.approx(result.steps("film_central")[0], rel=1e-8)

@@ -18,7 +18,13 @@ MAX_DEPTH, MAX_RESIDUAL = 100.0, 1e10  # z/a, Pa
 
 OUTPUT_KEYS = {
     "every": Key("steps between stored fields", "", 1, 10**9, kind=int, default=1),
-    "fields": Key("stored fields", choices=FIELDS, many="list", default=DEFAULT_FIELDS),
+    "fields": Key(
+        "stored fields; []: none, scalars alone",
+        choices=FIELDS,
+        many="list",
+        min_items=0,
+        default=DEFAULT_FIELDS,
+    ),
     "precision": Key("of the stored fields", choices=("float64", "float32"), default="float64"),
     "xdmf": Key(
         "of a contact in the plane: RESULT.xdmf for ParaView, beside the result file",
