@@ -7,6 +7,7 @@ scenes of a circular contact, M = 200 and L = 10, each in a process of its own; 
 - wave: cos kx cos ky of a half-width, a hundredth of the film (2 nm), pure rolling.
 - rigid, layer: self-affine roughness in mixed contact, slide/roll ratio 0.3, with a boundary film or a
   compliant layer; heavy, slow: more of the load on solids, 2 and, at 0.02 m/s, 20 %.
+- heat: layer with temperatures of film and surfaces, 2 m/s, slide/roll ratio 0.5.
 
 Waves and roughness fill the contact from the first step on (`time.start = "rough"`).
 
@@ -60,6 +61,8 @@ ROUGH |= {"roll_off": 0.5 * HALF_WIDTH, "short_cutoff": 0.25 * HALF_WIDTH}
 SLIDING = {"surface.1": {"synthetic": ROUGH}, "motion.slide_roll_ratio": 0.3}
 LAYER = SLIDING | {"contact.boundary_film": None}
 HEAVY = LAYER | {"surface.1": {"synthetic": ROUGH | {"sq": 0.5e-6}}, "contact.asperity_height": 30e-9}
+HOT = LAYER | {"contact.asperity_height": 20e-9, "heat.bulk_temperature": 333.0}
+HOT |= {"motion.entrainment_speed": 2.0, "motion.slide_roll_ratio": 0.5, "fluid.limiting_shear": 0.05}
 SCENES = {
     "smooth": {},
     "wave": {"surface.1": {"synthetic": WAVE}},
@@ -67,6 +70,7 @@ SCENES = {
     "layer": LAYER | {"contact.asperity_height": 20e-9},
     "heavy": HEAVY,
     "slow": HEAVY | {"motion.entrainment_speed": 0.02},
+    "heat": HOT,
 }
 CONVOLUTIONS = 21  # timed
 COLUMNS = {
