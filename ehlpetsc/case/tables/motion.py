@@ -178,13 +178,15 @@ MESH_KEYS = {
     "inlet": Required("first node", "half-widths", -100, lt=-1),
     "outlet": Required("last node", "half-widths", gt=1, le=100),
     "points_per_half_width": Required(
-        "nodes `a/dx`, at most 200000 nodes; two: along, across per half-width b of a point, a of a strip",
+        "nodes `a/dx`, at most 200000 nodes; two: along, across per half-width b of a point, a of "
+        "a strip, half of the length of a roller",
         *("", 4, 100_000),
         kind=int,
         many="axes",
     ),
     "width": Key(
-        "of a point contact in b [4]; with one radius, in a: a strip, periodic across",
+        "of a point contact in b [4]; of a roller with round ends in halves of its length; with one radius "
+        "otherwise, in a: a strip, periodic across",
         *("half-widths", 0.01, 1000),
     ),
     "near_field": Key(
