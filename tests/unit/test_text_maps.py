@@ -252,6 +252,11 @@ REFUSED = {
     "numbers at unequal steps": (matrix(None, UM * X**1.3 * 50), BOTH, UNEQUAL),
     "unit of positions": (matrix("[inch]", MM * X, MM * Y), UM_UNIT, "^its header names inch; write x_unit"),
     "unit of heights": (matrix("x [mm]", MM * X, MM * Y), {}, "^its header names mm; write unit"),
+    "units alone in a line": (
+        "x y z\nmm mm um\n" + points(MM * X, MM * Y),
+        {},
+        "^its header names mm and um; write",
+    ),
     "numbers without spacing": (matrix("n", NUMBERS_X, NUMBERS_Y), UM_UNIT, "^a matrix .* needs spacing = "),
     "heights without spacing": (matrix(), UM_UNIT, "^a matrix of heights needs spacing = "),
     "x_unit without positions": (matrix(), BOTH | {"x_unit": "mm"}, "^x_unit: of x, not of spacing, "),
@@ -269,7 +274,10 @@ def test_refused_map_names_the_cause(tmp_path, text, layout, message):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("header", ["X in mm, Z in um", "Unit X: mm\nUnit Z: um", "Z unit = um"])
+@pytest.mark.parametrize(
+    "header",
+    ["X in mm, Z in um", "Unit X: mm\nUnit Z: um", "Z unit = um", "X\tZ\nmm\tum", '"x";"z"\n"mm";"um"'],
+)
 def test_a_unit_in_the_words_above_a_profile_is_asked_for(tmp_path, header):
     lines = [f"{x:.5f}\t{z:.5f}" for x, z in zip(MM * X, UM * Z[0], strict=True)]
     (tmp_path / "p.txt").write_text("\n".join([header, *lines]))

@@ -110,9 +110,11 @@ def text_columns(
 
 
 def units_in(header: str) -> list[str]:
-    """Units of length in brackets, or after a slash, in a header, in their order."""
+    """Units of length in brackets, after a slash, or alone in the last line of a header, in their order."""
     header = unicodedata.normalize("NFC", header)  # an A and a ring above to one letter
-    return [UNIT_OF_NAME[name.lower()] for name in UNIT_IN_HEADER.findall(header)]
+    last = [word.strip("\"'").lower() for word in re.split(r"[\s,;|]+", header.rstrip().rpartition("\n")[2])]
+    names = last if UNIT_OF_NAME.keys() >= set(last) else UNIT_IN_HEADER.findall(header)
+    return [UNIT_OF_NAME[name.lower()] for name in names]
 
 
 def _decoded(path: Path) -> str:
