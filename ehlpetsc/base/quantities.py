@@ -46,13 +46,23 @@ SCENES: dict[str, Callable[[Any], bool]] = {
 """Whether a case has what a quantity needs; rows: lines and strips, of which integrals are per width."""
 
 FIELDS = {
-    "pressure": Field("Pa", "pressure"),
-    "contact_pressure": Field("Pa", "pressure of the solids, part of the pressure", only="mixed"),
-    "film_thickness": Field("m", "film thickness"),
-    "void_fraction": Field("1", "void fraction of the film", only="fluid"),
-    "shear_stress_1": Field("Pa", "shear stress on surface 1"),
-    "shear_stress_2": Field("Pa", "shear stress on surface 2"),
-    "in_contact": Field("1", "surfaces in contact (film at its bound, or solids carry)", dtype="u1"),
+    "pressure": Field("Pa", "pressure", of=lambda o: o.pressure),
+    "contact_pressure": Field(
+        "Pa",
+        "pressure of the solids, part of the pressure",
+        only="mixed",
+        of=lambda o: o.loads.contact_pressure * o.scene.scales.p0,
+    ),
+    "film_thickness": Field("m", "film thickness", of=lambda o: o.film),
+    "void_fraction": Field("1", "void fraction of the film", only="fluid", of=lambda o: o.void_fraction),
+    "shear_stress_1": Field("Pa", "shear stress on surface 1", of=lambda o: o.shear_stresses[0]),
+    "shear_stress_2": Field("Pa", "shear stress on surface 2", of=lambda o: o.shear_stresses[1]),
+    "in_contact": Field(
+        "1",
+        "surfaces in contact (film at its bound, or solids carry)",
+        dtype="u1",
+        of=lambda o: o.loads.contact_mask,
+    ),
 }
 """Fields over (stored frame, node), in the order in which files list them."""
 
@@ -123,7 +133,7 @@ STEP_SCALARS = {
         over_run="min",
         summary=".9g",
         progress=Column("h_min/um", 1e6, "{:>9.5f}"),
-        of=lambda o: o.fields["film_thickness"].min(),
+        of=lambda o: o.film.min(),
     ),
     "p_max": Compared(
         "Pa",
@@ -131,7 +141,7 @@ STEP_SCALARS = {
         over_run="max",
         summary=".9g",
         progress=Column("p_max/GPa", 1e-9, "{:>9.4f}"),
-        of=lambda o: o.fields["pressure"].max(),
+        of=lambda o: o.pressure.max(),
     ),
     "contacts": Count(
         "nodes in contact",
@@ -237,7 +247,7 @@ STEP_SCALARS = {
     "nodes_below_1nm": Count(
         "nodes out of contact under less than 1 nm of oil",
         only="fluid",
-        of=lambda o: int((~o.loads.contact_mask & (o.fields["film_thickness"] < MIN_CONTINUUM_FILM)).sum()),
+        of=lambda o: int((~o.loads.contact_mask & (o.film < MIN_CONTINUUM_FILM)).sum()),
     ),
     "contact_share": Compared(
         "1",

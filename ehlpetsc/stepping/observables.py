@@ -11,7 +11,7 @@ import numpy as np
 
 from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, Solution
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.scene import Scene
 from ehlpetsc.effects.step import Step
@@ -30,9 +30,9 @@ MIN_BALANCE_FILM = 1e-10  # m, size of an atom: smallest reference film of the m
 
 @dataclass(frozen=True)
 class Observation:
-    """An accepted time level, of which :mod:`ehlpetsc.base.quantities` states the scalars.
+    """An accepted time level, of which :mod:`ehlpetsc.base.quantities` states fields and scalars.
 
-    `fields`: in SI units by name, without those of effects.
+    `film_shear`: mean shear stress of the film by the effects [Pa]; None: isothermal.
     `started`: monotonic clock at the beginning of the step [s].
     `smooth`: minimum film of the smooth contact over that of the formulas, at time 0.
     """
@@ -41,7 +41,7 @@ class Observation:
     problem: EHLProblem
     state: State
     conditions: Conditions
-    fields: dict[str, np.ndarray]
+    film_shear: np.ndarray | None
     started: float
     smooth: float = 1.0
 
@@ -49,6 +49,32 @@ class Observation:
     def loads(self) -> SurfaceLoads:
         """Loads on the surfaces, dimensionless."""
         return self.state.solution.loads
+
+    @cached_property
+    def pressure(self) -> np.ndarray:
+        """Pressure of oil and solids at the nodes [Pa]."""
+        return self.loads.pressure * self.scene.scales.p0
+
+    @cached_property
+    def film(self) -> np.ndarray:
+        """Film at the nodes [m]."""
+        return self.loads.film * self.scene.scales.h
+
+    @cached_property
+    def void_fraction(self) -> np.ndarray:
+        """Void fraction of the film at the nodes; 0 without oil."""
+        q = self.state.solution.nodes.reynolds_unknown
+        return np.zeros(len(q)) if self.scene.case.fluid is None else np.maximum(-q, 0.0)
+
+    @cached_property
+    def shear_stresses(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shear stress on surfaces 1 and 2 at the nodes [Pa]."""
+        s, loads, inputs = self.scene.scales, self.loads, self.state.solution.inputs
+        oil, solids = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0
+        sheared = np.where(loads.sheared_oil, 1.0 - self.void_fraction, 0.0)
+        gradient = np.gradient(s.grid.rows(oil), s.spacing, axis=-1).ravel()
+        walls = inputs.boundary_friction * solids, gradient, self.conditions.sliding
+        return shear_stresses(inputs.fluid, *walls, oil, self.film, sheared, self.film_shear)
 
     @property
     def node_size(self) -> float:
@@ -63,7 +89,7 @@ class Observation:
     @cached_property
     def load(self) -> float:
         """Integral of the pressure [N/m]."""
-        return self.node_size * self.fields["pressure"].sum()
+        return self.node_size * self.pressure.sum()
 
     @property
     def load_error(self) -> float:
@@ -73,12 +99,12 @@ class Observation:
     @cached_property
     def friction_1(self) -> float:
         """Friction force on surface 1 [N/m]."""
-        return self.node_size * self.fields["shear_stress_1"].sum()
+        return self.node_size * self.shear_stresses[0].sum()
 
     @cached_property
     def friction_2(self) -> float:
         """Friction force on surface 2 [N/m]."""
-        return self.node_size * self.fields["shear_stress_2"].sum()
+        return self.node_size * self.shear_stresses[1].sum()
 
     @property
     def approach(self) -> float:
@@ -91,8 +117,7 @@ class Observation:
         from ehlpetsc.physics.contact.roller_loads import RollerLoads
 
         tilt = self.problem.balance.tilt(self.state.solution.unknowns.border)
-        fields = self.fields["pressure"], self.fields["film_thickness"]
-        return RollerLoads.of(self.scene.scales, self.conditions.radius, tilt, *fields)
+        return RollerLoads.of(self.scene.scales, self.conditions.radius, tilt, self.pressure, self.film)
 
     @cached_property
     def mean_film(self) -> float:
@@ -130,10 +155,10 @@ class Observation:
         :math:`\varepsilon_0\int[1+(\varepsilon-1)(1-\theta)]dA/h` of the oil and the void in it side by
         side. Nodes in contact conduct and are left out.
         """
-        fields, permittivity = self.fields, self.scene.case.fluid.permittivity
-        relative = 1.0 + (permittivity - 1.0) * (1.0 - fields["void_fraction"])
+        permittivity = self.scene.case.fluid.permittivity
+        relative = 1.0 + (permittivity - 1.0) * (1.0 - self.void_fraction)
         apart = ~self.loads.contact_mask
-        integral = (relative[apart] / fields["film_thickness"][apart]).sum()
+        integral = (relative[apart] / self.film[apart]).sum()
         return VACUUM_PERMITTIVITY * self.node_size * float(integral)
 
     @property
@@ -175,38 +200,16 @@ def diagnostics(
     shear = None
     for effect in present:
         shear = effect.film_shear(state.records[effect.name], solution, shear)
-    fields = _fields(scene, conditions, solution, shear)
-    observation = Observation(scene, problem, state, conditions, fields, started, smooth)
-    fields_of, scalars = (
+    observation = Observation(scene, problem, state, conditions, shear, started, smooth)
+    fields, scalars = (
         {name: of(observation) for name in of_case(table, case) if (of := table[name].of)}
         for table in (FIELDS, STEP_SCALARS)
     )
-    fields = fields | fields_of
     step = Step(state.time, state.dt, state.travelled, conditions)
     for effect in present:
         effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)
         fields, scalars = fields | effect_fields, scalars | effect_scalars
     return scalars, fields, solution.loads.contact_mask
-
-
-def _fields(scene: Scene, conditions: Conditions, solution: Solution, shear: np.ndarray | None) -> dict:
-    """Fields in SI units that every case has."""
-    s, loads, fluid = scene.scales, solution.loads, solution.inputs.fluid
-    void = np.zeros(s.grid.n) if fluid is None else np.maximum(-solution.nodes.reynolds_unknown, 0.0)
-    sheared = np.where(loads.sheared_oil, 1.0 - void, 0.0)
-    oil, solids, film = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0, loads.film * s.h
-    rubbing, rows = solution.inputs.boundary_friction * solids, s.grid.rows
-    gradient = np.gradient(rows(oil), s.spacing, axis=-1).ravel()
-    shear_1, shear_2 = shear_stresses(fluid, rubbing, gradient, conditions.sliding, oil, film, sheared, shear)
-    return {
-        "pressure": loads.pressure * s.p0,
-        "contact_pressure": loads.contact_pressure * s.p0,
-        "film_thickness": film,
-        "void_fraction": void,
-        "shear_stress_1": shear_1,
-        "shear_stress_2": shear_2,
-        "in_contact": loads.contact_mask,
-    }
 
 
 def mean_film(scales: Scales, h: np.ndarray, size: float, pressure: np.ndarray) -> float:

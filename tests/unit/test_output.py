@@ -372,7 +372,7 @@ def test_file_that_another_process_has_locked_is_not_called_damaged(tmp_path):
 
 def test_a_new_scalar_of_the_steps_is_one_entry_of_the_table(monkeypatch):
     def pressed(o):
-        return o.node_size * o.fields["pressure"][3]
+        return o.node_size * o.pressure[3]
 
     weight = StepScalar("N", "pressure by film", integrated=True, of=pressed)
     monkeypatch.setitem(quantities.STEP_SCALARS, "weight", weight)
