@@ -20,6 +20,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.contact.model import ContactModel
+from ehlpetsc.discretisation.contact.node_state import NodeState
 from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.step_inputs import StepInputs
 from ehlpetsc.discretisation.unknowns import Rows, Unknowns, border_of, n_dofs, nodes_of_w, pairs, q_of, w_of
@@ -44,8 +45,8 @@ class Jacobian:
         self.problem, self.exchange, self.ranks = problem, exchange, ranks
         self.active: slice | np.ndarray = slice(None)
         self.inactive_nodes = np.arange(0)
-        self.model: Any = None
-        self.state: Any = None
+        self.model: ContactModel = None
+        self.state: NodeState = None
         self.derivatives: np.ndarray = None
         self.reynolds_derivatives: np.ndarray = None
         self.size = problem.size
@@ -115,7 +116,9 @@ class Matrices:
     keeps_factors = False
     linear_atol = 1e-2
 
-    def __init__(self, problem: EHLProblem, exchange: Any, ranks: MPI.Comm):
+    exchange: Exchange
+
+    def __init__(self, problem: EHLProblem, exchange: Exchange, ranks: MPI.Comm):
         self.problem, self.exchange, self.ranks = problem, exchange, ranks
 
     def jacobian(self, ksp: PETSc.KSP) -> Jacobian:

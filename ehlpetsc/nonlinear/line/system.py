@@ -91,6 +91,7 @@ class LineMatrices(Matrices):
     `near_field`: nodes of deflection on either side in the assembled matrix.
     """
 
+    exchange: LineExchange
     factors: Factors | None = None
 
     def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):

@@ -33,6 +33,7 @@ class PlaneMatrices(Matrices):
 
     keeps_factors = True
     linear_atol = 0.1  # an iteration costs a convolution
+    exchange: PlaneExchange
     elimination: Elimination | None = None
 
     def jacobian(self, ksp: PETSc.KSP) -> PlaneJacobian:
