@@ -15,6 +15,7 @@ SMOOTH = CASES / "table1_smooth.toml"
 PLAUSIBLE = {
     "m": {"12 mm": 0.012, "5um": 5e-6, "5 \u00b5m": 5e-6, "5 \u03bcm": 5e-6, "3 nm": 3e-9, "1.2 cm": 0.012}
     | {"1 in": 0.0254},
+    "N": {"20 N": 20.0, "2.4 kN": 2400.0, "1 lbf": 4.4482216152605},
     "N/m": dict.fromkeys(("350 N/mm", "0.35 kN/mm", "350 kN/m"), 350e3)
     | {"2 lbf/in": 2 * 4.4482216152605 / 0.0254},
     "Pa": {"206 GPa": 206e9, "3 N/mm^2": 3e6, "3 N/mm2": 3e6, "10 bar": 1e6, "1 MPa": 1e6}
