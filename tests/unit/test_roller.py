@@ -1,6 +1,7 @@
 """Rollers of finite length: profiles, nodes, dry contact against conjugate gradients, what is said before."""
 
 import copy
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -179,11 +180,35 @@ def test_dry_roller_of_many_rows_starts_from_a_coarser_mesh():
     assert Simulation(load(tables)).advance().newton < 10
 
 
-def test_self_aligning_roller_finds_the_slope_hidden_in_its_profile():
+@pytest.mark.parametrize("oil", [{}, OIL | {"mesh": OIL["mesh"] | {"points_per_half_width": [12, 30]}}])
+def test_self_aligning_roller_finds_the_slope_hidden_in_its_profile(oil):
     y = np.linspace(-6e-3, 6e-3, 61)
-    hidden = {"y": y.tolist(), "z": (5e-6 * (y / 6e-3) ** 2 + 0.3e-3 * y).tolist()}
-    tilt = Simulation(load(roller(hidden, self_aligning=True))).advance().tilt
-    assert tilt == pytest.approx(-0.3e-3, rel=1e-6)
+    hidden = {"y": y.tolist(), "z": (5e-6 * (y / 6e-3) ** 2 + 1e-3 * y).tolist()}
+    state = Simulation(load(roller(hidden, self_aligning=True) | oil)).advance()
+    assert state.tilt == pytest.approx(-1e-3, rel=1e-6)
+    assert state.newton < 10  # from the slope of the slices; in oil 17 from none
+    assert state.moment == pytest.approx(0.0, abs=1e-6)
+
+
+def test_film_of_the_middle_is_weighted_by_the_load_of_its_rows():
+    grid = Scales.of(load(roller(ISO))).grid
+    y, x = grid.coordinates
+    film, pressure = np.where(y < 0.0, 1.0, 5.0), np.where(y < 0.0, 3.0, 1.0) * (np.abs(x) < 1.0)
+    assert grid.mean_inside(film, 0.5, pressure) == pytest.approx((3.0 * 1.0 + 1.0 * 5.0) / 4.0)
+    film[np.maximum(np.abs(y) / grid.half_widths[0], np.abs(x)) > 0.51] = 1e9  # beyond the middle half
+    assert grid.mean_inside(film, 0.5, pressure) == pytest.approx(2.0)
+
+
+def test_slices_under_another_load_and_radius_keep_the_profile():
+    grid = Scales.of(load(roller(BLEND))).grid
+    whole = np.pi * grid.half_widths[0]  # integral of the pressure, of which slices give the square root
+    for share, radius in ((1.0, 1.0), (0.3, 1.0), (1.0, 0.5)):
+        room = grid.rows(grid.room(share, radius))
+        widest = room.max(axis=1) / radius  # load of each row over the mean
+        assert widest[widest > 0.0].sum() == pytest.approx(60.0 * share, rel=2e-2)
+    assert whole == pytest.approx(grid.load)
+    narrow, wide = ((grid.room(share, 1.0) > 0.0).sum() for share in (0.3, 1.0))
+    assert narrow < wide
 
 
 def said(profile, **contact):
@@ -204,8 +229,13 @@ def test_ends_and_highest_load_are_said_before_the_run():
     assert "films from one row to the next, which leaves no film there; try" in text
     text = said({"kind": "lundberg"})
     assert "the contact reaches the end of the roller, y = -6 mm and y = 6 mm" in text
+    assert "rows are too far apart" not in text
     text = said(BLEND, tilt=0.5e-3)
     assert "mesh.outlet = 1.5 is near the highest load" in text
+    near, words = copy.deepcopy(OIL), r"mesh.inlet = -1.6 is too near: .* it leaves (\d+) % of the film"
+    near["mesh"]["inlet"] = -1.6  # of the mean load; 1.32 local half-widths at the highest one
+    left = [int(re.search(words, explain(load(roller(one) | near)))[1]) for one in (ISO, None)]
+    assert left == [74, 84]
     finer = copy.deepcopy(OIL) | {"mesh": OIL["mesh"] | {"points_per_half_width": [20, 400]}}
     assert "rows are too far apart" not in explain(load(roller(BLEND) | finer))
 

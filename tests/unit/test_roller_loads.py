@@ -47,7 +47,7 @@ def test_figures_of_a_roller():
     w = 2e5 * (1.0 - 0.5 * Y / (0.5 * L))
     highest = np.sqrt(w * E / (2.0 * np.pi * R))
     highest[5] *= 1.5
-    thinnest = np.where(np.abs(Y) < 5.5e-3, 0.3e-6, 0.2e-6)
+    thinnest = np.where((np.abs(Y) > 3.5e-3) & (np.abs(Y) < 5e-3), 0.2e-6, 0.3e-6)
     loads = RollerLoads(Y, w, highest, thinnest, np.zeros(ROWS), L, R, E)
     assert loads.load == pytest.approx(W)
     p0 = np.sqrt(2e5 * E / (2.0 * np.pi * R))
