@@ -27,8 +27,11 @@ def draw(title: str, cases: Sequence[Convergence], path: Path) -> None:
             bar = max(100.0 * abs(found.bar / found.value), MIN_ERROR)
             panel.plot(sum(case.seconds), bar, "D", color=colour, ms=5, mfc="none")
         panel.set(xscale="log", yscale="log", xlabel="time of the steps [s]", title=case.name)
+        panel.set_xticks([*case.seconds, sum(case.seconds)])
+        panel.xaxis.set_major_formatter("{x:.3g}")
+        panel.set_xticks([], minor=True)
         panel.yaxis.set_major_formatter("{x:g}")
-        panel.grid(lw=0.3, which="both")
+        panel.grid(lw=0.3)
         if shown:
             style.legend_beside(panel, title="dots: meshes\ndiamond: all three,\nbar of the limit")
     (panels if len(cases) == 1 else panels[0]).set_ylabel("error [%]")
