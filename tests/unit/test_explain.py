@@ -135,7 +135,7 @@ def test_mesh_errors_of_a_layer_and_of_rigid_solids():
     )
     assert line == (
         f"Mesh error: {waves} of the waves of film and pressure; in mixed contact {friction} in friction, "
-        f"+-{damage} in damage, {SHARE_RATIOS[1]} times the load on the solids above 0.001 of the load"
+        f"+-{damage} in damage, {SHARE_RATIOS[1]:.2g} times the load on the solids above 0.001 of the load"
     )
     (line,) = starting(lines("running_in.toml"), "Waves of surface 1: ")
     assert line.endswith("; 8.04 nodes to the shortest one, 27 um")
