@@ -227,7 +227,7 @@ class BandedJacobian:
         Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, STRIDE).
         """
         self._fill_deflection(entries)
-        put(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
+        place_entries(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
         return self.columns
 
     def _fill_deflection(self, entries: BandEntries) -> None:
@@ -253,7 +253,7 @@ class BandedJacobian:
 
 
 @compiled
-def put(
+def place_entries(
     entries: np.ndarray,
     places: np.ndarray,
     inactive_nodes: np.ndarray,

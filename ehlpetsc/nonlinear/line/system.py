@@ -28,7 +28,7 @@ from ehlpetsc.nonlinear.two_fields import ZERO_TOLERANCE, Matrices, TwoFields
 from ehlpetsc.physics.scales import Scales
 
 
-class Factors:
+class LineFactors:
     """Factors of one scene, kept from one matrix to the next.
 
     PETSc creates a new preconditioner whenever the contact set changes.
@@ -92,7 +92,7 @@ class LineMatrices(Matrices):
     """
 
     exchange: LineExchange
-    factors: Factors | None = None
+    factors: LineFactors | None = None
 
     def __init__(self, problem: EHLProblem, exchange: LineExchange, ranks: MPI.Comm, near_field: int):
         super().__init__(problem, exchange, ranks)
@@ -101,7 +101,7 @@ class LineMatrices(Matrices):
     def jacobian(self, ksp: PETSc.KSP) -> JacobianOperator:
         """See :class:`.two_fields.Matrices`."""
         is_ours = ksp.pc.getType() == "python" and isinstance(ksp.pc.getPythonContext(), FarFieldBand)
-        self.factors = Factors(self.problem, self.ranks) if is_ours else None
+        self.factors = LineFactors(self.problem, self.ranks) if is_ours else None
         return JacobianOperator(self.problem, self.exchange.linear, self.ranks, self.factors)
 
     def assembled(self, ksp: PETSc.KSP, sizes: tuple) -> NearFieldMatrix | None:

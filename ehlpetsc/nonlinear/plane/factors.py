@@ -47,7 +47,7 @@ class IncompleteLU:
 
     def factor(self) -> None:
         """Factor the blocks in place."""
-        eliminate(self.padded, self.n_x)
+        factor_rows(self.padded, self.n_x)
 
     def solve(self) -> np.ndarray:
         """Unknowns of the nodes, (nodes, 2), for the right-hand side `b`, which they replace."""
@@ -84,7 +84,7 @@ def less(o: tuple, p: tuple, q: tuple) -> tuple:
 
 
 @compiled
-def eliminate(blocks: np.ndarray, n_x: int) -> None:
+def factor_rows(blocks: np.ndarray, n_x: int) -> None:
     """Factor rows of blocks behind n_x rows of zeros, shape (n_x + nodes, 9, 2, 2), in place.
 
     Row i less its blocks of the rows to the left of the diagonal times these; on the diagonal the inverse.

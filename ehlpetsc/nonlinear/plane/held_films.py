@@ -177,7 +177,7 @@ def solution(
             for k in range(size):
                 at[order[k]] = UNSEEN
             size = numbered(order[size - 1], beside, count, order, at)  # from one end
-            eliminate(order[:size], at, near, by, rows, solved)
+            solve_band(order[:size], at, near, by, rows, solved)
     return solved
 
 
@@ -216,7 +216,7 @@ def numbered(cell: int, beside: np.ndarray, count: np.ndarray, order: np.ndarray
 
 
 @compiled
-def eliminate(
+def solve_band(
     order: np.ndarray, at: np.ndarray, near: np.ndarray, by: np.ndarray, rows: np.ndarray, solved: np.ndarray
 ) -> None:
     """Fill in the solution of the cells of an island; of one that is too large no change."""

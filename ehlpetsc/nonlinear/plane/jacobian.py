@@ -26,7 +26,7 @@ class KnownDeflection(NamedTuple):
     forces: np.ndarray
 
 
-class Elimination(Protocol):
+class FilmElimination(Protocol):
     """Elimination of the film for the preconditioner, kept between solves."""
 
     def prepare(self, operator: PlaneJacobian) -> None:
@@ -55,7 +55,7 @@ class PlaneJacobian(Jacobian):
         problem: EHLProblem,
         exchange: PlaneExchange,
         ranks: MPI.Comm,
-        elimination: Elimination,
+        elimination: FilmElimination,
         linear_rtol: float,
     ):
         super().__init__(problem, exchange, ranks)

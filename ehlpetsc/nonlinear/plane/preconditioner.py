@@ -31,7 +31,7 @@ from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.plane.factors import OVERLAP, CompleteLU, IncompleteLU
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, reduction_of, unknowns_of
-from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fitted_term, put, taken
+from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fill_right_side, fitted_term, taken
 from ehlpetsc.nonlinear.ranks import global_sum
 
 # relative tolerance of GMRES from which on its deflections and factors are of single precision, 1e-7; a stiff
@@ -135,13 +135,13 @@ class SparseForm:
         scales, rows = (deflection.cell, deflection.row_scale), (reynolds, separation)
         if not self.is_complete:
             rows = tuple(self._at_hand(rows))
-        put(*self.of_factors, scales, rows, factors.b)
+        fill_right_side(*self.of_factors, scales, rows, factors.b)
         u = self.exchange.window(factors.solve()) if self.is_complete else factors.solve()
         of_nodes, own = (self.kind, self.p_s, self.term), (self.n_x, self.own.start)
         return taken(*of_nodes, self.problem.grid.increments, separation, u, own)
 
 
-class Factors(NamedTuple):
+class PlaneFactors(NamedTuple):
     """Sparse form and coarse correction (None: no use) of one state; solutions for units of the border."""
 
     sparse: SparseForm
@@ -165,8 +165,8 @@ class Elimination:
         self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again
-        self.factors: Factors | None = None
-        self.kept: Factors | None = None
+        self.factors: PlaneFactors | None = None
+        self.kept: PlaneFactors | None = None
 
     def begin_solve(self) -> None:
         """Return to the kept factors, or to none."""
@@ -220,11 +220,11 @@ class Elimination:
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
             coarse = CoarseCorrection(self.coarse_space, sparse.by, mask, p.share, self.ranks)
-        self.factors = Factors(sparse, coarse)
+        self.factors = PlaneFactors(sparse, coarse)
         gaps = (np.full(p.local, p.balance.gap(unit, p.share.local)) for unit in np.eye(p.balance.unknowns))
         of_border = [self._pressures(operator, np.zeros(p.local), gap) for gap in gaps]
         of_border = [(by_p, by_r, global_sum(self.ranks, forces)) for by_p, by_r, forces in of_border]
-        self.factors = Factors(sparse, coarse, of_border)
+        self.factors = PlaneFactors(sparse, coarse, of_border)
         is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
         if is_broken and not is_complete:
             self._build(operator, with_coarse, is_complete=True)

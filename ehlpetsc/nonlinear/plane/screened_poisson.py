@@ -42,7 +42,7 @@ def fitted_term(stiffness: float, spacings: Sequence[float], kernel: Kernel) -> 
 
 
 @compiled
-def put(
+def fill_right_side(
     kind: np.ndarray, p_s: np.ndarray, scales: tuple, rows: tuple[np.ndarray, np.ndarray], b: np.ndarray
 ) -> None:
     """Fill in the right-hand side, shape (nodes, 2).
@@ -66,7 +66,7 @@ def taken(
     u: np.ndarray,
     own: tuple,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pressures and Reynolds unknowns of a solution of the right-hand side by :func:`put`.
+    """Pressures and Reynolds unknowns of a solution of the right-hand side by :func:`fill_right_side`.
 
     `term`: c, square of s. `spacings`: dy, dx.
     `u`: solution at the nodes of the rank and in rows beyond. `own`: nodes in a row; first node of the rank.
