@@ -6,6 +6,7 @@ import pytest
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
 from ehlpetsc.elasticity import kernels
 from ehlpetsc.elasticity.bodies import Bodies
+from ehlpetsc.elasticity.half_plane import curvature_kernel, deflection_kernel
 from ehlpetsc.elasticity.half_space import free_kernel
 from ehlpetsc.elasticity.images import images
 from ehlpetsc.elasticity.kernel import Kernel, Mesh
@@ -21,6 +22,17 @@ class Contact:
 
 
 BODIES = Bodies.of(Contact)
+
+
+def test_kernels_of_a_line_are_the_integral_of_the_hat_near_and_far():
+    """By Gauss points on either side of its middle; the asymptotic series begin at 40 nodes."""
+    points, weights = np.polynomial.legendre.leggauss(24)
+    t = np.concatenate([0.5 * (points - 1.0), 0.5 * (points + 1.0)])
+    hat = np.tile(0.5 * weights, 2) * (1.0 - np.abs(t))
+    k = np.arange(3.0, 200.0)[:, None]
+    np.testing.assert_allclose(deflection_kernel(200)[3:], -np.log(k - t) @ hat, rtol=0, atol=2e-14)
+    curvature = -np.log1p(-1.0 / (k - t) ** 2) @ hat
+    np.testing.assert_allclose(curvature_kernel(200)[3:], curvature, rtol=2e-10, atol=0)
 
 
 def test_images_are_the_pressures_mirrored_about_both_end_planes():
