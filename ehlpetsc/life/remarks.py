@@ -77,9 +77,9 @@ def limits(life: LifeHistory) -> Iterator[str]:
 
 def wear_lines(life: LifeHistory, case: Case) -> Iterator[str]:
     """Lines on the wear rates of a life: of the load of the solids and of the whole load; limiting ones."""
-    if not life.rows or case.wear is None:
+    share = life.rows[0]["contact_share"] if life.rows else 0.0
+    if case.wear is None or not share:  # nothing is worn where the solids carry nothing
         return
-    share = life.rows[0]["contact_share"]
     of_solids = case.wear.coefficient or [k / share for k in case.wear.load_coefficient]
     for k, coefficient in enumerate(of_solids, 1):
         yield (
