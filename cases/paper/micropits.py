@@ -1,137 +1,48 @@
-"""Damage of rough strips by ensembles: the table and the picture of `cases/micropitting.md`.
+"""Damage of asperities by ensembles of rough strips: the tables and the picture of `cases/micropitting.md`.
 
 ``ehlpetsc python cases/paper/micropits.py FOLDER [SCENE ...] [--store] [-o PICTURE]`` computes one pass of
 each seed of the scenes, by default of all, skips lives that are in the folder, and prints shares of the
-surface with D above 0.1, which ``--store`` writes to `data/micropits.csv`. With the scene `first` it draws
-the signs of the chosen ones. Under mpirun ranks share the lives.
+surface that asperities damage and passes to the first failures, which ``--store`` writes to
+`data/micropits.csv`. With the scene `first` it draws the signs of the chosen ones. Under mpirun ranks share
+the lives.
 """
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import measured_data
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from micropit_scenes import COMMON, PASSES, RING_PASSES, SCENES, SEEDS
 
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.ensemble import read_lives
 from ehlpetsc.life.history import LifeHistory
+from ehlpetsc.life.laws import regions
 from ehlpetsc.pictures import style
 from ehlpetsc.results.means import bootstrap_bounds
-from ehlpetsc.results.post_result import DAMAGED
+from ehlpetsc.results.post_result import DAMAGED, is_damaged
 
 CASE = Path(__file__).parent.parent / "micropitting.toml"
-PASSES, RING_PASSES = 1.5e7, 720e3  # of which shares are: of the scene, of the tests of rings
 FILE = "micropits.csv"
-COLUMNS = ("scene", "seeds", *(f"{name}_{side}" for side in "12" for name in ("share", "low", "high")))
-COMMON = {
-    "life.max_solved": 1,
-    "life.damage_jump": 1.0,
-    "mesh.width": 1.0,
-    "mesh.points_per_half_width": 16,
-    "wear.coefficient": 1e-19,
-}
-SEEDS = "surface.1.synthetic.seed", "surface.2.synthetic.seed"
-
-
-class Scene(NamedTuple):
-    """Label, settings beside `COMMON`, seeds of surface 1; surface 2 has seeds 1000 above."""
-
-    label: str
-    settings: dict[str, Any] = {}
-    seeds: tuple[int, ...] = (1, 2, 3)
-    passes: float = PASSES
-
-
-def bearing(radius: float, viscosity: float, speed: float, ratio: float) -> dict[str, Any]:
-    """Settings of a roller on an inner ring at 1.5 GPa [m, Pa s, m/s]."""
-    pressure, modulus = 1.5e9, 226.37e9
-    return {
-        "contact.radius": radius,
-        "contact.load": 2.0 * np.pi * radius * pressure**2 / modulus,
-        "fluid.viscosity": viscosity,
-        "fluid.pressure_viscosity": 20.8e-9,
-        "fluid.eyring_stress": 3e6,
-        "motion.entrainment_speed": speed,
-        "motion.slide_roll_ratio": ratio,
-        "mesh.width": 1.25,
-    }
-
-
-def pair(rq_1: float, rq_2: float) -> Scene:
-    """Rings NU 209 of these roughnesses [um], of the spectrum of the scene, 1 m/s, 0.0094 Pa s."""
-    waves = {"kind": "self-affine", "hurst": 0.8, "roll_off": 150e-6, "short_cutoff": 90e-6, "seed": 0}
-    surfaces = {f"surface.{k}.synthetic": waves | {"sq": 1e-6 * rq} for k, rq in enumerate((rq_1, rq_2), 1)}
-    settings = bearing(4.576e-3, 0.0094, 1.0, 0.02) | surfaces
-    if rq_1 + rq_2 > 0.5:  # solids touch beyond the smooth contact
-        settings |= {"mesh.inlet": -2.6, "mesh.outlet": 2.2, "time.travel": 10.0}
-    return Scene(f"{rq_1:g} on {rq_2:g} µm", settings, passes=RING_PASSES)
-
-
-def skewed(celsius: int, viscosity: float) -> Scene:
-    """Rings NU 211: skewed surfaces, VG 68 at a temperature [Pa s]."""
-    surfaces = {
-        f"surface.{k}.synthetic": {
-            "kind": "ground",
-            "ra": ra,
-            "correlation": 40e-6,
-            "correlation_across": 40e-6,
-            "skewness": skewness,
-            "seed": 0,
-        }
-        for k, (ra, skewness) in enumerate(((0.26e-6, -1.17), (0.0575e-6, 1.21)), 1)
-    }
-    return Scene(f"{celsius} °C", bearing(5.077e-3, viscosity, 2.24, 0.015) | surfaces)
-
-
-SCENES = {
-    "first": Scene("ten seeds", seeds=tuple(range(1, 11))),
-    "second": Scene("ten others", seeds=tuple(range(11, 21))),
-    "fine": Scene("a/24", {"mesh.points_per_half_width": 24}, (1, 2, 3, 4, 5)),
-    "wide": Scene("width 2 a", {"mesh.width": 2.0}),
-    "long": Scene("travel 16 a", {"time.travel": 16.0}),
-    "rolling": Scene("0.02", {"motion.slide_roll_ratio": 0.02}),
-    "thin": Scene("0.3", {"motion.entrainment_speed": 0.43}),
-    "thick": Scene("3", {"motion.entrainment_speed": 13.5}),
-    "pair_1": pair(0.05, 0.26),
-    "pair_2": pair(0.05, 1.0),
-    "pair_3": pair(0.5, 0.05),
-    "pair_4": pair(0.5, 0.5),
-    "cold": skewed(66, 0.0192),
-    "warm": skewed(73, 0.0151),
-    "hot": skewed(98, 0.0074),
-    "transverse": Scene("across", {"surface.1.synthetic.peklenik": 0.25}),
-    "along": Scene(
-        "along",
-        {
-            "surface.1.synthetic.peklenik": 4.0,
-            "surface.1.synthetic.roll_off": 600e-6,
-            "surface.1.synthetic.short_cutoff": 360e-6,
-        },
-    ),
-    "ridges": Scene("ridges", {"mesh.width": None}),
-}
+SHARES = tuple(f"{name}_{side}" for side in "12" for name in ("share", "low", "high"))
+COLUMNS = ("scene", "seeds", *SHARES, "life_1", "life_2", "smooth_life", "smooth_depth")
 SCENE = "scene"  # the first seeds of the scene, of as many as are compared with them
-SHORT = {"mesh.points_per_half_width": 8, "time.travel": 5.0}
+SHORT = {"mesh.points_per_half_width": 10, "time.travel": 4.6}
 SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is drawn over depth
-    "1. rough and smooth surface: the smooth one is damaged more": (
-        "first",
-        "second",
-        "wide",
-        "long",
-        "fine",
-    ),
-    "2. slide/roll ratio: worst at 0.01 to 0.02": ("rolling", SCENE),
-    "3. lambda: worst near 1.1": ("thin", SCENE, "thick"),
+    "1. the smooth body (2) is damaged more, the more the contact slides": (SCENE, "reversed"),
+    "2. slide/roll ratio": ("rolling", SCENE),
+    "3. lambda: worst near 1, nothing at 3": ("thin", SCENE, "thick"),
     "4. Rq of rings NU 209: 0.05 on 1.0 µm alone pits": ("pair_1", "pair_2", "pair_3", "pair_4"),
     "5. temperature of NU 211: worst at 73 °C": ("cold", "warm", "hot"),
-    "7. lay: changes the area": ("transverse", SCENE, "along", "ridges"),
+    "7. lay: changes the area": ("transverse", SCENE, "along"),
 }
-SCENE_LABELS = {"2": "0.25", "3": "0.84", "7": "isotropic"}  # of a sign's number
+SCENE_LABELS = {"1": "0.25", "2": "0.25", "3": "0.97", "7": "isotropic"}  # of a sign's number
+COMPARED = "second", "smoother", "fine", "wide", "long", "drift", "mises", "full"
 Ensembles = dict[str, list[LifeHistory]]
 
 
@@ -155,42 +66,90 @@ def compute(name: str, folder: Path, is_short: bool = False) -> list[LifeHistory
     return next(iter(read_lives(index).values()))
 
 
-def share(body: LifeBody, passes: float) -> float:
-    """Share of the columns with a damaged cell after equal passes without wear."""
-    return float((passes * body.damage_rate.max(axis=0) > DAMAGED).mean())
+def share(body: LifeBody, passes: float, deepest: float = np.inf) -> float:
+    """Share of the columns that asperities damage in cells down to a depth [m], after passes without wear."""
+    cells = body.edges[1:] <= deepest
+    damage, smooth = passes * body.damage_rate[cells], passes * body.smooth_rate[cells, None, None]
+    return float(is_damaged(damage, smooth).any(axis=0).mean())
 
 
-def shares(lives: list[LifeHistory], passes: float) -> np.ndarray:
+def shares(lives: list[LifeHistory], passes: float, deepest: float = np.inf) -> np.ndarray:
     """Shares of both surfaces of each life, shape (2, lives)."""
-    return np.array([[share(body, passes) for body in life.bodies[-1]] for life in lives]).T
+    return np.array([[share(body, passes, deepest) for body in life.bodies[-1]] for life in lives]).T
+
+
+def first_failures(lives: list[LifeHistory]) -> np.ndarray:
+    """Passes to D = 1 at the worst point of both surfaces, geometric means over the lives, shape (2,)."""
+    worst = np.array([[body.damage_rate.max() for body in life.bodies[-1]] for life in lives])
+    with np.errstate(divide="ignore"):
+        return 1.0 / np.exp(np.log(worst).mean(axis=0))
+
+
+def percentages(values: np.ndarray) -> str:
+    """Mean of shares with its bounds."""
+    form = "{:.1f} % ({:.1f} to {:.1f})" if len(values) > 1 else "{:.1f} %"
+    return form.format(*100 * statistics(values))
+
+
+def spot_widths(lives: list[LifeHistory], passes: float) -> np.ndarray:
+    """Diameters of circles of the area of damaged spots of both surfaces [m]."""
+    found = []
+    for body in (body for life in lives for body in life.bodies[-1]):
+        damage, smooth = passes * body.damage_rate, passes * body.smooth_rate[:, None, None]
+        numbers, count = regions(is_damaged(damage, smooth).any(axis=0), True)
+        cells = np.bincount(numbers.ravel(), minlength=count + 1)[1:]
+        found.append(np.sqrt(4.0 / np.pi * cells * np.prod(body.widths)))
+    return np.concatenate(found)
 
 
 def lines(ensembles: Ensembles) -> list[str]:
-    """Table: means with their bounds (90 %), and, over the same seeds of the scene, their ratio."""
+    """Shares with their bounds (90 %), first failures, and ratios to the same seeds of the scene."""
     found = []
     for name, lives in ensembles.items():
-        scene = SCENES[name]
-        values = shares(lives, scene.passes)
-        text = ["{:.1f} % ({:.1f} to {:.1f})".format(*100 * statistics(one)) for one in values]
-        last = [life.rows[-1] for life in lives]
+        scene, last = SCENES[name], [life.rows[-1] for life in lives]
+        values, failures = shares(lives, scene.passes), first_failures(lives)
+        text = [f"surface {k}: {percentages(one)}" for k, one in enumerate(values, 1)]
         friction, pressure = (np.mean([row[key] for row in last]) for key in ("friction", "p_max"))
-        line = f"{name}, {scene.label}, {len(lives)} seeds: surface 1 {text[0]}, surface 2 {text[1]}"
-        if name in ("second", "fine", "wide", "long") and "first" in ensembles:
-            paired = len(lives) if name == "fine" else None  # same seeds, same surfaces
-            reference = shares(ensembles["first"][:paired], PASSES).mean(axis=1)
-            line += ", {:+.1f} and {:+.1f} % of the first".format(
-                *100 * (values.mean(axis=1) / reference - 1)
+        line = f"{name}, {scene.label}, {len(lives)} seeds: {', '.join(text)}"
+        line += "; first failure after {:.3g} and {:.3g} passes".format(*failures)
+        line += f", smooth contact {last[0]['smooth_life_1']:.3g}"
+        line += f"; friction {friction:.4f}, {pressure / 1e9:.2f} GPa"
+        if name in COMPARED and "first" in ensembles:
+            reference = ensembles["first"][: None if name == "second" else len(lives)]
+            before = shares(reference, PASSES).mean(axis=1), first_failures(reference)
+            line += "; over the first {:.2f} and {:.2f}, failures {:.2f} and {:.2f}".format(
+                *values.mean(axis=1) / before[0], *failures / before[1]
             )
-        found.append(f"{line}; friction {friction:.4f}, {pressure / 1e9:.2f} GPa")
-    return found
+        found.append(line)
+    return found + (of_limits(ensembles["first"]) if "first" in ensembles else [])
+
+
+def of_limits(lives: list[LifeHistory]) -> list[str]:
+    """Shares of the scene by other depths, and after other passes, or by other thresholds of D."""
+    found = []
+    for text, passes, deepest in (
+        (f"D above {2 * DAMAGED:g}, or half the passes", 0.5 * PASSES, np.inf),
+        (f"D above {0.5 * DAMAGED:g}, or twice the passes", 2.0 * PASSES, np.inf),
+        ("down to 6 µm", PASSES, 6e-6),
+        ("down to 4 µm", PASSES, 4e-6),
+        ("down to 2 µm", PASSES, 2e-6),
+    ):
+        values = shares(lives, passes, deepest)
+        found.append(f"first, {text}: surface 1 {percentages(values[0])}, surface 2 {percentages(values[1])}")
+    widths = 1e6 * np.quantile(spot_widths(lives, 0.3 * PASSES), (0.1, 0.5, 0.9))
+    spots = "first, damaged spots after {:.0e} passes: {:.0f} to {:.0f} µm wide, half of them below {:.0f}"
+    return [*found, spots.format(0.3 * PASSES, widths[0], widths[2], widths[1])]
 
 
 def store(ensembles: Ensembles) -> None:
-    """Write means and bounds of the shares, as percentages, to `FILE`."""
+    """Write shares, as percentages, and passes to the first failures to `FILE`."""
     rows = []
     for name, lives in ensembles.items():
         values = [100 * statistics(one) for one in shares(lives, SCENES[name].passes)]
-        rows.append((name, len(lives), *(f"{value:.1f}" for value in np.ravel(values))))
+        row = lives[0].rows[-1]
+        ends = [*first_failures(lives), row["smooth_life_1"], row["smooth_depth_1"]]
+        texts = [*(f"{value:.1f}" for value in np.ravel(values)), *(f"{value:.3g}" for value in ends)]
+        rows.append((name, len(lives), *texts))
     columns = (map(str, column) for column in zip(*rows, strict=True))
     measured_data.store(FILE, **dict(zip(COLUMNS, columns, strict=True)))
 
@@ -200,45 +159,52 @@ def statistics(values: np.ndarray) -> np.ndarray:
     return np.array([values.mean(), *bootstrap_bounds(values)])
 
 
-def bars(axes: Axes, labels: list[str], values: list[np.ndarray]) -> None:
-    """Shares of both surfaces with bounds, one below the other."""
+def bars(axes: Axes, labels: list[str], values: list[np.ndarray], limited: list[np.ndarray | None]) -> None:
+    """Shares of both surfaces with bounds, one below the other; diamonds with a limiting shear stress."""
     for k, side in enumerate("12"):
         mean, low, high = 100 * np.array([statistics(one[k]) for one in values]).T
         at = np.arange(len(labels)) + 0.4 * k - 0.2
         axes.barh(at, mean, 0.38, color=style.SURFACES[side])
         axes.errorbar(mean, at, xerr=(mean - low, high - mean), fmt="none", color=style.DARK, lw=1, capsize=2)
+        for place, one in zip(at, limited, strict=True):
+            if one is not None:
+                axes.plot(100 * one[k].mean(), place, "D", ms=5, mfc="w", mec=style.DARK)
     axes.set_yticks(range(len(labels)), labels, fontsize="small")
     axes.set_ylim(len(labels) - 0.5, -0.5)
 
 
 def draw(ensembles: Ensembles) -> Figure:
-    """Row of each sign, over one axis of shares; beside them the damage over depth."""
-    figure = Figure(figsize=(10.0, 8.5), layout="constrained")
+    """Row of each sign with a computed scene of its own, over one axis of shares; damage over depth."""
+    signs = {title: names for title, names in SIGNS.items() if ensembles.keys() & {*names}}
+    signs = signs or dict(list(SIGNS.items())[:1])
+    figure = Figure(figsize=(10.0, 1.5 + 1.3 * len(signs)), layout="constrained")
     grid = figure.add_gridspec(
-        len(SIGNS), 2, width_ratios=(2, 1), height_ratios=[1 + len(names) for names in SIGNS.values()]
+        len(signs), 2, width_ratios=(2, 1), height_ratios=[1 + len(names) for names in signs.values()]
     )
     first = None
-    for row, (title, names) in enumerate(SIGNS.items()):
+    for row, (title, names) in enumerate(signs.items()):
         axes = figure.add_subplot(grid[row, 0], sharex=first)
-        first, labels, values = first or axes, [], []
+        first, labels, values, limited = first or axes, [], [], []
         for name in (name for name in names if name in (SCENE, *ensembles)):
-            lives = ensembles["first"][:3] if name == SCENE else ensembles[name]
-            passes = PASSES if name == SCENE else SCENES[name].passes
+            ensemble = "first" if name == SCENE else name
             labels.append(SCENE_LABELS[title[0]] if name == SCENE else SCENES[name].label)
-            values.append(shares(lives, passes))
-        if values:
-            bars(axes, labels, values)
+            values.append(shares(ensembles[ensemble][:3], SCENES[ensemble].passes))
+            other = ensembles.get(f"{ensemble}_limited")
+            limited.append(other and shares(other, SCENES[ensemble].passes))
+        bars(axes, labels, values, limited)
         axes.set_title(title, fontsize="medium", loc="left")
-        axes.tick_params(labelbottom=row == len(SIGNS) - 1)
-    axes.set_xlabel("damaged share [%]")
+        axes.tick_params(labelbottom=row == len(signs) - 1)
+    axes.set_xlabel(f"share with D > {DAMAGED:g}, of which the smooth contact has less than a tenth [%]")
     over_depth(figure.add_subplot(grid[:, 1]), ensembles["first"])
-    ends = f"{PASSES:,.0f} passes (4: {RING_PASSES:,.0f})"
-    style.set_title(figure, f"Surface with D above {DAMAGED:g} to 20 µm deep after {ends}; bounds of 90 %")
+    title = f"Surface damaged by asperities after {PASSES:,.0f} passes (4: {RING_PASSES:,.0f})"
+    if any(name.endswith("_limited") for name in ensembles):
+        title += "; diamonds: shear stress to 0.054 p"
+    style.set_title(figure, title)
     return figure
 
 
 def over_depth(axes: Axes, lives: list[LifeHistory]) -> None:
-    """Damage that 1 % of the surface exceeds in a pass, at each depth."""
+    """Damage that 1 % of the surface exceeds in a pass at each depth, and that of the smooth contact."""
     for k, side in enumerate("12"):
         bodies = [life.bodies[-1][k] for life in lives]
         edges = 1e6 * bodies[0].edges
@@ -246,10 +212,11 @@ def over_depth(axes: Axes, lives: list[LifeHistory]) -> None:
         middles, mean = 0.5 * (edges[1:] + edges[:-1]), values.mean(axis=0)
         shown, color = mean > 0, style.SURFACES[side]
         axes.semilogx(mean[shown], middles[shown], ".-", color=color, label=f"surface {side}")
+    axes.semilogx(bodies[0].smooth_rate, middles, "--", color=style.SINGLE, label="smooth contact")
     axes.axhspan(3.0, 4.0, color=style.FAINT, alpha=0.5)
-    axes.set(ylabel="depth [µm]", xlabel="D of a pass, 1 % of surface")
+    axes.set(ylabel="depth [µm]", xlabel="D of a pass, 1 % of surface", xlim=(1e-10, None))
     axes.invert_yaxis()
-    axes.legend(loc="upper right")
+    axes.legend(loc=(0.03, 0.7), fontsize="small")
     axes.set_title("6. depth: published peak at 3 to 4 µm", fontsize="medium", loc="left")
 
 

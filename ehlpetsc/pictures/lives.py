@@ -12,7 +12,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure, FigureBase
 
 from ehlpetsc.pictures import style
-from ehlpetsc.results.post_result import DAMAGED
 
 if TYPE_CHECKING:
     from ehlpetsc.life.history import LifeBody, LifeHistory
@@ -21,7 +20,7 @@ Bands = dict[str, tuple[np.ndarray, np.ndarray]]
 SHOWN_INSTANTS = 3  # instants of the life
 SHOWN_DAMAGE = 0.1  # of the maximum: cells with as much are within the picture
 PANELS = (  # over the passes: figure, label, factor
-    ("damaged_share", f"share with D > {DAMAGED:g} by asperities", 1.0),
+    ("damaged_share", "damaged share", 1.0),
     ("pitted_share", "pitted share", 1.0),
     ("wear_volume", "worn [µm²]", 1e12),
     ("friction", "friction", 1.0),

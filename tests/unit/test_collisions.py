@@ -111,12 +111,12 @@ def test_short_form_computes_once_prints_shares_and_draws(tmp_path, capsys, monk
     stamps = [file.stat().st_mtime_ns for file in files]
     monkeypatch.setattr(micropits.style, "save", lambda *_: None)  # drawn by now
     micropits.main(words)
-    assert capsys.readouterr().out == first and "first, ten seeds, 2 seeds: surface 1 " in first
+    assert capsys.readouterr().out == first and "first, three seeds, 2 seeds: surface 1: " in first
     assert [file.stat().st_mtime_ns for file in files] == stamps and len(files) == 2
     assert (tmp_path / "signs.png").stat().st_size > 10_000
     lives = [read_life(file) for file in files]
     early, late = (micropits.shares(lives, passes) for passes in (0.3 * micropits.PASSES, micropits.PASSES))
-    assert (early[1] > early[0]).all() and (late > early).all()
+    assert (late >= early).all() and late.sum() > early.sum() > 0.0
     with pytest.raises(SystemExit):
         micropits.main([str(tmp_path), "frist"])
     assert "scene frist; allowed: first, second" in capsys.readouterr().err
