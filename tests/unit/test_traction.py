@@ -15,7 +15,7 @@ from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.shape import CYLINDER
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.physics.traction import benedict_kelley, hoehn_michaelis, shear_stresses, xu_kahraman
-from ehlpetsc.stepping.observables import diagnostics, mean_film
+from ehlpetsc.stepping.observables import Observation, diagnostics, mean_film
 from ehlpetsc.stepping.state import State
 
 CASE = Path(__file__).parents[2] / "cases" / "table1_smooth.toml"
@@ -184,3 +184,16 @@ def test_published_correlations_by_hand():
     assert benedict_kelley(LOAD, 1.0, SUM_SPEED, VISCOSITY, 0.0) == pytest.approx(expected, rel=1e-4)
     rough = benedict_kelley(LOAD, 1.0, SUM_SPEED, VISCOSITY, RA)
     assert rough == pytest.approx(expected * 1.13 / 0.88, rel=1e-4)
+
+
+@pytest.mark.parametrize("film, reference", [(2e-7, 2e-7), (0.0, 1e-10), (5e-11, 1e-10)])
+def test_mass_defect_is_related_to_the_oil_in_the_contact_or_to_a_film_of_an_atom(film, reference):
+    """Of two rows; the node of the inlet has no balance."""
+    h, residual, mass = 4e-6, np.array([9.0, 0.1, -0.2, 9.0, 0.0, 0.3]), np.full(6, film / 4e-6)
+    grid = SimpleNamespace(
+        rows=lambda values: values.reshape(2, 3), inside=lambda size: np.arange(6) % 3 == 1, breadth=2.0
+    )
+    problem = SimpleNamespace(fluid="oil", film_scale=1e-3, grid=grid, scales=SimpleNamespace(h=h))
+    solution = SimpleNamespace(residual=residual, mass=mass)
+    of = SimpleNamespace(problem=problem, state=SimpleNamespace(solution=solution), size=1.0)
+    assert Observation.mass_error.fget(of) == pytest.approx(1e-3 * 0.6 / (reference / h * 2.0), rel=1e-12)

@@ -1,0 +1,57 @@
+"""Attempts of a steady start, what they have cost, and oil at rest beside a gap that it does not fill."""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import petsc4py
+import pytest
+
+petsc4py.init([])
+
+from ehlpetsc.base.errors import NoSteadyStart, SolveFailed
+from ehlpetsc.discretisation.unknowns import Unknowns
+from ehlpetsc.stepping import convergence_check, steady_start
+
+
+@dataclass
+class Inputs:
+    """Inputs of a solve of oil at rest."""
+
+    inlet_film: float | None
+    rests: bool = True
+
+
+def test_attempts_that_fail_and_succeed_count_their_iterations(monkeypatch):
+    outcomes = iter([SolveFailed("SNES", "DIVERGED", 7), ("solved", 5), SolveFailed("SNES", "DIVERGED", 11)])
+
+    def solved(*_):
+        if isinstance(found := next(outcomes), SolveFailed):
+            raise found
+        return found
+
+    monkeypatch.setattr(steady_start, "solve_checked", solved)
+    monkeypatch.setattr(steady_start, "MAX_ATTEMPTS", 3)
+    solver = SimpleNamespace(start_iterations=lambda most: most)
+    attempts = steady_start.SolveAttempts(solver, 20, None, 2)
+    assert [attempts(None, None) for _ in range(3)] == [None, "solved", None]
+    assert attempts.spent == 2 + 7 + 5 + 11
+    with pytest.raises(NoSteadyStart, match="3 attempts and 25 Newton iterations; the last .* after 11"):
+        attempts(None, None)
+
+
+def test_gap_beyond_the_oil_at_rest_is_void(monkeypatch):
+    """The oil of an inlet film of 2 fills half of a gap of 4; the solve itself is of a flooded contact."""
+    seen, given = [], Unknowns(np.array([0.3, 0.1, -0.2]), np.array([1.0, 2.0, 4.0]), np.zeros(1))
+
+    def solve(guess, inputs, **_):
+        seen.append((guess.q.min(), inputs.inlet_film))
+        return given._replace(q=np.array([0.5, 0.0, 0.0])), 4
+
+    model = SimpleNamespace(state=lambda q, w: SimpleNamespace(film=w))
+    solver = SimpleNamespace(problem=SimpleNamespace(model=model), solve=solve, residual=None, tolerance=1.0)
+    solver.residual = lambda: None
+    monkeypatch.setattr(convergence_check, "find_fault", lambda *_: None)
+    solution, iterations = convergence_check.solve_checked(solver, given, Inputs(2.0), 20, None)
+    np.testing.assert_allclose(solution.q, [0.5, 0.0, -0.5])
+    assert seen == [(0.0, None)] and iterations == 4
