@@ -5,6 +5,7 @@ imports only what it needs, and names the packages that are missing.
 """
 
 import difflib
+import gc
 import importlib
 import os
 import shutil
@@ -68,7 +69,19 @@ def main(words: list[str] | None = None) -> int:
         if mpi and mpi.COMM_WORLD.size > 1:
             mpi.COMM_WORLD.Abort(status)
     signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # run_mpi.sh may repeat it while Python ends
+    _leave_nothing_to_one_rank()
     return status
+
+
+def _leave_nothing_to_one_rank() -> None:
+    """Collect garbage on all ranks.
+
+    An error leaves PETSc's objects in cycles, which each rank would collect at another time. The end of PETSc
+    is collective and waits for ever where one rank has objects left and another has none.
+    """
+    mpi = sys.modules.get("mpi4py.MPI")
+    if mpi and mpi.COMM_WORLD.size > 1:
+        gc.collect()
 
 
 def _start(words: list[str]) -> int:

@@ -85,9 +85,12 @@ def test_killed_run_restarts_from_its_last_checkpoint(whole, tmp_path):
     assert [p.name for p in tmp_path.iterdir() if p.name.startswith(".tmp")] == []
 
 
-@pytest.mark.parametrize("case", [CASE, BALL], ids=["line", "point"])
-def test_time_limit_writes_a_restart_file(tmp_path, case):
-    done = run(*case, "--time-limit", "100", cwd=tmp_path, tampered=("late", 0, 5))
+@pytest.mark.parametrize(
+    "case, ranks", [(CASE, 0), (BALL, 0), (CASE, 2)], ids=["line", "point", "line on two ranks"]
+)
+def test_time_limit_writes_a_restart_file(tmp_path, case, ranks):
+    late = "late", max(ranks - 1, 0), 5
+    done = run(*case, "--time-limit", "100", cwd=tmp_path, ranks=ranks, tampered=late)
     assert done.returncode == 4
     # the limit is long over in step 5, which is not waited for
     assert last_step(tmp_path / f"{case[0].stem}.h5") == (4, "stopped")

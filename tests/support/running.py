@@ -13,6 +13,8 @@ from support import ROOT
 from support.prepared import Prepared
 
 PYTHON = sys.executable
+BESIDE = Path(PYTHON).with_name("mpirun")  # of a virtual environment with an MPI of its own
+MPIRUN = str(BESIDE) if BESIDE.exists() else "mpirun"
 MAIN = str(ROOT / "ehlpetsc" / "__main__.py")
 TAMPERED = str(Path(__file__).with_name("tampered.py"))
 environment.prepare()
@@ -61,7 +63,7 @@ def settings(*overrides):
 def command(*words, ranks=0, tampered=()):
     """The command line; with `ranks` under mpirun, with `tampered` words through tampered.py."""
     program = [TAMPERED, *map(str, tampered)] if tampered else ["-m", "ehlpetsc"]
-    mpirun = ["mpirun", "-n", str(ranks)] if ranks else []
+    mpirun = [MPIRUN, "-n", str(ranks)] if ranks else []
     return [*mpirun, PYTHON, *program, *map(str, words)]
 
 

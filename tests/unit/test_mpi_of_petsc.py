@@ -2,6 +2,7 @@
 
 import os
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -45,7 +46,8 @@ def installed(tmp_path, monkeypatch):
 
         monkeypatch.setattr("ctypes.CDLL", load)
         if in_use:
-            monkeypatch.setitem(sys.modules, "mpi4py.MPI", np)
+            mpi = SimpleNamespace(COMM_WORLD=SimpleNamespace(size=1))
+            monkeypatch.setitem(sys.modules, "mpi4py.MPI", mpi)
         return loaded
 
     return install
