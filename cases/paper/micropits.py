@@ -32,7 +32,7 @@ FILE = "micropits.csv"
 SHARES = tuple(f"{name}_{side}" for side in "12" for name in ("share", "low", "high"))
 COLUMNS = ("scene", "seeds", *SHARES, "life_1", "life_2", "smooth_life", "smooth_depth")
 SCENE = "scene"  # the first seeds of the scene, of as many as are compared with them
-SHORT = {"mesh.points_per_half_width": 10, "time.travel": 4.6}
+SHORT = {"mesh.points_per_half_width": 10, "time.travel": 6.0}  # in which points of all scenes pass
 SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is drawn over depth
     "1. the smooth body (2) is damaged more, the more the contact slides": (SCENE, "reversed"),
     "2. slide/roll ratio": ("rolling", SCENE),

@@ -31,6 +31,11 @@ from benchmarks import (
 from support import CASES, ROOT
 from support.made_results import make_result
 
+from ehlpetsc.case.loading import members
+from ehlpetsc.life import ensemble
+from ehlpetsc.life.positions import Positions, with_shift
+from ehlpetsc.physics.scales import Scales
+
 sys.path.append(str(ROOT / "cases" / "paper"))
 import anisotropy
 import bearing_torque
@@ -41,10 +46,12 @@ import dimple
 import discs
 import fit_oil
 import measured_data
+import micropits
 import optical_films
 import point_films
 import rolling_friction
 import shares
+import superfinished
 import thermal_films
 
 NUMBER = re.compile(r"-?\d+\.\d+")
@@ -242,6 +249,31 @@ def test_thermal_reduction(capsys, monkeypatch):
     printed = capsys.readouterr().out.splitlines()[1]
     line, *balls = map(float, NUMBER.findall(printed)[-4:])
     assert all(0.9 < reduction < 0.98 for reduction in (line, *balls))
+
+
+@pytest.mark.slow
+def test_superfinished_gears(capsys, monkeypatch, tmp_path):
+    coarse, whole = {"mesh.points_per_half_width": 12, "time.courant": 4.0}, superfinished.load
+    monkeypatch.setattr(superfinished, "load", lambda case, changes: whole(case, changes | coarse))
+    monkeypatch.chdir(tmp_path)
+    superfinished.main(["--seeds", "1,2", "-o", "lives.png"])
+    printed = capsys.readouterr().out.splitlines()[1]
+    ratios = [
+        float(ratio) for ratio in re.findall(r"[\d.]+(?:e[+-]\d+)?(?=[,;]| by)", printed.partition(": ")[2])
+    ]
+    assert len(ratios) == 8 and min(ratios) > 0.0 and (tmp_path / "lives.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("is_short", [True, False])
+def test_every_scene_of_micropits_is_a_case_whose_points_pass(monkeypatch, tmp_path, is_short):
+    made = []
+    monkeypatch.setattr(ensemble, "run_lives", lambda case, *_, **__: made.append(case))
+    monkeypatch.setattr(micropits, "read_lives", lambda index: {"": None})
+    for name in micropits.SCENES:
+        micropits.compute(name, tmp_path, is_short)
+        _, member = members(made.pop())[0]
+        case = with_shift(member)
+        Positions(case, Scales.of(case)).check_travel()
 
 
 def test_programs_on_results_draw_their_pictures(tmp_path, capsys):
