@@ -1,7 +1,10 @@
-"""PETSc and mpi4py agree on one MPI before either is loaded, or the program says why not."""
+"""PETSc and mpi4py agree on one MPI before either is loaded, or are refused; ranks end together."""
 
+import gc
 import os
+import signal
 import sys
+import weakref
 from types import SimpleNamespace
 
 import numpy as np
@@ -97,6 +100,21 @@ def test_another_launcher_is_refused_before_mpi_ends_the_process(installed, monk
         "needs libmpi.so.12, not the Open MPI whose mpirun has started it; type: ehlpetsc -n RANKS CASE.toml"
     )
     assert line.startswith("ehlpetsc: petsc4py in ") and line.endswith(words)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_ranks_leave_no_garbage_to_the_end_of_petsc(monkeypatch, ranks):
+    monkeypatch.setitem(sys.modules, "mpi4py.MPI", SimpleNamespace(COMM_WORLD=SimpleNamespace(size=ranks)))
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
+    gc.disable()
+    try:
+        cycle = type("Cycle", (), {})()
+        cycle.itself, left = cycle, weakref.ref(cycle)
+        del cycle
+        assert main(["--version"]) == 0
+        assert (left() is None) == (ranks > 1)
+    finally:
+        gc.enable()
 
 
 def test_petsc_of_complex_numbers_is_refused(monkeypatch):
