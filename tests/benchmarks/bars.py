@@ -1,9 +1,9 @@
-"""Error bars of `ehlpetsc converge` in six mixed contacts, against runs with twice the nodes.
+"""Error bars of `ehlpetsc converge` in seven mixed contacts, against runs with twice the nodes.
 
 ``python3 tests/benchmarks/bars.py [CONTACT ...] [--nodes 8 12 16 32]``: nodes to the shortest wave; the limit
-is extrapolated from the third and the last mesh with the order that the first, the third and the last show.
-Prints, for each contact and quantity, the errors on the first and on the third mesh, that of the limit by the
-first three, and its bar, all over the limit.
+is extrapolated from the third and the last mesh with the order that the first, the third and the last show,
+within the bounds of the command. Prints, for each contact and quantity, the errors on the first and on the
+third mesh, that of the limit by the first three, and its bar, all over the limit.
 """
 
 from __future__ import annotations
@@ -48,12 +48,14 @@ class Contact(NamedTuple):
     changes: dict
 
 
-def made(sq: float, roll_off: float, wave: float, seeds: tuple[int, int], rough: float = 1.0) -> Contact:
+def made(
+    sq: float, roll_off: float, wave: float, seeds: tuple[int, int], rough: float = 1.0, travel: float = 4.0
+) -> Contact:
     """Self-affine surfaces; the second is `rough` times as high."""
     spec = {"kind": "self-affine", "hurst": 0.8, "roll_off": roll_off, "short_cutoff": wave}
     sides = zip("12", seeds, (sq, rough * sq), strict=True)
     surfaces = {side: {"synthetic": spec | {"seed": seed, "sq": height}} for side, seed, height in sides}
-    return Contact(wave, {"surface": surfaces, "time.travel": 4.0})
+    return Contact(wave, {"surface": surfaces, "time.travel": travel})
 
 
 def measured(wave: float, scale: float, sides: str = "12") -> Contact:
@@ -76,6 +78,7 @@ CONTACTS = {
     "layer 50 nm": with_keys(made(0.25e-6, 150e-6, 30e-6, (3, 4), 0.4), 50e-9, 1.0, 0.002),
     "two profiles": with_keys(measured(40e-6, 3.5), 20e-9, 0.5, 0.002),
     "one profile": with_keys(measured(30e-6, 3.0, "2"), 10e-9, 0.3, 0.003),
+    "strip": with_keys(made(0.3e-6, 150e-6, 90e-6, (1, 2), 0.5, travel=3.3), 20e-9, 0.25, 0.0015, width=0.5),
     "thin film": with_keys(made(0.3e-6, 200e-6, 50e-6, (5, 6)), 30e-9, 0.25, 0.001, inlet=-1.7, outlet=1.7),
 }
 
@@ -95,7 +98,7 @@ def line(quantity: str, nodes: list[int], values: list[float]) -> str:
     least = SPOT_ORDER if quantity in OF_SPOTS else LEAST_ORDER
     kept = [0, 2, 3]
     order = observed_order([nodes[k] for k in kept], [values[k] for k in kept])
-    fine = extrapolated(nodes[2:], values[2:], min(max(order, least), HIGHEST_ORDER))
+    fine = extrapolated(nodes[2:], values[2:], min(max(least, order), HIGHEST_ORDER))
     found = limit(nodes[:3], values[:3], least)
     errors = (f"{value / fine - 1.0:+.2%}" for value in (values[0], values[2], found.value))
     return ",".join([quantity, *errors, f"{found.bar / abs(fine):.2%}", f"{order:.2f}"])
