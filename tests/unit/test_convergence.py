@@ -108,6 +108,17 @@ def test_a_table_of_other_programs_is_kept(tmp_path):
     assert (tmp_path / "p.csv").read_text() == "0,1e-7\n1e-6,2e-7\n"
 
 
+def test_damage_is_among_the_quantities(tmp_path):
+    sets = settings("mesh.inlet=-1.4", "mesh.outlet=1.3", "mesh.points_per_half_width=8", "time.travel=3.6")
+    sets += settings("post.depths=[0.2]")
+    done = run("converge", CASES / "table1_damage.toml", *sets, "--damage", "--no-picture", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    rows = (tmp_path / "table1_damage.converge.csv").read_text().splitlines()
+    damage = [row.split(",")[2:5] for row in rows if row.startswith(",damage_")]
+    assert damage and all(float(value) > 0.0 for row in damage for value in row)
+    assert not list(tmp_path.glob("*.png"))
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
