@@ -1,7 +1,7 @@
 """Order of accuracy in time and space of film and temperatures: a ridge passes through a full film at 25 m/s.
 
 The scene of test_order.py with a slide/roll ratio of 0.5 and heat; norm: root mean square within
--1 <= x/a <= 0.5. In time successive steps are halved on a/32, of two nodes, one and a half, in space
+-1 <= x/a <= 0.5. In time successive steps are halved on a/128, of four nodes, two and one, in space
 successive meshes with 40 steps.
 """
 
@@ -38,14 +38,17 @@ def solution(points, steps):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "setups",
-    [[(MESHES[0], steps) for steps in STEPS], [(points, STEPS[0]) for points in MESHES]],
+    [[(MESHES[-1], 2 * steps) for steps in STEPS], [(points, STEPS[0]) for points in MESHES]],
     ids=["time", "space"],
 )
 def test_second_order(setups):
     solutions = [solution(*setup) for setup in setups]
     pairs = list(zip(solutions, solutions[1:], strict=False))
     norms = [[np.sqrt(np.mean((a[k] - b[k]) ** 2)) for a, b in pairs] for k in range(4)]
-    assert norms[1][0] > 0.004  # K: there is something to converge
+    assert norms[1][0] > 0.002  # K: there is something to converge
     orders = [observed_order(differences) for differences in norms]
     # where a temperature has an extreme along the path of the film its limiter is of first order
-    assert orders[0] >= 1.8 and min(orders) >= 1.55, orders
+    assert min(orders) >= 1.55, orders
+    in_time = len({points for points, _ in setups}) == 1
+    # in time the film changes by less than 1e-4 of itself, in the order of the temperatures
+    assert norms[0][0] < 1e-4 * solutions[0][0].mean() if in_time else orders[0] >= 1.8

@@ -61,7 +61,7 @@ def test_a_heated_film_stays(scene, courant):
     travel = 7.5 * courant / case["mesh"]["points_per_half_width"]
     names = "film_central", "h_min", "friction_coefficient"
     found = over_first(case | {"time": {"courant": courant, "travel": travel}}, names)
-    np.testing.assert_allclose(found[:, :2], 1.0, atol=5e-4)
+    np.testing.assert_allclose(found[:, :2], 1.0, atol=1e-3)
     np.testing.assert_allclose(found[:, 2], 1.0, atol=5e-3)
 
 

@@ -31,7 +31,7 @@ FASTEST_RESPONSE = 30.0  # rate of the fastest term times the time step
 SLOWEST_RESPONSE = 0.2  # rate of the slowest term but the lumped one times the longest time
 PADDING = 8.0  # diffusion lengths chi/u ahead of the mesh and behind it
 LONGEST = 40.0  # diffusion times chi/u^2 after which a moving body has forgotten, besides its transit
-MAX_NODES = 2.04  # that a body moves in one part of a step: those of a Courant number of 1, rounded up
+MAX_PART = 0.25  # half-widths that a body moves in one part of a step: it misses no flux of the contact
 RENUMBERED = 2.0  # cells between the distance travelled and the step by the speed
 DIFFUSION_LENGTHS = 3.0  # of the longest history, across, beyond the mesh
 MAX_DIFFUSION_AREA = 1e-3  # m^2: over the diffusivity the longest history of a body [s]
@@ -256,7 +256,8 @@ class Body:
     """
 
     def __init__(self, solid: Solid, speed: float, grid: Grid, dt: float) -> None:
-        self.solid, self.n, self.dx = solid, grid.shape[-1], grid.spacings[-1]
+        self.solid, self.n = solid, grid.shape[-1]
+        self.dx, self.increment = grid.spacings[-1], grid.increments[-1]  # in m, in half-widths
         chi, speed = solid.diffusivity, abs(speed)
         length = self.n * self.dx
         slow = MAX_DIFFUSION_AREA / chi
@@ -311,7 +312,7 @@ class Body:
     def advance(
         self, body: BodyHeat, travelled: float, dt: float, speed: float, flux: np.ndarray
     ) -> BodyStep:
-        """The body at the end of a step, in parts of at most `MAX_NODES` nodes.
+        """The body at the end of a step, in parts of at most `MAX_PART` half-widths.
 
         The flux in a part is linear in time at each point of the body, which passes the contact within some
         parts of a long step. Up to the last part the contact has the flux of the begin.
@@ -327,7 +328,7 @@ class Body:
         # the distance may be counted from another place now
         is_counted = abs(np.floor(end) - begin - by_speed) <= max(RENUMBERED, 0.5 * abs(by_speed))
         distance = end - begin if is_counted else by_speed
-        parts = max(whole_up(abs(by_speed) / MAX_NODES), 1)
+        parts = max(whole_up(abs(by_speed) * self.increment / MAX_PART), 1)
         for part in range(1, parts):
             position = end - distance * (1.0 - part / parts)
             body = self.accept(self._advance(body, position, dt / parts, by_speed / parts), flux)
