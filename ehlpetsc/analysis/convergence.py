@@ -28,13 +28,10 @@ from ehlpetsc.results.reader import Result
 MESH_KEY = "points_per_half_width"
 MESHES = 3
 LEAST_ORDER, HIGHEST_ORDER = 1.0, 2.0  # of the extrapolation
-SPOT_ORDER = (
-    1.5  # least of the quantities `OF_SPOTS` where the solids carry more than `MIN_SHARE` of the load
-)
-SPREAD = 0.4  # of the order, for the bar
+SPOT_ORDER = 1.5  # at least, of `OF_SPOTS` where the solids carry more than `MIN_SHARE` of the load
 OF_SPOTS = "friction_coefficient", "contact_share", "damage"
 MIN_SHARE = 1e-4
-SPREAD = 0.5  # of the order, for the bar
+SPREAD = 0.4  # of the order, for the bar
 OBSERVED = 0.5, 4.0  # orders beyond are none
 NOT_MONOTONE, NO_ORDER = "not monotone: no order", "order below 0.5 or above 4: none"
 SINGLE_NODE = "of single nodes: no order"
