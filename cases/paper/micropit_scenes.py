@@ -46,6 +46,9 @@ def bearing(radius: float, viscosity: float, speed: float, ratio: float) -> dict
         "motion.slide_roll_ratio": ratio,
         "mesh.width": 0.83,  # 50 um
         "mesh.points_per_half_width": 26,
+        "mesh.inlet": -2.6,  # solids touch beyond the smooth contact
+        "mesh.outlet": 2.2,
+        "time.travel": 6.5,
     }
 
 
@@ -53,8 +56,6 @@ def pair(rq_1: float, rq_2: float) -> Scene:
     """Rings NU 209 of these roughnesses [um], of the spectrum of the scene, 1 m/s, 0.0094 Pa s."""
     surfaces = {f"surface.{k}.synthetic": WAVES | {"sq": 1e-6 * rq} for k, rq in enumerate((rq_1, rq_2), 1)}
     settings = bearing(4.576e-3, 0.0094, 1.0, 0.02) | surfaces
-    if rq_1 + rq_2 > 0.5:  # solids touch beyond the smooth contact
-        settings |= {"mesh.inlet": -2.6, "mesh.outlet": 2.2, "time.travel": 6.5}
     return Scene(f"{rq_1:g} on {rq_2:g} µm", settings, passes=RING_PASSES)
 
 
