@@ -7,9 +7,9 @@ An error :math:`C n^{-p}` of n nodes leaves three values the limit, C and p:
 
 The limit is that of the observed order, between `LEAST_ORDER` and `HIGHEST_ORDER`, that of the scheme.
 Where solids touch in spots of one or two nodes, friction, the load on the solids and damage show orders
-of 0.8 to 1 on coarse meshes and 1.5 to 2 on fine ones: their limit is that of at least `SPOT_ORDER`. The
-bar reaches to the limits of orders `SPREAD` lower and higher. On three meshes and factors of safety:
-Roache, J. Fluids Eng. 116 (1994) 405.
+of 0.8 to 1 on coarse meshes and 1.5 to 2 on fine ones: their limit is that of at least `SPOT_ORDER`.
+The bar reaches to the limits of orders `SPREAD` lower and higher, or to that of a higher observed one.
+On three meshes and factors of safety: Roache, J. Fluids Eng. 116 (1994) 405.
 """
 
 from __future__ import annotations
@@ -95,7 +95,8 @@ def limit(nodes: Sequence[float], values: Sequence[float], least: float = LEAST_
         is_monotone = (values[0] - values[1]) * (values[1] - values[2]) > 0.0
         return Limit(np.nan, values[-1], spread, NO_ORDER if is_monotone else NOT_MONOTONE)
     used = min(max(observed, least), HIGHEST_ORDER)
-    value, *others = (extrapolated(nodes, values, p) for p in (used, used - SPREAD, used + SPREAD))
+    orders = used, used - SPREAD, max(used + SPREAD, observed)
+    value, *others = (extrapolated(nodes, values, p) for p in orders)
     return Limit(observed, value, max(abs(other - value) for other in others))
 
 
