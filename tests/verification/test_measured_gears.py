@@ -11,7 +11,7 @@ import cmod
 import measured_data
 import superfinished
 
-CMOD_STRIP = 0.0344  # at 20 m/s on a/8, border 79 um
+CMOD_STRIP = 0.0347  # at 20 m/s on a/8, border 79 um
 
 
 def test_friction_of_gears_with_all_roughness_in_the_layer(tmp_path):
