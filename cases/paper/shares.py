@@ -22,7 +22,7 @@ FILE = "shares.csv"
 
 
 class Computed(NamedTuple):
-    """Lay and nodes per half-width of :mod:`anisotropy`, symbol of the picture, outlet for other seeds."""
+    """Lay and nodes per half-width of :mod:`anisotropy`, symbol of the picture, outlet [half-widths]."""
 
     lay: float
     points: int
@@ -40,8 +40,8 @@ MODELS = {
 SPEED_OF_CHANGES = 3.3  # m/s, Lambda 0.73
 CHANGES: dict[str, Callable[[Computed], list[str]]] = {
     "mesh twice as coarse": lambda of: ["--points", str(of.points // 2)],
-    "seeds 4, 5": lambda of: ["--seed", "2", "--outlet", of.outlet],
-    "seeds 6, 7": lambda of: ["--seed", "3", "--outlet", of.outlet],
+    "seeds 4, 5": lambda of: ["--seed", "2"],
+    "seeds 6, 7": lambda of: ["--seed", "3"],
     "border 79.9 um": lambda of: ["--border", "79.9e-6"],
 }
 """What moves the share, with the changed arguments of :mod:`anisotropy`."""
@@ -84,7 +84,7 @@ LAWS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
 
 def computed(of: Computed, speed: float, changes: Iterable[str] = ()) -> anisotropy.Film:
     """Film of a model at a speed [m/s]; `changes`: arguments of :mod:`anisotropy`."""
-    words = ["film", "--width", "0.5", "--points", str(of.points), *changes]
+    words = ["film", "--width", "0.5", "--points", str(of.points), "--outlet", of.outlet, *changes]
     return anisotropy.lubricated(anisotropy.arguments().parse_args(words), of.lay, speed)
 
 

@@ -75,7 +75,7 @@ def whole(state):
 
 
 def test_a_step_that_fails_leaves_the_state_as_it_was(monkeypatch):
-    """The run then goes on, to the last bit, as one without it."""
+    """The run then continues, to the last bit, as one without it."""
     ends = []
     for fails in (True, False):
         simulation = Simulation(load(CASES / "table1_rough.toml", ROUGH))
