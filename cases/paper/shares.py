@@ -139,8 +139,9 @@ def main(words: list[str] | None = None) -> None:
         influences()
     data = measured_data.read(FILE)
     print("Lambda: " + ", ".join([*MODELS, *LAWS]))
-    for ratio in dict.fromkeys(data.columns["lambda_ratio"]):
-        shares = [data.where(model=model, lambda_ratio=ratio)["share"][0] for model in MODELS]
+    for speed in dict.fromkeys(data.columns["speed"]):
+        at_speed = [data.where(model=model, speed=speed) for model in MODELS]
+        shares, ratio = [rows["share"][0] for rows in at_speed], at_speed[0]["lambda_ratio"][0]
         laws = [float(law(ratio)) for law in LAWS.values()]
         print(f"{ratio:g}: " + ", ".join(f"{share:.3f}" for share in (*shares, *laws)))
     style.save(draw(data), chosen.output)
