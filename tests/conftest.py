@@ -1,5 +1,6 @@
 """PETSc and its MPI, the marker of tests under mpirun, their order, and signals as a terminal has them."""
 
+import contextlib
 import gc
 import os
 import signal
@@ -12,7 +13,12 @@ from ehlpetsc.base import environment
 
 if not environment.prepare():
     environment.load_mpi()
-sys.path.append(str(Path(__file__).parents[1] / ".test-packages"))  # optional ones that .ci/run has fetched
+PACKAGES = str(Path(__file__).parents[1] / ".test-packages")  # optional ones that .ci/run has fetched
+with contextlib.suppress(ImportError):  # SurfaceTopography needs a newer one than Debian's
+    sys.path.insert(0, PACKAGES)
+    import typing_extensions  # noqa: F401
+sys.path.remove(PACKAGES)
+sys.path.append(PACKAGES)
 os.environ.setdefault("MPLBACKEND", "Agg")  # no windows
 MPI_TESTS = Path(__file__).parent / "mpi"
 # Files of two seconds of processor time and more, about longest first. The first two compile post-processing
