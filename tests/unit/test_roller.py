@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support import roelands_oil
 from support.dry_half_space import HalfSpaces, dry_pressure
 
 from ehlpetsc.base.errors import CaseError
@@ -26,12 +27,7 @@ DRY = {
     "mesh": {"inlet": -1.6, "outlet": 1.6, "points_per_half_width": [10, 30]},
 }
 OIL = {
-    "fluid": {
-        "viscosity": 0.02,
-        "law": "roelands",
-        "pressure_viscosity": 2e-8,
-        "density": "dowson-higginson",
-    },
+    "fluid": roelands_oil(0.02, 2e-8),
     "motion": {"entrainment_speed": 3.0},
     "mesh": {"inlet": -2.5, "outlet": 1.5, "points_per_half_width": [20, 100]},
 }

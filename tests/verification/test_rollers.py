@@ -4,6 +4,7 @@ import copy
 
 import numpy as np
 import pytest
+from support import roelands_oil
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.run.simulation import Simulation
@@ -12,12 +13,7 @@ L, R, W = 12e-3, 6e-3, 2400.0
 OIL = {
     "title": "a roller in oil",
     "contact": {"radius": R, "length": L, "load": W, "youngs_modulus": 207e9, "poisson_ratio": 0.3},
-    "fluid": {
-        "viscosity": 0.02,
-        "law": "roelands",
-        "pressure_viscosity": 2e-8,
-        "density": "dowson-higginson",
-    },
+    "fluid": roelands_oil(0.02, 2e-8),
     "motion": {"entrainment_speed": 3.0},
     "mesh": {"inlet": -2.5, "outlet": 1.5, "points_per_half_width": [20, 100]},
 }

@@ -12,7 +12,7 @@ breadth first from one end of its island, each cell is a few places from those o
 elimination in a band takes a tenth of the time of a sparse solver for any system. There is no search for
 pivots, as the balance of a cell depends most on its own pressure.
 
-What it is worth: on 97 x 97 nodes the rough contacts of `tests/benchmarks/plane.py` take 4.95 (rigid) and
+Gain: on 97 x 97 nodes the rough contacts of `tests/benchmarks/plane.py` take 4.95 (rigid) and
 5.24 (layer) Newton iterations a step in place of 7.57 and 8.10, and 27 and 26 % less time; a smooth wave
 takes as long.
 """

@@ -43,7 +43,7 @@ def wave_lines(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
 
 
 def waves(case: Case, s: Scales, rough: Roughness | None) -> dict[str, tuple[str, float]]:
-    """Waves in words, and the shortest one along [m], of each surface that has any."""
+    """Text on the waves of each surface that has any, and the length of the shortest one along [m]."""
     found = {}
     for side, surface in (rough.sides if rough else {}).items():
         spec = case.surface.side(side)
@@ -54,7 +54,7 @@ def waves(case: Case, s: Scales, rough: Roughness | None) -> dict[str, tuple[str
 
 
 def _of_keys(table: object, s: Scales) -> tuple[str, float] | None:
-    """Waves that a table of a surface gives, in words, and the shortest one along [m]; None: none."""
+    """Text on the waves that a table of a surface gives, and the shortest one along [m]; None: none."""
     dy, dx = s.grid.spacings[0], s.grid.spacings[-1]
     given = {key: length for key in WAVES if (length := getattr(table, key, None))}
     along = [GROUND_WAVE * w if k == "correlation" else w for k, w in given.items() if k in WAVES_ALONG]
@@ -69,7 +69,7 @@ def _of_keys(table: object, s: Scales) -> tuple[str, float] | None:
 
 
 def _of_heights(given: Topography, s: Scales) -> tuple[str, float]:
-    """Shortest wave of heights without a key for it, in words, and its length [m]; 0 of a plane.
+    """Text on the shortest wave of heights without a key for it, and its length [m]; 0 of a plane.
 
     Waves shorter than it have `SHORT_VARIANCE` of the height variance.
     """
