@@ -174,7 +174,7 @@ def solve(
         raise CaseError([f"{passes}, ehlpetsc.Simulation(case, after=the_pass_before)"])
     progress = on_terminal(sys.stdout) or in_notebook() if progress is None else progress
     recorder = Recorder(simulation, None if output is None else Path(output))
-    with simulation.options, recorder:
+    with recorder:
         if begun := recorder.lock_output(None if restart is None else Path(restart), overwrite):
             recorder.resume(begun)
         shown = [Progress(simulation)] if progress and simulation.comm.rank == 0 else []

@@ -148,7 +148,7 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
         announce_compilation(partial(print, flush=True))
     case = on_root(comm, load, chosen.case, chosen.set)
     if options.hasName("help"):
-        Simulation(case, comm)  # PETSc's objects print their options when they are created
+        _print_petsc_options(comm)
         return ExitStatus.DONE
     output = file_path(f"{Path(case.path).stem}.h5" if chosen.output is None else chosen.output)
     restart, overwrite = chosen.restart, chosen.overwrite
@@ -170,6 +170,16 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
     if comm.rank == 0:
         _print_heading(simulation)
     return Run(simulation, output, stop).run(restart, overwrite)[0]
+
+
+def _print_petsc_options(comm: MPI.Comm) -> None:
+    """Print the options of a solver without its prefix, as users give them."""
+    from petsc4py import PETSc
+
+    snes = PETSc.SNES().create(PETSc.Comm(comm))
+    snes.setType("vinewtonrsls")
+    snes.ksp.setType("fgmres")
+    snes.setFromOptions()
 
 
 def _print_heading(simulation: Simulation) -> None:

@@ -88,7 +88,7 @@ def run_pass(
     the share of the pass that is done. Raises `NotConverged`, `Stopped`, `OutputError`, `PostError`.
     """
     recorder = Recorder(simulation, file)
-    with simulation.options, recorder:
+    with recorder:
         recorder.lock_output(overwrite=True)
         status, failure = solve_run(simulation, [recorder, PassProgress(simulation, show)], stop)
     if failure:

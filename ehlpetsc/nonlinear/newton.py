@@ -52,8 +52,7 @@ class Phase(Enum):
 class NewtonSolver:
     """Newton's method for one system, by SNES.
 
-    `options`: options, entered before because PETSc reads its table when its objects are created; default:
-        none.
+    `options`: of PETSc's objects; default: none of the user.
 
     Attributes
     ----------
@@ -107,6 +106,7 @@ class NewtonSolver:
         snes = PETSc.SNES().create(self.system.comm)
         self._petsc_objects.append(snes)
         try:
+            snes.setOptionsPrefix(self._options.prefix)
             snes.setType(kind)
             snes.setFunction(weakly(self._function), self.system.f)
             snes.setFromOptions()

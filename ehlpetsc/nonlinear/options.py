@@ -1,9 +1,18 @@
-"""Options of a run in PETSc's global table: defaults, precedence, restoring; events of ``-log_view``."""
+"""Options of a solver under its own prefix in PETSc's table: defaults, precedence; events of ``-log_view``.
+
+With a prefix, solvers of one process, as those of a coarse guess, of a series or of a notebook, have defaults
+of their own, and the user's options stay as they are. This gives up short messages: those of monitors and of
+``-ksp_view`` name the prefix, ``KSP Object: (ehl1_)``. `tests/unit/test_plane_jacobian.py` holds that nothing
+leaks from one solver to another or into the user's options.
+"""
 
 from __future__ import annotations
 
 import ctypes
-import threading
+import itertools
+import re
+import weakref
+from collections.abc import Collection
 from typing import Any
 
 from petsc4py import PETSc
@@ -49,8 +58,8 @@ PETSC_FACTORISATION = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_t
 
 READ_BY_FINALIZE = ("citations", "get_total_flops", "options_left", "options_view", "checkstack")
 VIEWS = ("snes_view", "ksp_view")
-TABLE_LOCK = threading.RLock()  # the table is global: threads would get each other's options
-ENTERED: list[RunOptions] = []  # whose options the table has is the last one
+PREFIX = re.compile(r"ehl\d+_")
+NUMBERS = itertools.count(1)  # of the solvers of this process
 
 RESIDUAL = PETSc.Log.Event("EHL residual")
 ASSEMBLY = PETSc.Log.Event("EHL assembly")
@@ -64,45 +73,48 @@ TIME_STEPS = PETSc.Log.Stage("Time steps")
 
 
 class RunOptions:
-    """Context manager that sets the options of a run in PETSc's table and restores the table on exit.
+    """Options of one nonlinear solver, in PETSc's table under a prefix of its own, ``ehl1_snes_max_it``.
 
-    Precedence: defaults < `of_case` < options already in the table < `given`. Reentrant; threads enter one
-    after the other. Inside of the options of another run, such as the one that needs this run's solution for
-    its start, those leave the table.
+    Precedence: defaults < `of_case` < the user's options in the table, without a prefix < `of_call`. The
+    entries live as long as this object; what the user has put into the table stays as it is.
 
     `law`: contact model.
-    `of_case`, `given`: `[petsc]` of the case; options of a call from Python.
+    `of_case`, `of_call`: `[petsc]` of the case; options of a call from Python.
 
-    `deferred_views`: ``snes_view`` and ``ksp_view`` set without a value: not put into PETSc's table, because
-        PETSc would repeat the output at every solve.
-    `given`: options of the user: of the case, of PETSc's table (from the first entry on) and of the call.
-    `unused`: names in `of_case` and `given` that have not been read.
+    `prefix`: of PETSc's objects of the solver.
+    `given`: options of the user: of the case, of PETSc's table and of the call.
+    `values`: the same with the defaults.
+    `deferred_views`: ``snes_view`` and ``ksp_view`` set without a value: they have no entry, because PETSc
+        would repeat the output at every solve.
     """
 
     def __init__(
         self,
         law: str = "direct",
         of_case: dict | None = None,
-        given: dict | None = None,
+        of_call: dict | None = None,
         kind: str = "line",
         is_dry: bool = False,
     ) -> None:
+        table = PETSc.Options()
+        of_user = {name: value for name, value in table.getAll().items() if not PREFIX.match(name)}
+        self.given: dict = (of_case or {}) | of_user | (of_call or {})
+        check_options(self.given)
         self._defaults = DEFAULTS | {"snes_atol": ATOL[law]}
-        self._of_scene = DRY_PLANE if is_dry and KINDS[kind].is_areal else {}
-        self._linear_solver = KINDS[kind].part("linear_solver")
-        self._of_case, self._of_call, self._depth = dict(of_case or {}), dict(given or {}), 0
-        self._entered: list = []
-        self._saved: dict = {}
-        self.given = self._of_case | self._of_call
-        self.deferred_views: list[str] = []
-        self.unused = set(self.given)
+        of_scene = DRY_PLANE if is_dry and KINDS[kind].is_areal else {}
+        linear_solver = KINDS[kind].part("linear_solver")
+        self.values: dict = self._defaults | linear_solver(of_scene | self.given)
+        self.deferred_views = [name for name in VIEWS if name in self.values and not self.values[name]]
+        self.prefix = f"ehl{next(NUMBERS)}_"
+        entries = self.values.keys() - set(self.deferred_views)
+        for name in entries:
+            table[self.prefix + name] = self.values[name]
+        weakref.finalize(self, _withdraw, self.prefix, entries, self.deferred_views)
 
     def value(self, name: str, default: object = None) -> Any:
         """Value of an option, which counts as used."""
-        if name in self.given:
-            PETSc.Options().hasName(name)
-            self.unused.discard(name)
-        return (self._defaults | self.given).get(name, default)
+        PETSc.Options().hasName(self.prefix + name)
+        return self.values.get(name, default)
 
     def real(self, name: str, default: float | None = None) -> float:
         """Value of an option as a number."""
@@ -111,31 +123,6 @@ class RunOptions:
             return float(value)
         except ValueError:
             raise UsageError(f"-{name} {value}: allowed: a number") from None
-
-    def __enter__(self) -> RunOptions:
-        TABLE_LOCK.acquire()
-        try:
-            if self._depth == 0:
-                if ENTERED:
-                    ENTERED[-1]._leave(PETSc.Options())
-                self._enter(PETSc.Options())
-                ENTERED.append(self)
-        except BaseException:
-            TABLE_LOCK.release()
-            raise
-        self._depth += 1
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self._depth -= 1
-        try:
-            if self._depth == 0:
-                ENTERED.pop()
-                self._leave(PETSc.Options())
-                if ENTERED:
-                    ENTERED[-1]._enter(PETSc.Options())
-        finally:
-            TABLE_LOCK.release()
 
     def loose_tolerances(self) -> list[str]:
         """One message for every tolerance of the user that is looser than the default."""
@@ -150,33 +137,17 @@ class RunOptions:
 
     def unused_so_far(self) -> set[str]:
         """Names of the user's options that have not been read."""
-        defaults = {*DEFAULTS, *PRECONDITIONER, *KRYLOV, *PLANE, *PETSC_FACTORISATION, "snes_atol"}
-        of_run = (name for name in self.unused if not (self._depth and was_read(name)))
-        return {*of_run, *unused()} - defaults - set(self.deferred_views)
+        read = {name for name in self.given if was_read(self.prefix + name) or was_read(name)}
+        return self.given.keys() - read - {*READ_BY_FINALIZE, *self.deferred_views}
 
-    def _enter(self, table: PETSc.Options) -> None:
-        in_table = table.getAll()
-        self.given = wanted = self._of_case | in_table | self._of_call
-        check_options(wanted)
-        wanted = self._defaults | self._linear_solver(self._of_scene | wanted)
-        self.deferred_views = [name for name in VIEWS if name in wanted and not wanted.pop(name)]
-        self._entered = [
-            name for name, value in wanted.items() if name not in in_table or in_table[name] != value
-        ]
-        changed = [name for name in [*self._entered, *self.deferred_views] if name in in_table]
-        self._saved = {name: table.getString(name, "") for name in changed}
-        for name in self.deferred_views:
-            table.delValue(name)
-        for name in self._entered:
-            table[name] = wanted[name]
 
-    def _leave(self, table: PETSc.Options) -> None:
-        self.unused = {name for name in self.unused if not was_read(name)} - set(self.deferred_views)
-        for name in self._entered:
-            table.delValue(name)
-        for name, value in self._saved.items():
-            table[name] = value
-            table.hasName(name)  # marks it as read, for -options_left
+def _withdraw(prefix: str, names: Collection[str], views: Collection[str]) -> None:
+    """Remove the entries of a solver; the user's that it has read count as read, for -options_left."""
+    table = PETSc.Options()
+    for name in [*(name for name in names if was_read(prefix + name)), *views]:
+        table.hasName(name)
+    for name in names:
+        table.delValue(prefix + name)
 
 
 def line_solver(wanted: dict) -> dict:
@@ -195,12 +166,6 @@ def plane_solver(wanted: dict) -> dict:
             own = "a contact in the plane has a preconditioner of its own; leave it out"
             raise UsageError(f"-{name} {wanted[name]}: {own}")
     return PLANE | wanted
-
-
-def unused() -> list[str]:
-    """Unused options in PETSc's table, without the options read by PetscFinalize."""
-    names = PETSc.Options().getAll()
-    return sorted(n for n in names if not (n in READ_BY_FINALIZE or was_read(n)))
 
 
 def was_read(name: str) -> bool:

@@ -95,7 +95,7 @@ class ConditionsTable:
         try:
             simulation = Simulation(load(self.case._tables, self.changes(point)))
             recorder = Recorder(simulation, None)
-            with simulation.options, recorder:
+            with recorder:
                 recorder.lock_output(None, False)
                 _, failure = solve(simulation, [recorder])
         except CaseError as error:

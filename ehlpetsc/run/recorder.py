@@ -230,7 +230,9 @@ class Recorder(Output):
             "digests": json.dumps(case.digests),
             "h_scale": scales.h,
             "ranks": self.comm.size,
-            "petsc_options": " ".join(f"-{k} {v or ''}".strip() for k, v in PETSc.Options().getAll().items()),
+            "petsc_options": " ".join(
+                f"-{k} {v or ''}".strip() for k, v in self.simulation.options.values.items()
+            ),
             "versions": libraries(),
         }
         self._surfaces = stored_surfaces(self.simulation)

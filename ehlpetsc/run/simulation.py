@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time as clock
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -40,6 +41,7 @@ MIN_COARSE_POINTS = 50  # on the half-width: coarsest mesh of a start for a fine
 MIN_HEATED_POINTS = 8  # on the half-width of the start: coarsest mesh of one with heat
 FINEST_NODES = 60_000  # of a mesh whose rough start takes one coarser mesh alone
 MANY_NODES = 20_000  # from here on a start on a coarser mesh costs less than it saves
+PETSC_LOCK = threading.RLock()  # one thread at a time calls PETSc, which is not made for more
 LAST_STEP_RATIO = 1e-9  # smallest time step over the nominal one
 
 
@@ -82,7 +84,7 @@ class Simulation:
         Ranks of the simulation, all of which iterate. Default: this process alone.
     options
         PETSc options without the dash, ``{"snes_max_it": 50, "snes_monitor": None}``, which override all
-        others; they are in PETSc's table only during solves.
+        others and are in PETSc's table under a prefix of this simulation.
     after
         Previous pass of the same case, at its end, whose bodies meet again with their plastic deformation and
         wear.
@@ -101,7 +103,7 @@ class Simulation:
     scene : effects.scene.Scene
         Case, scales, operation and the positions of both surfaces at the beginning of this run.
     options : nonlinear.options.RunOptions
-        Context manager; entering it once around many steps saves time.
+        Of PETSc's solvers.
     stepper : stepping.time_stepping.TimeStepping
     pass_number : float
         Number of the pass of both bodies over each other, from 1.
@@ -158,7 +160,7 @@ class Simulation:
         self._film = film = expected_film(case, self.scales)
         self.state: AcceptedState | None = None
         self.dimensionless: State | None = None
-        with self.options:
+        with PETSC_LOCK:
             solver = solver_of(case, self.scales, film, PETSc.Comm(self.comm), self.options)
         before = after.dimensionless.records if after else records or {}
         self.stepper = TimeStepping(solver, self.scene, effects_of(self.scene, before), film)
@@ -225,7 +227,7 @@ class Simulation:
         """
         self._check_time_step(dt)
         started, gmres = clock.monotonic(), self._linear_iterations
-        with self.options:
+        with PETSC_LOCK:
             try:
                 state = self._start(watch) if self.dimensionless is None else self._step(dt, watch)
                 check_ends(self.scales.grid, state.p, state.solution.loads.contact_mask)
@@ -333,15 +335,12 @@ class Simulation:
             return None
         nested = "coarse" if self.scales.grid.n > FINEST_NODES else "fine"
         coarse = Simulation(coarser(self.case, nested), self.comm, self._options)
-        with coarse.options:
-            begun = coarse._ramped(watch)
-            for guess, records in coarse._guesses(watch):
-                with suppress(NotConverged):
-                    state = coarse.stepper.ramped(
-                        coarse._records | records, watch, guess, begun, LAST_OF_RAMP
-                    )
-                    of_mesh = guess_of(state, coarse.stepper.problem, self.stepper.problem)
-                    return replace(state, unknowns=of_mesh)
+        begun = coarse._ramped(watch)
+        for guess, records in coarse._guesses(watch):
+            with suppress(NotConverged):
+                state = coarse.stepper.ramped(coarse._records | records, watch, guess, begun, LAST_OF_RAMP)
+                of_mesh = guess_of(state, coarse.stepper.problem, self.stepper.problem)
+                return replace(state, unknowns=of_mesh)
         return None
 
     def _step(self, dt: float | None, watch: Watch) -> State:

@@ -108,7 +108,7 @@ class Run(Output):
         return status, failure
 
     def _solve(self, restart: Path | None, overwrite: bool) -> Outcome:
-        with self.simulation.options, self.recorder:
+        with self.recorder:
             restart = self.recorder.lock_output(restart, overwrite)
             notes = self.recorder.resume(restart) if restart else []
             self._print(*(f"restart: {note}" for note in notes))

@@ -10,7 +10,6 @@ the time of an iteration, the speed-up over the first number, maximum memory of 
 """
 
 import argparse
-import contextlib
 import json
 import os
 import resource
@@ -39,7 +38,6 @@ from ehlpetsc.case.loading import load
 from ehlpetsc.nonlinear.line.jacobian import NearFieldMatrix
 from ehlpetsc.run.simulation import Simulation
 
-OPTIONS = contextlib.ExitStack()  # of all simulations, up to the end of the process
 COURANT = 0.5  # nodes that the film moves in a nominal step
 FAST = 8.0  # nominal steps in one, on the way to where time is taken
 HALF_BAND = 30  # nodes
@@ -61,7 +59,6 @@ def rough(points, *overrides, comm=None, inlet=-1.4, edge=0.3):
     """The measured surfaces, roughness in the contact up to x/a = `edge`."""
     keys = (f"mesh.points_per_half_width={points}", f"mesh.inlet={inlet}", f"time.courant={COURANT}")
     simulation = Simulation(load(ROOT / "cases" / "table1_rough.toml", [*keys, *overrides]), comm)
-    OPTIONS.enter_context(simulation.options)  # parts of steps are solved as well
     simulation.advance()
     advance(simulation, int((edge - inlet) * points / (COURANT * FAST)), FAST)
     advance(simulation, 5)

@@ -150,7 +150,7 @@ def test_linear_iterations_of_a_step_are_limited(case, tmp_path):
     """-ksp_max_it limits one linear solve; all of a step are limited by 100 per Newton iteration."""
     words = ["-ksp_max_it", 100000, "-pc_type", "none", "-ksp_rtol", "1e-30", "-snes_max_it", 4]
     done = run(case, *words, "-ksp_converged_reason", cwd=tmp_path)
-    limited = r"Linear solve did not converge due to DIVERGED_ITS iterations (\d+)"
+    limited = r"Linear ehl\d+_ solve did not converge due to DIVERGED_ITS iterations (\d+)"
     taken = [int(number) for number in re.findall(limited, done.stdout)]
     assert done.returncode == 3 and max(taken) == 400
     assert sum(taken[:4]) <= 403

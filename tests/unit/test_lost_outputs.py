@@ -145,7 +145,7 @@ def turn_over(path):
 
 def stopped(case, output, steps=3):
     simulation = ehlpetsc.Simulation(case)
-    with simulation.options, Recorder(simulation, output) as recorder:
+    with Recorder(simulation, output) as recorder:
         recorder.lock_output()
         for state in simulation:
             recorder.write(state)
@@ -192,7 +192,7 @@ def test_restart_reports_the_name_of_another_file_and_a_changed_one_is_refused(p
     turn_over(path)
     case = read(path, **{"surface.1": {"file": "copy.csv"}})
     simulation = ehlpetsc.Simulation(case)
-    with simulation.options, Recorder(simulation, tmp_path / "o.h5") as recorder:
+    with Recorder(simulation, tmp_path / "o.h5") as recorder:
         _, *notes = recorder.resume(restart)
     assert notes == ['surface.1.file was "profile.csv", is "copy.csv"']
     case = read(path)

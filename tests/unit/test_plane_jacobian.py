@@ -79,8 +79,7 @@ def scene(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_product_equals_differences(name):
     system, state, inputs = scene(name)
-    with RunOptions(kind="point"):
-        NewtonSolver(system, RunOptions(kind="point"))
+    NewtonSolver(system, RunOptions(kind="point"))
     system.set_initial_guess(state, inputs)
     vector, rng = system.x.array.copy(), np.random.default_rng(1)
     system.linearise(system.x)
@@ -116,39 +115,37 @@ def complete(monkeypatch):
 @pytest.mark.parametrize("name", ("rolling", "eyring", "layer", "strip", "tilt"))
 def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name, complete):
     system, state, inputs = scene(name)
-    options = RunOptions(given={"ksp_rtol": "1e-6"}, kind="point")
-    with options:
-        solver = NewtonSolver(system, options)
-        system.set_initial_guess(state, inputs)
-        system.linearise(system.x)
-        system.operator.assemble()
-        ksp = solver.snes.ksp
-        ksp.setOperators(system.operator)
-        b, x = system.x.duplicate(), system.x.duplicate()
-        b.array[:] = np.random.default_rng(2).standard_normal(len(b.array))
-        ksp.solve(b, x)
-        assert 0 < ksp.getIterationNumber() <= 40
-        residual = b.duplicate()
-        system.operator.mult(x, residual)
+    options = RunOptions(of_call={"ksp_rtol": "1e-6"}, kind="point")
+    solver = NewtonSolver(system, options)
+    system.set_initial_guess(state, inputs)
+    system.linearise(system.x)
+    system.operator.assemble()
+    ksp = solver.snes.ksp
+    ksp.setOperators(system.operator)
+    b, x = system.x.duplicate(), system.x.duplicate()
+    b.array[:] = np.random.default_rng(2).standard_normal(len(b.array))
+    ksp.solve(b, x)
+    assert 0 < ksp.getIterationNumber() <= 40
+    residual = b.duplicate()
+    system.operator.mult(x, residual)
     assert (residual - b).norm() < 1.01e-6 * b.norm()
 
 
 @pytest.mark.parametrize(("name", "value"), [("pc_type", "lu"), ("pc_python_type", "own.Preconditioner")])
 def test_preconditioners_of_the_user_are_refused(name, value):
     with pytest.raises(UsageError, match=f"^-{name} {value}: a contact in the plane has a precond"):
-        RunOptions(given={name: value}, kind="point").__enter__()
-    with RunOptions(given={"pc_type": "python"}, kind="point"):
-        assert PETSc.Options()["pc_python_type"].endswith("EliminatedFilm")
+        RunOptions(of_call={name: value}, kind="point")
+    options = RunOptions(of_call={"pc_type": "python"}, kind="point")
+    assert PETSc.Options(options.prefix)["pc_python_type"].endswith("EliminatedFilm")
 
 
 def prepared(system, state, inputs):
     """Elimination with the factors of a state."""
-    with RunOptions(kind="point") as options:
-        NewtonSolver(system, options)
-        system.set_initial_guess(state, inputs)
-        system.linearise(system.x)
-        elimination = system.matrices.elimination
-        elimination.prepare(system.jacobian)
+    NewtonSolver(system, RunOptions(kind="point"))
+    system.set_initial_guess(state, inputs)
+    system.linearise(system.x)
+    elimination = system.matrices.elimination
+    elimination.prepare(system.jacobian)
     return elimination
 
 
@@ -169,8 +166,7 @@ def test_rows_of_nodes_without_a_balance_reach_neither_the_coarse_space_nor_a_pr
     elimination = prepared(system, state, inputs)
     system.jacobian.inactive_nodes = bound
     elimination.renew()
-    with RunOptions(kind="point"):
-        elimination.prepare(system.jacobian)
+    elimination.prepare(system.jacobian)
     assert (elimination.factors.sparse.kind[bound] == BOUND).all() and elimination.factors.coarse
     rows, none = np.random.default_rng(5).standard_normal(system.n), np.zeros(system.n)
     (changed := rows.copy())[bound] += 1e3
@@ -180,18 +176,23 @@ def test_rows_of_nodes_without_a_balance_reach_neither_the_coarse_space_nor_a_pr
     assert not np.array_equal(one, elimination._pressures(system.jacobian, changed, none)[0])
 
 
-def test_options_of_a_run_inside_of_another_one_are_its_own():
+def test_solvers_of_one_process_have_options_of_their_own():
     table = PETSc.Options()
-    with RunOptions("mixed", {"snes_max_it": "7"}, kind="point") as outer:
-        before = table.getAll()
-        with RunOptions("direct", kind="line"):
-            assert (table.getInt("snes_max_it"), table.hasName("ksp_gmres_cgs_refinement_type")) == (
-                30,
-                False,
-            )
-        assert table.getAll() == before
-        assert outer.given == {"snes_max_it": "7"}
-    assert not table.getAll()
+    table["ksp_max_it"] = "17"  # of the user
+    try:
+        point, line = RunOptions("mixed", {"snes_max_it": "7"}, kind="point"), RunOptions("direct")
+        of_point, of_line = (PETSc.Options(one.prefix) for one in (point, line))
+        assert [one.getInt("snes_max_it") for one in (of_point, of_line)] == [7, 30]
+        assert [one.getInt("ksp_max_it") for one in (of_point, of_line)] == [17, 17]
+        refinement = [one.hasName("ksp_gmres_cgs_refinement_type") for one in (of_point, of_line)]
+        assert refinement == [True, False]
+        assert point.given == {"snes_max_it": "7", "ksp_max_it": "17"}
+        del point
+        assert not of_point.hasName("snes_max_it") and of_line.hasName("snes_max_it")
+        del line
+        assert table.getAll() == {"ksp_max_it": "17"}
+    finally:
+        table.delValue("ksp_max_it")
 
 
 @pytest.mark.parametrize("name", ("layer", "strip", "direct"))
@@ -299,13 +300,12 @@ def test_solve_after_one_whose_factors_failed(monkeypatch):
         system.jacobian.reynolds_derivatives = np.zeros_like(system.jacobian.reynolds_derivatives)
 
     options = RunOptions(kind="point")
-    with options:
-        solver = NewtonSolver(system, options)
-        with monkeypatch.context() as patched:
-            patched.setattr(system, "linearise", linearise)
-            with pytest.raises(SolveFailed):
-                solver.solve(state, inputs)
-        solver.solve(state, inputs)
+    solver = NewtonSolver(system, options)
+    with monkeypatch.context() as patched:
+        patched.setattr(system, "linearise", linearise)
+        with pytest.raises(SolveFailed):
+            solver.solve(state, inputs)
+    solver.solve(state, inputs)
     assert solver.snes.getFunctionNorm() < solver.tolerance
 
 
@@ -318,13 +318,12 @@ def test_complete_factors_follow_incomplete_ones_that_break_down(monkeypatch):
 
     monkeypatch.setattr(SparseForm, "solve", solve)
     options = RunOptions(kind="point")
-    with options:
-        solver = NewtonSolver(system, options)
-        solver.solve(state, inputs)
-        elimination = system.matrices.elimination
-        assert solver.snes.getFunctionNorm() < solver.tolerance
-        assert elimination.form.is_complete
-        elimination.begin_solve()
+    solver = NewtonSolver(system, options)
+    solver.solve(state, inputs)
+    elimination = system.matrices.elimination
+    assert solver.snes.getFunctionNorm() < solver.tolerance
+    assert elimination.form.is_complete
+    elimination.begin_solve()
     assert elimination.form is None
 
 

@@ -123,7 +123,7 @@ def test_run_stopped_in_mixed_contact_continues_to_the_same_result_bit_for_bit(t
     case = ehlpetsc.load(BALL, keys)
     whole, part = ehlpetsc.solve(case), tmp_path / "ball.h5"
     simulation = ehlpetsc.Simulation(case)
-    with simulation.options, Recorder(simulation, part) as recorder:
+    with Recorder(simulation, part) as recorder:
         recorder.lock_output()
         for state in simulation:
             recorder.write(state)
@@ -142,7 +142,7 @@ def test_run_stopped_in_mixed_contact_continues_to_the_same_result_bit_for_bit(t
 def test_running_point_can_be_read_and_is_not_continued_on_another_width(tmp_path):
     case = ehlpetsc.load(BALL)
     simulation = ehlpetsc.Simulation(case)
-    with simulation.options, Recorder(simulation, tmp_path / "a.h5") as recorder:
+    with Recorder(simulation, tmp_path / "a.h5") as recorder:
         recorder.write(simulation.advance())
         recorder.write(simulation.advance())
         recorder.checkpoint()  # which flushes the result

@@ -52,10 +52,8 @@ def test_sweeps_equal_newton():
         history = stepper.history(State(None, m=m, m_older=m_older, time=time, dt=dt_older), dt)
         scales, travelled = simulation.scales, simulation.operation.travelled(time + dt)
         phi = simulation.roughness.phi_after(scales.x * scales.a, travelled, scales.spacing) / scales.h
-        with simulation.options:
-            found.append(
-                stepper.solver.solve(Unknowns(q, h, np.array([h00])), stepper.problem.inputs(phi, history))[0]
-            )
+        inputs = stepper.problem.inputs(phi, history)
+        found.append(stepper.solver.solve(Unknowns(q, h, np.array([h00])), inputs)[0])
     for _, film, _ in found:
         np.testing.assert_array_equal(np.flatnonzero(film <= ZERO_TOLERANCE), CONTACTS)
     assert_same(stepper.problem, *found, rtol=1e-5)
