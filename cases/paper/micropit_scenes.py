@@ -75,6 +75,7 @@ def lay(peklenik: float, **waves: float) -> dict[str, Any]:
 SCENES = {
     "first": Scene("three seeds"),
     "second": Scene("three others", seeds=(4, 5, 6)),
+    "third": Scene("four others", seeds=(7, 8, 9, 10)),
     "mirror": Scene("mirror", {"surface.1.synthetic.sq": 1e-9}, (1,)),
     "smoother": Scene("Sq 3 % less", {"surface.1.synthetic.sq": 0.097e-6}),
     "fine": Scene("a/48", {"mesh.points_per_half_width": 48}, (1,)),
@@ -108,5 +109,9 @@ SCENES = {
     "transverse": Scene("across", lay(0.25)),
     "along": Scene("along", lay(4.0, roll_off=180e-6, short_cutoff=60e-6)),
 }
-for _name in ("first", "reversed", "rolling", "thin", "thick"):
+OF_SIGNS = (
+    *("first", "reversed", "rolling", "thin", "thick", "transverse", "along"),
+    *("pair_1", "pair_2", "pair_3", "pair_4", "cold", "warm", "hot"),
+)
+for _name in OF_SIGNS:
     SCENES[f"{_name}_limited"] = SCENES[_name]._replace(seeds=(1, 2, 3)).limited()

@@ -68,6 +68,7 @@ SHORT = {
     "table1_smooth": (),
     "traction": ("mesh.points_per_half_width=50", "series.values=[0.01, 0.1]"),
     "waviness": (*QUICK[:3], "time.travel=1.0"),
+    "wear_and_pits": ("time.travel=0.5",),
 }
 
 RTOL = 1e-5

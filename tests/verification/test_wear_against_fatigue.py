@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support import COARSE_LIFE
+from support import CASES, COARSE_LIFE
 
 from ehlpetsc import Simulation, read_result
 from ehlpetsc.case.loading import load
@@ -187,3 +187,23 @@ def test_yield_pressure_that_no_pass_reaches_leaves_a_life_as_it_is(tmp_path):
     assert hard("passes") == pytest.approx(elastic("passes"), rel=1e-6)
     for name in ("damage_1", "damage_2", "wear_volume_2"):
         assert hard(name) == pytest.approx(elastic(name), rel=1e-6), name
+
+
+@pytest.mark.parametrize("name, keys", [("wear_and_pits", {}), ("micropitting", {"mesh.width": 0.5})])
+def test_exchanged_surfaces_with_exchanged_speeds_exchange_wear_and_damage(name, keys, tmp_path):
+    """The number of a body means nothing: the other one is rough, and its speed the other's."""
+    waves = {"kind": "self-affine", "sq": 0.1e-6, "hurst": 0.8, "roll_off": 60e-6, "short_cutoff": 20e-6}
+    keys = keys | {"mesh.points_per_half_width": 8, "time.travel": 5.0, "time.pass_shift": 0.0}
+    keys |= {"life.max_solved": 1, "life.break_out": "none", "life.damage_jump": 1.0}
+    keys |= {"post.depths": [0.0, 0.02, 0.1]}
+    lives = []
+    for rough, smooth, ratio in (("1", "2", 0.25), ("2", "1", -0.25)):
+        surfaces = {f"surface.{rough}.synthetic": waves | {"seed": 1}, f"surface.{smooth}": None}
+        one = load(CASES / f"{name}.toml", keys | surfaces | {"motion.slide_roll_ratio": ratio})
+        lives.append(run_life(one, tmp_path / f"{rough}.life.h5", unresolved=True))
+    for body, other in zip(lives[0].bodies[0], reversed(lives[1].bodies[0]), strict=True):
+        for values, others in ((body.damage, other.damage), (body.wear, other.wear)):
+            assert values.max() > 0.0 and np.abs(values - others).max() <= 1e-9 * values.max()
+        assert body.damaged_share(lives[0].done) == other.damaged_share(lives[1].done)
+    rough, smooth = lives[0].bodies[0]
+    assert smooth.damage.max() > 1.2 * rough.damage.max()  # bodies that differ are exchanged
