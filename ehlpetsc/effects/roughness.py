@@ -27,5 +27,8 @@ class RoughSurfaces(Effect[NoRecord]):
     def inputs(self, record: NoRecord, inputs: StepInputs, step: Step) -> StepInputs:
         """Add the roughness at the end of the step to the gap."""
         scales = self.scene.scales
-        heights = self.scene.roughness.phi_after(scales.x * scales.a, step.travelled, scales.spacing)
-        return replace(inputs, phi=inputs.phi + heights / scales.h)
+        x, rough = scales.x * scales.a, self.scene.roughness
+        heights = self.scene.over_columns(
+            lambda columns: scales.grid.as_rows(rough.phi_after(x, step.travelled, scales.spacing, columns))
+        )
+        return replace(inputs, phi=inputs.phi + heights.ravel() / scales.h)

@@ -5,10 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    import numpy as np
+
     from ehlpetsc.base.case import Case
+    from ehlpetsc.base.declarations import Field
     from ehlpetsc.physics import Operation
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.motion.body_field import MeshOnBodies
@@ -20,22 +27,44 @@ class Scene:
     """Quantities that are fixed over a run.
 
     `begin`: abscissas at which both profiles begin to enter at time 0 [m].
+    `columns`: divides work over the nodes among the ranks, `nonlinear.ranks.Columns`; None: one rank.
     """
 
     case: Case
     scales: Scales
     operation: Operation
     begin: tuple[float, float]
+    columns: Callable[[Callable[[slice], np.ndarray]], np.ndarray] | None = None
 
     @classmethod
-    def of_pass(cls, case: Case, scales: Scales, operation: Operation, number: float) -> Scene:
+    def of_pass(
+        cls, case: Case, scales: Scales, operation: Operation, number: float, columns: Any = None
+    ) -> Scene:
         """Scene at the beginning of a pass, from 1: `time.pass_shift` shifts surface 2 from pass to pass.
 
         `number`: of a life with a fraction, as its partners drift.
         """
         offset_1, offset_2 = (case.conditions and case.conditions.profile_offsets) or (0.0, 0.0)
         shift = (number - 1) * (case.time.pass_shift or 0.0) if case.time else 0.0
-        return cls(case, scales, operation, (offset_1, offset_2 + shift))
+        return cls(case, scales, operation, (offset_1, offset_2 + shift), columns)
+
+    def over_columns(self, compute: Callable[[slice], np.ndarray]) -> np.ndarray:
+        """Array over all nodes, of which each rank computes some columns along x, its last axis; collective.
+
+        `compute`: of a slice of columns.
+        """
+        if self.columns is None:
+            return compute(slice(0, self.scales.grid.shape[-1]))
+        return self.columns(compute)
+
+    @cached_property
+    def quantities(self) -> tuple[dict[str, Callable], dict[str, Callable]]:
+        """Functions of the fields and of the scalars of a step that the case has, by name."""
+        tables: tuple[Mapping[str, Field], ...] = (FIELDS, STEP_SCALARS)
+        fields, scalars = (
+            {name: of for name in of_case(table, self.case) if (of := table[name].of)} for table in tables
+        )
+        return fields, scalars
 
     @cached_property
     def roughness(self) -> Roughness | None:

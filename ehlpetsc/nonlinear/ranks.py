@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -19,6 +20,33 @@ class Exchange(Protocol):
 
         `vector`, `pressure`: local unknowns, interleaved, and pressures.
         """
+
+
+class Columns:
+    """Columns of nodes along x, of which each rank computes its own: work that all ranks would repeat.
+
+    `n_x`: number of columns of the mesh.
+    """
+
+    def __init__(self, ranks: MPI.Comm, n_x: int):
+        self.ranks, self.n_x = ranks, n_x
+        self.counts = np.diff([n_x * k // ranks.size for k in range(ranks.size + 1)])
+
+    def __call__(self, compute: Callable[[slice], np.ndarray]) -> np.ndarray:
+        """Array over all columns, its last axis, on every rank; collective.
+
+        `compute`: of a slice of columns.
+        """
+        end = int(self.counts[: self.ranks.rank + 1].sum())
+        local = np.ascontiguousarray(compute(slice(end - int(self.counts[self.ranks.rank]), end)))
+        if self.ranks.size == 1:
+            return local
+        shape = local.shape[:-1]
+        sizes = self.counts * int(np.prod(shape))
+        received = np.empty(sizes.sum())
+        self.ranks.Allgatherv(local, [received, sizes])
+        parts = np.split(received, np.cumsum(sizes)[:-1])
+        return np.concatenate([part.reshape(*shape, -1) for part in parts], axis=-1)
 
 
 def global_max(ranks: MPI.Comm, number: float) -> Any:

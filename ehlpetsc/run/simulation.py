@@ -25,6 +25,7 @@ from ehlpetsc.effects.scene import Scene
 from ehlpetsc.nonlinear import solver_of
 from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import START, TIME_STEPS, RunOptions
+from ehlpetsc.nonlinear.ranks import Columns
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
@@ -155,7 +156,8 @@ class Simulation:
             raise UsageError("after: allowed: a pass at its end, on the same nodes, of the same contact law")
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
-        self.scene = Scene.of_pass(case, self.scales, self.operation, self.pass_number)
+        columns = Columns(self.comm, self.scales.grid.shape[-1]) if self.comm.size > 1 else None
+        self.scene = Scene.of_pass(case, self.scales, self.operation, self.pass_number, columns)
         self.roughness = self.scene.roughness
         self._film = film = expected_film(case, self.scales)
         self.state: AcceptedState | None = None

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ehlpetsc.base.quantities import FIELDS, STEP_SCALARS, of_case
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.effects.effect import Effect
@@ -73,8 +72,16 @@ class Observation:
         oil, solids = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0
         sheared = np.where(loads.sheared_oil, 1.0 - self.void_fraction, 0.0)
         gradient = np.gradient(s.grid.rows(oil), s.spacing, axis=-1).ravel()
-        walls = inputs.boundary_friction * solids, gradient, self.conditions.sliding
-        return shear_stresses(inputs.fluid, *walls, oil, self.film, sheared, self.film_shear)
+        nodes = [inputs.boundary_friction * solids, gradient, oil, self.film, sheared]
+        nodes += [] if self.film_shear is None else [self.film_shear]
+
+        def at(columns: slice) -> np.ndarray:
+            walls, slope, *others = (s.grid.at_columns(values, columns) for values in nodes)
+            of_film = self.conditions.sliding, *others
+            return s.grid.as_rows(np.stack(shear_stresses(inputs.fluid, walls, slope, *of_film)))
+
+        shear_1, shear_2 = self.scene.over_columns(at)
+        return shear_1.ravel(), shear_2.ravel()
 
     @property
     def node_size(self) -> float:
@@ -201,10 +208,7 @@ def diagnostics(
     for effect in present:
         shear = effect.film_shear(state.records[effect.name], solution, shear)
     observation = Observation(scene, problem, state, conditions, shear, started, smooth)
-    fields, scalars = (
-        {name: of(observation) for name in of_case(table, case) if (of := table[name].of)}
-        for table in (FIELDS, STEP_SCALARS)
-    )
+    fields, scalars = ({name: of(observation) for name, of in table.items()} for table in scene.quantities)
     step = Step(state.time, state.dt, state.travelled, conditions)
     for effect in present:
         effect_fields, effect_scalars = effect.observe(state.records[effect.name], solution, step)

@@ -102,19 +102,27 @@ SMALL_PRESSURE = 0.01  # of the smooth solution: less oil pressure does not rise
 LEVEL_AGE_NODES = 0.03  # distance from a whole number of nodes that counts as much as one step of age
 
 
-@compiled
-def advected(rows: np.ndarray, nodes: float) -> np.ndarray:
-    """Rows along x advected by `nodes` nodes.
+ALL = slice(None)
+
+
+def advected(rows: np.ndarray, nodes: float, columns: slice = ALL) -> np.ndarray:
+    """Rows along x advected by `nodes` nodes, at some columns.
 
     Cubic interpolation, limited to the range of the two neighbouring values: next to the pressure spikes of
     asperities, two or three nodes wide, a cubic undershoots, and the resulting cavity costs Newton's method
     iterations.
     """
-    shift, last, moved = int(np.floor(nodes)), rows.shape[1] - 1, np.empty_like(rows)
+    begin, end, _ = columns.indices(rows.shape[1])
+    return _advected(rows, nodes, begin, end)
+
+
+@compiled
+def _advected(rows: np.ndarray, nodes: float, begin: int, end: int) -> np.ndarray:
+    shift, last, moved = int(np.floor(nodes)), rows.shape[1] - 1, np.empty((len(rows), end - begin))
     t = 1.0 - (nodes - shift)
     for row in range(len(rows)):
         values = rows[row]
-        for i in range(len(values)):
+        for i in range(begin, end):
             k = i - shift - 1
             a, b = values[min(max(k - 1, 0), last)], values[min(max(k, 0), last)]
             c, d = values[min(max(k + 1, 0), last)], values[min(max(k + 2, 0), last)]
@@ -124,23 +132,27 @@ def advected(rows: np.ndarray, nodes: float) -> np.ndarray:
                 - (t + 1.0) * t * (t - 2.0) / 2.0 * c
                 + (t + 1.0) * t * (t - 1.0) / 6.0 * d
             )
-            moved[row, i] = min(max(value, min(b, c)), max(b, c))
+            moved[row, i - begin] = min(max(value, min(b, c)), max(b, c))
     return moved
 
 
-def neighbours(v: np.ndarray, nodes: float) -> tuple[np.ndarray, np.ndarray]:
-    """Values of the two nodes upstream of each point moved by `nodes` nodes."""
-    source = np.arange(v.shape[-1]) - int(np.floor(nodes))
+def neighbours(v: np.ndarray, nodes: float, columns: slice = ALL) -> tuple[np.ndarray, np.ndarray]:
+    """Values of the two nodes upstream of each point moved by `nodes` nodes, at some columns."""
+    source = np.arange(*columns.indices(v.shape[-1])) - int(np.floor(nodes))
     return v.take(source, axis=-1, mode="clip"), v.take(source - 1, axis=-1, mode="clip")
 
 
-def whole_nodes(v: np.ndarray, nodes: float) -> np.ndarray:
-    """Values moved by the nearest whole number of nodes."""
-    return v.take(np.arange(v.shape[-1]) - int(np.rint(nodes)), axis=-1, mode="clip")
+def whole_nodes(v: np.ndarray, nodes: float, columns: slice = ALL) -> np.ndarray:
+    """Values moved by the nearest whole number of nodes, at some columns."""
+    return v.take(np.arange(*columns.indices(v.shape[-1])) - int(np.rint(nodes)), axis=-1, mode="clip")
 
 
 def predict(
-    problem: EHLProblem, baseline: TimeLevel, levels: Sequence[TimeLevel], nodes: Sequence[float]
+    problem: EHLProblem,
+    baseline: TimeLevel,
+    levels: Sequence[TimeLevel],
+    nodes: Sequence[float],
+    columns: slice = ALL,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Guess of q and w: the difference from the baseline, which roughness causes, advected.
 
@@ -151,20 +163,23 @@ def predict(
     the best of three 4.6 (over a travel of 5 a). Extrapolation in time does not reduce this number.
 
     `baseline`: smooth steady solution. `levels`: earlier time levels, latest first. `nodes`: distance of
-    each level to the new time, with the entrainment speed, in nodes.
+    each level to the new time, with the entrainment speed, in nodes. `columns`: of the guess.
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
-    level, distance, model, rows = levels[best], nodes[best], problem.model, problem.grid.rows
-    q0, film = baseline.q, model.state(level.q, level.w).film
-    h0 = np.maximum(model.state(q0, baseline.w).film, MIN_FILM_DIVISOR * problem.film_scale)
-    q = q0 + advected(rows(level.q - q0), distance).ravel()
+    level, distance, model, grid = levels[best], nodes[best], problem.model, problem.grid
+    rows, old = grid.rows, model.state(level.q, level.w).film
+    q0, q_before = (grid.at_columns(q, columns) for q in (baseline.q, level.q))
+    h0 = np.maximum(model.state(baseline.q, baseline.w).film, MIN_FILM_DIVISOR * problem.film_scale)
+    q = q0 + advected(rows(level.q - baseline.q), distance, columns).ravel()
     # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
-    pair = neighbours(rows(level.q), distance)
+    pair = neighbours(rows(level.q), distance, columns)
     smallest, largest = np.minimum(*pair).ravel(), np.maximum(*pair).ravel()
     # no oil pressure in the guess where there was next to none: through an open gap it would drive a flood
     q = np.where(largest < SMALL_PRESSURE * q0, np.minimum(q, np.maximum(largest, PRESSURE_AFTER_REFILL)), q)
-    in_cavity = np.minimum(np.minimum(smallest, level.q), PRESSURE_AFTER_REFILL)  # of the baseline
+    in_cavity = np.minimum(np.minimum(smallest, q_before), PRESSURE_AFTER_REFILL)  # of the baseline
     full = np.where(q0 > 0.0, 0.5 * np.minimum(q0, smallest), in_cavity)
     q = np.maximum(q, np.where(full > 0.0, full, -1.0 + 1e-3))
-    interpolated = model.w_from_film(h0 * advected(rows(film / h0), distance).ravel())
-    return model.reset_yielding(q, model.advected(interpolated, whole_nodes(rows(level.w), distance).ravel()))
+    ratio = advected(rows(old / h0), distance, columns).ravel()
+    interpolated = model.w_from_film(grid.at_columns(h0, columns) * ratio)
+    shifted = whole_nodes(rows(level.w), distance, columns).ravel()
+    return model.reset_yielding(q, model.advected(interpolated, shifted))

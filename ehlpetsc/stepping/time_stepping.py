@@ -288,7 +288,13 @@ class TimeStepping:
         levels = (state.level, *state.earlier)
         entrained = 0.5 * sum(self._step_end(state, dt).travelled)
         nodes = [(entrained - level.travelled) / self.scales.spacing for level in levels]
-        return predict(self.problem, TimeLevel(0.0, *self.baseline), levels, nodes)
+        baseline, as_rows = TimeLevel(0.0, *self.baseline), self.problem.grid.as_rows
+
+        def at(columns: slice) -> np.ndarray:
+            return as_rows(np.stack(predict(self.problem, baseline, levels, nodes, columns)))
+
+        q, w = self.scene.over_columns(at)
+        return q.ravel(), w.ravel()
 
     def _prepare(self, dt: float) -> None:
         """Prepare the solver, once, for time steps of `dt` [s] from the smooth contact."""

@@ -160,3 +160,11 @@ class Grid:
     def rows(self, values: np.ndarray) -> np.ndarray:
         """View of a flat field as rows along x, shape (rows, nx)."""
         return values.reshape(-1, self.shape[-1])
+
+    def at_columns(self, values: np.ndarray, columns: slice) -> np.ndarray:
+        """Values of a flat field at some columns of nodes along x, flat."""
+        return self.rows(values)[:, columns].ravel()
+
+    def as_rows(self, of_columns: np.ndarray) -> np.ndarray:
+        """Rows along x of the flat values of some columns, shape (rows, columns)."""
+        return of_columns.reshape(*of_columns.shape[:-1], self.n // self.shape[-1], -1)

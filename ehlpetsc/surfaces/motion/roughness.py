@@ -175,17 +175,27 @@ class Roughness:
             sides.append(spec and rough_surface(case, scales, spec, given))
         return cls(*sides)
 
-    def phi_after(self, x: np.ndarray, travelled: Sequence[float], cell: float | None = None) -> np.ndarray:
+    def phi_after(
+        self,
+        x: np.ndarray,
+        travelled: Sequence[float],
+        cell: float | None = None,
+        columns: slice = slice(None),
+    ) -> np.ndarray:
         """Contribution of both roughnesses to the gap [m] after distances travelled [m] (surfaces 1, 2).
 
         `x`: positions [m], with `cell` equally spaced by it, shape (nx,).
         `cell`: cell width of the mesh [m]: heights by :func:`centre_values`, which damps the waves that the
             mesh does not resolve. Without it values of the profiles at x.
+        `columns`: of x, of which the heights are computed.
 
         Returns one value a node, x fastest.
         """
         phi = np.zeros(())
-        at = x if cell is None else cell_faces(x, cell)
+        at = x[columns]
+        if cell is not None:
+            begin, end, _ = columns.indices(len(x))
+            at = cell_faces(x, cell)[begin : end + 3]
         for surface, distance in zip((self.surface_1, self.surface_2), travelled, strict=True):
             if surface is not None:
                 heights = surface.height if cell is None else surface.node_height
