@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import codecs
-import copy
 import difflib
 import itertools
 import json
 import os
 import re
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -86,6 +86,17 @@ def plain(value: object) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
+def copied(tables: Tables) -> Tables:
+    """Copy of tables with their tables and lists; rows of maps, lists within lists, are shared."""
+
+    def of(value: object) -> Any:
+        if isinstance(value, list):
+            return [copied(item) if isinstance(item, dict) else item for item in value]
+        return copied(value) if isinstance(value, dict) else value
+
+    return {name: of(value) for name, value in tables.items()}
+
+
 def toml_text(tables: dict[str, object]) -> str:
     """TOML text of plain tables, with a heading for each table of the first level."""
     lines = [f"{_key(k)} = {_value(v)}" for k, v in tables.items() if not isinstance(v, dict)]
@@ -126,16 +137,17 @@ def parsed(override: object) -> tuple[list[str], Any]:
     return keys, table["value"] if list(table) == ["value"] else raw
 
 
-def put(tables: Tables, keys: list[str], value: object) -> None:
-    """Set a key in nested tables, None removes it; ValueError: the parent of the key is not a table."""
-    for key in keys[:-1]:
-        tables = tables.setdefault(key, {})
-        if not isinstance(tables, dict):
+def with_key(tables: Tables, keys: Sequence[str], value: object) -> Tables:
+    """Nested tables with a key set, without it for None; ValueError: the parent of the key is not a table."""
+    key, *below = keys
+    if below:
+        inner = tables.get(key, {})
+        if not isinstance(inner, dict):
             raise ValueError(key)
+        return tables | {key: with_key(inner, below, value)}
     if value is None:
-        tables.pop(keys[-1], None)
-    else:
-        tables[keys[-1]] = value
+        return {name: one for name, one in tables.items() if name != key}
+    return tables | {key: value}
 
 
 Settings = list[tuple[list[str], Any]]
@@ -163,8 +175,7 @@ def settings_of(series: Tables) -> list[Settings]:
 
 def member_tables(data: Tables, settings: Settings) -> Tables:
     """Tables of one member: tables of the case without `[series]`; ValueError: no such key."""
-    member = copy.deepcopy(data)
-    del member["series"]
+    member = with_key(data, ["series"], None)
     for keys, value in settings:
-        put(member, keys, value)
+        member = with_key(member, keys, value)
     return member

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
 from ehlpetsc.base.errors import CaseError
-from ehlpetsc.base.toml_file import Tables
+from ehlpetsc.base.toml_file import Tables, copied
 from ehlpetsc.base.units import UnitFault, converted
 from ehlpetsc.case.tables import CASE, key_of
 from ehlpetsc.case.values import (
@@ -44,17 +44,18 @@ class _Scope(NamedTuple):
     is_sound: bool
 
 
-def in_si(data: Tables, kind: str) -> list[Fault]:
-    """Replace the texts with a unit in the tables of a case by numbers in SI units; returns the faults."""
-    faults, table = [], in_kind(CASE, kind)
-    for holder, name, key, place in [*entries(data, table, ""), *_series_entries(data.get("series"), table)]:
+def in_si(data: Tables, kind: str) -> tuple[Tables, list[Fault]]:
+    """Tables of a case with numbers in SI units in place of texts with a unit, and the faults."""
+    faults, table, tables = [], in_kind(CASE, kind), copied(data)
+    of_series = _series_entries(tables.get("series"), table)
+    for holder, name, key, place in [*entries(tables, table, ""), *of_series]:
         if key and key.kind is float and key.unit not in NUMBERS_ONLY:
             try:
                 holder[name] = converted(holder[name], key.unit, key.is_difference)
             except UnitFault as fault:
                 is_other = key.point_unit and str(fault).endswith(f"one of {key.unit}")
                 faults.append(Fault(place, f"{place} = {fault}{KINDS[kind].radii if is_other else ''}"))
-    return faults
+    return tables, faults
 
 
 def in_kind(table: KeyTable, kind: str) -> KeyTable:

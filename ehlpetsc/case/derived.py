@@ -169,8 +169,8 @@ def _oil_temperature(fluid: Tables, heat: Tables) -> float | None:
     return next((value for value in given if value is not None), None)
 
 
-def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[Fault]:
-    r"""Replace ``asperity_height = "measured"`` in the tables of a case by a number; returns the faults.
+def with_measured_layer(folder: Path, data: Tables, known: Set[str]) -> tuple[Tables, list[Fault]]:
+    r"""Tables of a case with a number in place of ``asperity_height = "measured"``, and the faults.
 
     .. math:: \sigma^2=\sum_{surfaces}\overline{(z-z_S)^2},
 
@@ -180,17 +180,17 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
     """
     contact, place = data.get("contact"), f"contact.{MEASURED_KEY}"
     if not isinstance(contact, dict) or contact.get(MEASURED_KEY) != "measured":
-        return []
+        return data, []
     unresolved = [Fault(place, f'{place} = "measured": the surfaces have faults', is_consequence=True)]
     if unsound_tables(data, known) & {"contact", "surface", "series"}:
-        return unresolved
+        return data, unresolved
     series, surface = data.get("series", {}), data.get("surface", {})
     varied = [series["key"]] if "key" in series else series.get("keys", [])
     if any(name.startswith("surface.") for name in varied):
-        return [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
+        return data, [Fault(place, f'{place} = "measured": not in a series over surfaces; allowed: a number')]
     tables = [table for table in surface.values() if "short_cutoff" in table]
     if not tables:
-        return [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
+        return data, [Fault(place, f'{place} = "measured": needs short_cutoff in [surface.1] or [surface.2]')]
     from ehlpetsc.surfaces.motion.profile_checks import OTHER_HEIGHTS
     from ehlpetsc.surfaces.samples import measured_samples
 
@@ -199,16 +199,15 @@ def resolve_measured_layer(folder: Path, data: Tables, known: Set[str]) -> list[
         before = [measured_samples(folder, profile.copy({"short_cutoff": None})).z for profile in profiles]
         after = [measured_samples(folder, profile).z for profile in profiles]
     except (ProfileError, CaseError):  # reported by the checks of the profiles
-        return unresolved
+        return data, unresolved
     removed = [float((z - z_s).std()) for z, z_s in zip(before, after, strict=True)]
     height = float(f"{math.hypot(*removed):.{DIGITS}g}")
     key = CONTACT.keys[MEASURED_KEY]
     if not is_allowed(key, height):
         found = f"short_cutoff removes waves of an rms height of {1e6 * height:.3g} um"
         bounds = f"{1e6 * key.ge:g} to {1e6 * key.le:g} um"
-        return [Fault(place, f'{place} = "measured": {found}; allowed: {bounds}; {OTHER_HEIGHTS}')]
-    contact[MEASURED_KEY] = height
-    return []
+        return data, [Fault(place, f'{place} = "measured": {found}; allowed: {bounds}; {OTHER_HEIGHTS}')]
+    return data | {"contact": contact | {MEASURED_KEY: height}}, []
 
 
 def with_layer_stiffness(case: Case) -> Case:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import copy
 import os
 from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ehlpetsc.base.case import kind_of
 from ehlpetsc.base.errors import CaseError
@@ -18,27 +17,19 @@ from ehlpetsc.base.toml_file import (
     parse_toml,
     parsed,
     plain,
-    put,
     read_text,
     settings_of,
+    with_key,
 )
 from ehlpetsc.case.checking import Fault, check, in_si
-from ehlpetsc.case.conditions import (
-    with_columns,
-)
-from ehlpetsc.case.derived import (
-    resolve_measured_layer,
-)
-from ehlpetsc.case.stages import checked
-from ehlpetsc.case.surface_checks import with_profiles
+from ehlpetsc.case.conditions import with_columns
+from ehlpetsc.case.stages import checked, resolved
+from ehlpetsc.case.surface_checks import checked_with_surfaces
 from ehlpetsc.case.tables import Case, extend, key_of
 from ehlpetsc.case.tables.surface import file_digests
 from ehlpetsc.case.values import shortened, show
 from ehlpetsc.effects.effect import Effect
 from ehlpetsc.physics.oil.law import Law
-
-if TYPE_CHECKING:
-    pass
 
 DICT_NAME = "case"  # name of a case without a file in messages
 OWN_ADVICE = "; if it is of your own, set EHLPETSC_OWN to the module that defines it"
@@ -81,22 +72,21 @@ def load(
         raise CaseError([f"{_not_tables(case)}; allowed: the path of a case file, or a dict of its tables"])
     path, text = (DICT_NAME, None) if isinstance(case, dict) else (case, read_text(case))
     data = plain(case) if text is None else parse_toml(path, text)
-    written, folder = copy.deepcopy(data), Path(path).parent
-    faults = _override(data, overrides)
-    kind = kind_of(data)
-    faults += _of_roller(folder, data)
-    faults += in_si(data, kind)
-    faults += resolve_measured_layer(folder, data, {fault.place for fault in faults})
-    base = copy.deepcopy(data) if "series" in data else data  # each member has bulk temperatures of its own
-    checked, found = with_profiles(folder, base, kind, {fault.place for fault in faults})
-    lines = _lines(path, faults + found)
-    if not lines and "series" in data:
-        lines = _series_faults(path, folder, data)
+    folder = Path(path).parent
+    written, of_overrides = _overridden(data, overrides)
+    kind = kind_of(written)
+    tables, faults = resolved(folder, written, kind)
+    faults = of_overrides + faults
+    found = checked_with_surfaces(folder, tables, kind, {fault.place for fault in faults})
+    lines = _lines(path, faults + found.faults)
+    if not lines and "series" in tables:
+        lines = _series_faults(path, folder, tables)
     if lines:
         raise CaseError(lines)
-    stored = with_columns(data, folder, kind)
-    text = text if stored == written else None
-    return _of_files(checked.copy({"_path": Path(path), "_tables": stored, "_text": text}))
+    # each member of a series has bulk temperatures of its own
+    stored = with_columns(tables if "series" in tables else found.tables, folder, kind)
+    text = text if stored == data else None
+    return _of_files(found.case.copy({"_path": Path(path), "_tables": stored, "_text": text}))
 
 
 def _not_tables(given: object) -> str:
@@ -110,27 +100,17 @@ def _of_files(case: Case) -> Case:
     return case.copy({"_digests": file_digests(case)})
 
 
-def _of_roller(folder: Path, data: Tables) -> list[Fault]:
-    """Resolve the profile of a roller, if any; returns the faults."""
-    contact = data.get("contact")
-    if not isinstance(contact, dict) or "profile" not in contact:
-        return []
-    from ehlpetsc.case.profile_files import resolve_profile
-
-    return resolve_profile(folder, contact)
-
-
 def stored_case(text: str, overrides: Overrides = None) -> Case:
     """Case from the text in a result file, which it keeps, without its profile files; raises `CaseError`."""
-    data = parse_toml(DICT_NAME, text)
-    faults = _override(data, overrides)
-    kind = kind_of(data)
-    faults += in_si(data, kind)
-    case, found = checked(Path(), data, kind, is_stored=True)
+    tables, faults = _overridden(parse_toml(DICT_NAME, text), overrides)
+    kind = kind_of(tables)
+    tables, of_units = in_si(tables, kind)
+    faults += of_units
+    tables, case, found = checked(Path(), tables, kind, is_stored=True)
     if faults + found:
         own = "" if overrides or os.environ.get("EHLPETSC_OWN") else OWN_ADVICE
         raise CaseError([f"{line}{own}" for line in _lines(DICT_NAME, faults + found)])
-    return case.copy({"_path": Path(DICT_NAME), "_tables": data, "_text": text})
+    return case.copy({"_path": Path(DICT_NAME), "_tables": tables, "_text": text})
 
 
 def members(case: Case | str | PathLike | Tables) -> list[tuple[Any, Case]]:
@@ -139,31 +119,31 @@ def members(case: Case | str | PathLike | Tables) -> list[tuple[Any, Case]]:
     For several keys the value is a tuple.
     """
     case = case if isinstance(case, Case) else load(case)
-    data, result = copy.deepcopy(case._tables), []
+    data, result = case._tables, []
     if "series" not in data:
         raise CaseError([f"{case.path}: no [series]: it has no members; solve the case itself"])
     for settings in settings_of(data["series"]):
         tables = member_tables(data, settings)
-        member, _ = checked(case.path.parent, tables, kind_of(tables))
+        tables, member, _ = checked(case.path.parent, tables, kind_of(tables))
         values = tuple(value for _, value in settings)
         member = _of_files(member.copy({"_path": case.path, "_tables": tables, "_text": None}))
         result.append((values[0] if case.series.key else values, member))
     return result
 
 
-def _override(data: Tables, overrides: Overrides) -> list[Fault]:
-    """Set keys in the tables; returns a fault for each invalid one."""
+def _overridden(data: Tables, overrides: Overrides) -> tuple[Tables, list[Fault]]:
+    """Tables with keys set, and a fault for each invalid one."""
     faults = []
     items: Any = overrides.items() if isinstance(overrides, dict) else overrides or ()
     for override in [items] if isinstance(items, str | int | float) else list(items):
         try:
             keys, value = parsed(override)
-            put(data, keys, None if _leaves_out(keys, value) else value)
+            data = with_key(data, keys, None if _leaves_out(keys, value) else value)
         except ValueError:
             one_line = " ".join(override.split()) if isinstance(override, str) else show(override)
             text = shortened(one_line)
             faults.append(Fault("", f"{text}: allowed: table.key=value, as in fluid.viscosity=0.003"))
-    return faults
+    return data, faults
 
 
 def _leaves_out(keys: list[str], value: object) -> bool:
@@ -181,7 +161,7 @@ def _series_faults(path: str | PathLike, folder: Path, data: Tables) -> list[str
         except ValueError:
             named = ", ".join(show(key) for key in keys_of(data["series"]))
             return [f"{path}: series.key = {named}: allowed: a key of this case"]
-        _, faults = with_profiles(folder, member, kind_of(member))
+        faults = checked_with_surfaces(folder, member, kind_of(member)).faults
         values = ", ".join(show(value) for _, value in settings)
         lines += [f"{line} (series.values: {values})" for line in _lines(path, faults)]
     return lines

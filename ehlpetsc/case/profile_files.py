@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ehlpetsc.base.errors import ProfileError
-from ehlpetsc.base.toml_file import Tables
+from ehlpetsc.base.toml_file import Tables, with_key
 from ehlpetsc.case.checking import Fault
 from ehlpetsc.case.conditions import read_table
 from ehlpetsc.case.values import show
@@ -14,24 +14,27 @@ COLUMNS = {"y": ("y",), "z": ("z", "drop")}  # allowed names of the columns of a
 PLACE = "contact.profile"
 
 
-def resolve_profile(folder: Path, contact: Tables) -> list[Fault]:
-    """Replace the profile in `[contact]`, if it has no kind, by one of kind "table"; returns the faults.
+def with_profile(folder: Path, tables: Tables) -> tuple[Tables, list[Fault]]:
+    """Tables of a case whose profile of a roller, given without a kind, is of kind "table", and the faults.
 
     The points are those of the keys y and z, or of the columns of the file, beside the case file.
     """
-    profile = contact["profile"]
+    contact = tables.get("contact")
+    profile = contact.get("profile") if isinstance(contact, dict) else None
     if not isinstance(profile, dict) or "kind" in profile:
-        return []
+        return tables, []
     if "file" not in profile:
-        contact["profile"] = {"kind": "table"} | profile
-        return []
+        return _with_points(tables, profile), []
     file, *others = profile["file"], *(key for key in profile if key != "file")
     if others or not isinstance(file, str):
         given = ", ".join(others) or f"file = {show(file)}"
-        return [Fault(PLACE, f"{PLACE}: {given}; allowed: file, its name, and no other key")]
+        return tables, [Fault(PLACE, f"{PLACE}: {given}; allowed: file, its name, and no other key")]
     try:
         columns = read_table(folder / file, {"y": "m", "z": "m"}, COLUMNS)
     except ProfileError as error:
-        return [Fault(PLACE, f"{PLACE}.file = {show(file)}: {error}")]
-    contact["profile"] = {"kind": "table"} | columns
-    return []
+        return tables, [Fault(PLACE, f"{PLACE}.file = {show(file)}: {error}")]
+    return _with_points(tables, columns), []
+
+
+def _with_points(tables: Tables, points: Tables) -> Tables:
+    return with_key(tables, PLACE.split("."), {"kind": "table"} | points)

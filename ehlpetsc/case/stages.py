@@ -1,13 +1,15 @@
-"""Case of its tables in three stages, each of which leaves the tables of the one before as they are.
+"""Case of its tables in three stages, each of which returns new tables and leaves the given ones as they are.
 
-- given: what the file and overrides say, in SI units;
+- :func:`resolved`: what the file and overrides say, in SI units, with the points of a roller's profile and
+  the height of a measured layer: all that is stored with the case;
 - :func:`derived`: with all that follows from it, as constants of steels and oils, the load of an approach,
   conditions over time of tables and gears, the reference state of the scales;
 - :func:`checked`: values by the table of keys, then what keys mean together: a mesh for reversing oil,
   features that the contact lacks or that assume what it is not.
 
 Nothing is derived from tables with a fault of their own, and a fault that may be a consequence of another one
-is marked as such: all stages run, and the reader of a case reports all faults at once.
+is marked as such: all stages run, and the reader of a case reports all faults at once. New tables cost a copy
+of all but the rows of maps; `tests/unit/test_case.py` holds that no stage changes those it is given.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from ehlpetsc.base.case import KINDS, Case
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.case.assumptions import faults as departures
-from ehlpetsc.case.checking import Fault, check, entries, in_kind, unsound_tables
+from ehlpetsc.case.checking import Fault, check, entries, in_kind, in_si, unsound_tables
 from ehlpetsc.case.conditions import (
     approach_faults,
     conditions_of,
@@ -29,7 +31,13 @@ from ehlpetsc.case.conditions import (
     with_columns,
     with_reference_state,
 )
-from ehlpetsc.case.derived import modulus_of, rating_of, with_derived, with_layer_stiffness
+from ehlpetsc.case.derived import (
+    modulus_of,
+    rating_of,
+    with_derived,
+    with_layer_stiffness,
+    with_measured_layer,
+)
 from ehlpetsc.case.tables import CASE
 from ehlpetsc.case.tables.surface import AREAL
 from ehlpetsc.case.values import is_number, show
@@ -37,6 +45,32 @@ from ehlpetsc.effects import EFFECTS
 
 NO_SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
 MAX_PLANE_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
+
+
+class Checked(NamedTuple):
+    """Tables to be stored, the case, None with faults, and the faults of all stages."""
+
+    tables: Tables
+    case: Any
+    faults: list[Fault]
+
+
+def resolved(folder: Path, written: Tables, kind: str) -> tuple[Tables, list[Fault]]:
+    """First stage, with the faults so far; `written`: tables of a case file with its overrides."""
+    tables, of_profile = _with_profile(folder, written)
+    tables, of_units = in_si(tables, kind)
+    faults = of_profile + of_units
+    tables, of_layer = with_measured_layer(folder, tables, {fault.place for fault in faults})
+    return tables, faults + of_layer
+
+
+def _with_profile(folder: Path, written: Tables) -> tuple[Tables, list[Fault]]:
+    contact = written.get("contact")
+    if not isinstance(contact, dict) or "profile" not in contact:
+        return written, []
+    from ehlpetsc.case.profile_files import with_profile  # of rollers alone
+
+    return with_profile(folder, written)
 
 
 class Derived(NamedTuple):
@@ -72,23 +106,23 @@ def derived(folder: Path, given: Tables, kind: str, known: Collection[str], is_s
 
 def checked(
     folder: Path, given: Tables, kind: str, known: Collection[str] = (), is_stored: bool = False
-) -> tuple[Any, list[Fault]]:
-    """The case of a kind with its conditions over time, None with faults, and the faults of all stages."""
+) -> Checked:
+    """Third stage: the case of a kind with its conditions over time; parameters as of :func:`derived`."""
     heat = given.get("heat")
     if isinstance(heat, dict) and heat.get("bulk_temperature") == "losses":
         return _checked_with_losses(folder, given, kind, known)
     if wrong := approach_faults(given, kind) or given_by_gears(given, kind):
-        return None, wrong
+        return Checked(given, None, wrong)
     tables, conditions, faults, is_sound = derived(folder, given, kind, known, is_stored)
     values, found = check(in_kind(CASE, kind), tables, known=known, is_sound=is_sound and not faults)
     if values is None:
-        return None, faults + found
+        return Checked(given, None, faults + found)
     case: Case = _with_load_file(values.copy({"_kind": kind, "_conditions": conditions}), given)
     case = case if faults else with_layer_stiffness(case)  # which needs speeds
     reversed_flow = reversal_faults(case, conditions) if conditions else []
     faults = [*faults, *found, *(Fault("mesh", line) for line in reversed_flow)]
     faults += contact_faults(case, tables) if case.contact and case.mesh else []
-    return (None if faults else case), faults
+    return Checked(given, None if faults else case, faults)
 
 
 def _with_load_file(case: Case, given: Tables) -> Case:
@@ -98,10 +132,8 @@ def _with_load_file(case: Case, given: Tables) -> Case:
     return case.copy({"gears": case.gears.copy({"load_file": file})}) if file else case
 
 
-def _checked_with_losses(
-    folder: Path, given: Tables, kind: str, known: Collection[str]
-) -> tuple[Any, list[Fault]]:
-    """As :func:`checked`, with bulk temperatures from the losses of the gears, which are put into `given`.
+def _checked_with_losses(folder: Path, given: Tables, kind: str, known: Collection[str]) -> Checked:
+    """As :func:`checked`, with bulk temperatures from the losses of the gears.
 
     They are stored with the case, which then does not depend on how losses are computed.
     """
@@ -111,18 +143,18 @@ def _checked_with_losses(
     if not isinstance(given.get("gears"), dict) or not is_number(oil):
         text = 'heat.bulk_temperature = "losses": needs [gears] and the temperature of the oil, '
         text += "heat.inlet_temperature, fluid.temperature or heat.reference_temperature"
-        return None, [Fault("heat.bulk_temperature", text)]
-    case, faults = checked(folder, given | {"heat": heat | {"bulk_temperature": oil}}, kind, known)
+        return Checked(given, None, [Fault("heat.bulk_temperature", text)])
+    _, case, faults = checked(folder, given | {"heat": heat | {"bulk_temperature": oil}}, kind, known)
     if case is None:
-        return None, faults
+        return Checked(given, None, faults)
     from ehlpetsc.gears.standards import bulk_temperatures
 
     try:
         bulk = bulk_temperatures(rating_of(case, folder), heat_transfer=case.gears.heat_transfer)
     except ProfileError:  # of a surface, reported by its check
-        return None, []
-    heat["bulk_temperature"] = [round(value, 1) for value in bulk]
-    return checked(folder, given, kind, known)
+        return Checked(given, None, [])
+    found = [round(value, 1) for value in bulk]
+    return checked(folder, given | {"heat": heat | {"bulk_temperature": found}}, kind, known)
 
 
 def contact_faults(case: Case, data: Tables) -> list[Fault]:

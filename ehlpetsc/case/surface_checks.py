@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ehlpetsc.base.case import KINDS, Case
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import ProfileError
 from ehlpetsc.base.toml_file import Tables
 from ehlpetsc.case.checking import Fault, check
-from ehlpetsc.case.stages import checked
+from ehlpetsc.case.stages import Checked, checked
 from ehlpetsc.case.tables.surface import PROFILE, SIDES
 from ehlpetsc.case.values import show
 from ehlpetsc.physics.film_formulas import expected_film
@@ -22,14 +22,12 @@ if TYPE_CHECKING:
     from ehlpetsc.surfaces.topography import Topography
 
 
-def with_profiles(
-    folder: Path, data: Tables, kind: str, known: Collection[str] = ()
-) -> tuple[Any, list[Fault]]:
+def checked_with_surfaces(folder: Path, data: Tables, kind: str, known: Collection[str] = ()) -> Checked:
     """As :func:`.stages.checked`, with the faults of the files or heights of both surfaces.
 
     Without a case, as other tables have faults, they are read alone, as profiles or maps.
     """
-    case, faults = checked(folder, data, kind, known)
+    stored, case, faults = checked(folder, data, kind, known)
     whole = case if case and case.contact and case.mesh else None  # its kind is known
     surface = data.get("surface")
     tables = {side: surface.get(side) if isinstance(surface, dict) else None for side in SIDES}
@@ -43,8 +41,8 @@ def with_profiles(
             key = "z" if "z" in tables[side] else "file"
             of_map = whole and KINDS[whole.kind].is_areal  # of several keys
             given = "" if of_map else f".{key} = {show(tables[side][key])}"
-            faults.append(Fault("", f"surface.{side}{given}: {error}"))
-    return case, faults
+            faults = [*faults, Fault("", f"surface.{side}{given}: {error}")]
+    return Checked(stored, case, faults)
 
 
 def _check_surface(folder: Path, spec: Values, case: Case | None) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.declarations import Values
 from ehlpetsc.base.errors import CaseError, ProfileError
-from ehlpetsc.base.toml_file import parsed, put
+from ehlpetsc.base.toml_file import parsed, with_key
 from ehlpetsc.case.checking import check, in_si
 from ehlpetsc.case.tables.surface import PROFILE
 from ehlpetsc.pictures import style
@@ -124,13 +124,13 @@ def _spec(file: str, overrides: list[str]) -> Values:
     for override in overrides:
         try:
             keys, value = parsed(override.removeprefix(TABLE))
-            put(table, keys, value)
+            table = with_key(table, keys, value)
         except ValueError:
             raise CaseError([f"--set {override}: allowed: KEY=VALUE, as in unit=um"]) from None
     if "form" not in table:
         table.setdefault("level", True)
-    faults = in_si({"surface": {"1": table}}, "line")
-    spec, found = (None, []) if faults else check(PROFILE, table, TABLE)
+    tables, faults = in_si({"surface": {"1": table}}, "line")
+    spec, found = (None, []) if faults else check(PROFILE, tables["surface"]["1"], TABLE)
     if faults or found:
         raise CaseError([f"{file}: {fault.text.removeprefix(TABLE)}" for fault in [*faults, *found]])
     return spec

@@ -15,10 +15,11 @@ from ehlpetsc.base.case import KINDS, kind_of
 from ehlpetsc.base.declarations import Key, KeyTable, Required
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.quantities import DEFAULT_FIELDS
-from ehlpetsc.base.toml_file import toml_text
+from ehlpetsc.base.toml_file import toml_text, with_key
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.checking import values_of
 from ehlpetsc.case.loading import load
+from ehlpetsc.case.stages import checked, derived, resolved
 from ehlpetsc.physics.oil.laws import viscosity
 
 SMOOTH, ROUGH = CASES / "table1_smooth.toml", CASES / "table1_rough.toml"
@@ -75,6 +76,33 @@ def test_values_are_read_as_written_or_overridden_and_left_out_ones_are_none_or_
     options = {"ksp_rtol": 1e-8, "snes_vi_monitor": True, "ksp_view": False, "pc_type": "lu"}
     c = case.load(SMOOTH, {"petsc": options})
     assert c.petsc == {"ksp_rtol": "1e-08", "snes_vi_monitor": "", "pc_type": "lu"}
+
+
+WITH_ALL = {  # what stages resolve: units, a profile by points, losses of gears, a measured layer, a series
+    "roller": ("roller", {"contact.profile": {"y": ["0 mm", "6 mm"], "z": ["0 um", "5 um"]}}),
+    "losses": ("fzg", {"heat.bulk_temperature": "losses", "heat.inlet_temperature": 363.15}),
+    "series": ("table1_smooth", {"series": {"keys": ["contact.load"], "values": [["300 N/mm", 2e5]]}}),
+    "layer": ("compliant_mixed", {"contact.asperity_height": "measured"}),
+}
+
+
+@pytest.mark.parametrize("name", WITH_ALL)
+def test_no_stage_of_a_case_changes_the_tables_it_is_given(name):
+    file, changes = WITH_ALL[name]
+    tables = tomllib.loads((CASES / f"{file}.toml").read_text())
+    for key, value in changes.items():
+        tables = with_key(tables, key.split("."), value)
+    kind, before = kind_of(tables), copy.deepcopy(tables)
+    in_units, _ = resolved(CASES, tables, kind)
+    assert tables == before
+    between = copy.deepcopy(in_units)
+    following = derived(CASES, in_units, kind, (), False)
+    stored, *_ = checked(CASES, in_units, kind)
+    assert in_units == between
+    if name == "losses":
+        assert following.tables != in_units and stored["heat"]["bulk_temperature"][0] > 363.15
+    else:
+        assert in_units != before
 
 
 def test_series_members_differ_in_the_series_key_only_and_all_are_checked():
