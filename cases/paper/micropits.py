@@ -3,8 +3,8 @@
 ``ehlpetsc python cases/paper/micropits.py FOLDER [SCENE ...] [--store] [-o PICTURE]`` computes one pass of
 each seed of the scenes, by default of all, skips lives that are in the folder, and prints shares of the
 surface that asperities damage and passes to the first failures, which ``--store`` writes to
-`data/micropits.csv`. With the scene `first` it draws the signs of the chosen ones. Under mpirun ranks share
-the lives.
+`data/micropits.csv`. With the scene `first` it draws the signs, of scenes that are not chosen by the file.
+Under mpirun ranks share the lives.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import measured_data
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from micropit_scenes import COMMON, PASSES, RING_PASSES, SCENES, SEEDS
+from micropit_scenes import COMMON, PASSES, RING_PASSES, SCENES, SEEDS, Scene
 
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.ensemble import read_lives
@@ -42,7 +42,9 @@ SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is dr
     "7. lay: changes the area": ("transverse", SCENE, "along"),
 }
 SCENE_LABELS = {"1": "0.25", "2": "0.25", "3": "0.97", "7": "isotropic"}  # of a sign's number
-COMPARED = "second", "smoother", "fine", "wide", "long", "drift", "mises", "full"
+TEN = "first", "second", "third"  # whose seeds are the scene "ten"
+ALL = SCENES | {"ten": Scene("ten seeds")}
+COMPARED = "second", "third", "ten", "smoother", "fine", "wide", "long", "drift", "mises", "full"
 Ensembles = dict[str, list[LifeHistory]]
 
 
@@ -106,7 +108,7 @@ def lines(ensembles: Ensembles) -> list[str]:
     """Shares with their bounds (90 %), first failures, and ratios to the same seeds of the scene."""
     found = []
     for name, lives in ensembles.items():
-        scene, last = SCENES[name], [life.rows[-1] for life in lives]
+        scene, last = ALL[name], [life.rows[-1] for life in lives]
         values, failures = shares(lives, scene.passes), first_failures(lives)
         text = [f"surface {k}: {percentages(one)}" for k, one in enumerate(values, 1)]
         friction, pressure = (np.mean([row[key] for row in last]) for key in ("friction", "p_max"))
@@ -115,7 +117,7 @@ def lines(ensembles: Ensembles) -> list[str]:
         line += f", smooth contact {last[0]['smooth_life_1']:.3g}"
         line += f"; friction {friction:.4f}, {pressure / 1e9:.2f} GPa"
         if name in COMPARED and "first" in ensembles:
-            reference = ensembles["first"][: None if name == "second" else len(lives)]
+            reference = ensembles["first"][: None if name in (*TEN, "ten") else len(lives)]
             before = shares(reference, PASSES).mean(axis=1), first_failures(reference)
             line += "; over the first {:.2f} and {:.2f}, failures {:.2f} and {:.2f}".format(
                 *values.mean(axis=1) / before[0], *failures / before[1]
@@ -138,20 +140,45 @@ def of_limits(lives: list[LifeHistory]) -> list[str]:
         found.append(f"first, {text}: surface 1 {percentages(values[0])}, surface 2 {percentages(values[1])}")
     widths = 1e6 * np.quantile(spot_widths(lives, 0.3 * PASSES), (0.1, 0.5, 0.9))
     spots = "first, damaged spots after {:.0e} passes: {:.0f} to {:.0f} µm wide, half of them below {:.0f}"
-    return [*found, spots.format(0.3 * PASSES, widths[0], widths[2], widths[1])]
+    even = ", ".join(f"{damage:.3g}" for damage in even_damage(lives, PASSES))
+    text = f"first, D of surface 2 if its partner drifts through all positions: {even}"
+    return [*found, spots.format(0.3 * PASSES, widths[0], widths[2], widths[1]), text]
 
 
-def store(ensembles: Ensembles) -> None:
-    """Write shares, as percentages, and passes to the first failures to `FILE`."""
-    rows = []
+def even_damage(lives: list[LifeHistory], passes: float) -> list[float]:
+    """Largest mean over the columns of D of the smooth body, of all depths, of each life.
+
+    Its columns are alike. If partners drift through all positions, each of them gets the mean.
+    """
+    return [passes * life.bodies[-1][1].damage_rate.mean(axis=(1, 2)).max() for life in lives]
+
+
+def rows_of(ensembles: Ensembles) -> dict[str, tuple[str, ...]]:
+    """Rows of `FILE` by scene, those of the ensembles anew: shares as percentages, passes to failures."""
+    columns = measured_data.read(FILE).columns
+    rows = {row[0]: row for row in zip(*(map(_text, columns[name]) for name in COLUMNS), strict=True)}
     for name, lives in ensembles.items():
-        values = [100 * statistics(one) for one in shares(lives, SCENES[name].passes)]
+        values = [100 * statistics(one) for one in shares(lives, ALL[name].passes)]
         row = lives[0].rows[-1]
         ends = [*first_failures(lives), row["smooth_life_1"], row["smooth_depth_1"]]
         texts = [*(f"{value:.1f}" for value in np.ravel(values)), *(f"{value:.3g}" for value in ends)]
-        rows.append((name, len(lives), *texts))
-    columns = (map(str, column) for column in zip(*rows, strict=True))
+        rows[name] = (name, str(len(lives)), *texts)
+    return {name: rows[name] for name in ALL if name in rows}
+
+
+def _text(value: str | float) -> str:
+    return value if isinstance(value, str) else f"{value:.6g}"
+
+
+def store(ensembles: Ensembles) -> None:
+    """Write the rows of the ensembles to `FILE`; the others stay."""
+    columns = zip(*rows_of(ensembles).values(), strict=True)
     measured_data.store(FILE, **dict(zip(COLUMNS, columns, strict=True)))
+
+
+def stored_shares(rows: dict[str, tuple[str, ...]], name: str) -> np.ndarray | None:
+    """Mean shares of both surfaces and their bounds [%], shape (2, 3), of a scene; None: not there."""
+    return np.array(rows[name][2:8], float).reshape(2, 3) if name in rows else None
 
 
 def statistics(values: np.ndarray) -> np.ndarray:
@@ -162,45 +189,44 @@ def statistics(values: np.ndarray) -> np.ndarray:
 def bars(axes: Axes, labels: list[str], values: list[np.ndarray], limited: list[np.ndarray | None]) -> None:
     """Shares of both surfaces with bounds, one below the other; diamonds with a limiting shear stress."""
     for k, side in enumerate("12"):
-        mean, low, high = 100 * np.array([statistics(one[k]) for one in values]).T
+        mean, low, high = np.array([one[k] for one in values]).T
         at = np.arange(len(labels)) + 0.4 * k - 0.2
         axes.barh(at, mean, 0.38, color=style.SURFACES[side])
         axes.errorbar(mean, at, xerr=(mean - low, high - mean), fmt="none", color=style.DARK, lw=1, capsize=2)
         for place, one in zip(at, limited, strict=True):
             if one is not None:
-                axes.plot(100 * one[k].mean(), place, "D", ms=5, mfc="w", mec=style.DARK)
+                axes.plot(one[k, 0], place, "D", ms=5, mfc="w", mec=style.DARK)
     axes.set_yticks(range(len(labels)), labels, fontsize="small")
     axes.set_ylim(len(labels) - 0.5, -0.5)
 
 
 def draw(ensembles: Ensembles) -> Figure:
-    """Row of each sign with a computed scene of its own, over one axis of shares; damage over depth."""
-    signs = {title: names for title, names in SIGNS.items() if ensembles.keys() & {*names}}
-    signs = signs or dict(list(SIGNS.items())[:1])
+    """Row of each sign over one axis of shares, of the ensembles or as stored; damage over depth."""
+    rows = rows_of(ensembles)
+    signs = {title: [name for name in names if _of(name) in rows] for title, names in SIGNS.items()}
+    signs = {title: names for title, names in signs.items() if len(names) > 1}
     figure = Figure(figsize=(10.0, 1.5 + 1.3 * len(signs)), layout="constrained")
-    grid = figure.add_gridspec(
-        len(signs), 2, width_ratios=(2, 1), height_ratios=[1 + len(names) for names in signs.values()]
-    )
+    heights = [1 + len(names) for names in signs.values()]
+    grid = figure.add_gridspec(len(signs), 2, width_ratios=(2, 1), height_ratios=heights)
     first = None
     for row, (title, names) in enumerate(signs.items()):
         axes = figure.add_subplot(grid[row, 0], sharex=first)
-        first, labels, values, limited = first or axes, [], [], []
-        for name in (name for name in names if name in (SCENE, *ensembles)):
-            ensemble = "first" if name == SCENE else name
-            labels.append(SCENE_LABELS[title[0]] if name == SCENE else SCENES[name].label)
-            values.append(shares(ensembles[ensemble][:3], SCENES[ensemble].passes))
-            other = ensembles.get(f"{ensemble}_limited")
-            limited.append(other and shares(other, SCENES[ensemble].passes))
-        bars(axes, labels, values, limited)
+        first = first or axes
+        labels = [SCENE_LABELS[title[0]] if name == SCENE else SCENES[name].label for name in names]
+        values = [np.asarray(stored_shares(rows, _of(name))) for name in names]
+        bars(axes, labels, values, [stored_shares(rows, f"{_of(name)}_limited") for name in names])
         axes.set_title(title, fontsize="medium", loc="left")
         axes.tick_params(labelbottom=row == len(signs) - 1)
     axes.set_xlabel(f"share with D > {DAMAGED:g}, of which the smooth contact has less than a tenth [%]")
     over_depth(figure.add_subplot(grid[:, 1]), ensembles["first"])
     title = f"Surface damaged by asperities after {PASSES:,.0f} passes (4: {RING_PASSES:,.0f})"
-    if any(name.endswith("_limited") for name in ensembles):
-        title += "; diamonds: shear stress to 0.054 p"
-    style.set_title(figure, title)
+    style.set_title(figure, f"{title}; diamonds: shear stress to 0.054 p")
     return figure
+
+
+def _of(name: str) -> str:
+    """Scene of an ensemble: that of the case has the first seeds."""
+    return "first" if name == SCENE else name
 
 
 def over_depth(axes: Axes, lives: list[LifeHistory]) -> None:
@@ -239,6 +265,8 @@ def main(words: list[str] | None = None) -> None:
     ensembles = {name: compute(name, chosen.folder, chosen.short) for name in chosen.scenes or SCENES}
     if MPI.COMM_WORLD.rank:
         return
+    if ensembles.keys() >= {*TEN}:
+        ensembles["ten"] = [life for name in TEN for life in ensembles[name]]
     print("\n".join(lines(ensembles)))
     if chosen.store:
         store(ensembles)
