@@ -28,7 +28,8 @@ def checked_with_surfaces(folder: Path, data: Tables, kind: str, known: Collecti
     Without a case, as other tables have faults, they are read alone, as profiles or maps.
     """
     stored, case, faults = checked(folder, data, kind, known)
-    whole = case if case and case.contact and case.mesh else None  # its kind is known
+    is_whole = case and case.contact and case.mesh and not known  # its kind and its values are known
+    whole = case if is_whole else None
     surface = data.get("surface")
     tables = {side: surface.get(side) if isinstance(surface, dict) else None for side in SIDES}
     specs = {side: check(PROFILE, t)[0] if isinstance(t, dict) else None for side, t in tables.items()}

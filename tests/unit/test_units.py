@@ -109,3 +109,10 @@ def test_wrong_unit_is_refused_in_one_line(key, value, words):
 def test_dynamic_viscosity_is_refused_where_a_kinematic_one_belongs():
     with pytest.raises(UnitFault, match='^"87 mPa s": dynamic, .* over the density, .* "100 cSt"$'):
         converted("87 mPa s", "m^2/s")
+
+
+def test_a_rough_strip_whose_speed_has_no_number_is_refused_in_a_sentence():
+    """Its map, which depends on the width of the contact, is then not computed."""
+    strip = CASES / "micropitting.toml"
+    text = one_fault(load, strip, {"motion.entrainment_speed": ".71"})
+    assert text.endswith('".71": a number in quotation marks; allowed: 0.71')
