@@ -1,4 +1,4 @@
-"""Wear against micropits: failures at every rate of wear from one life; its lines and picture."""
+"""Wear against micropits: failures at every rate of wear from one life; waves that ensembles leave out."""
 
 import sys
 from pathlib import Path
@@ -8,9 +8,10 @@ import pytest
 from support import CASES
 
 sys.path.append(str(CASES / "paper"))
+import short_waves
 import wear_and_pits
 
-from ehlpetsc.case.loading import members
+from ehlpetsc.case.loading import load, members
 from ehlpetsc.life import ensemble
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.history import LifeHistory
@@ -76,3 +77,32 @@ def test_points_pass_under_every_film(is_strip, monkeypatch, tmp_path):
         assert len(others) == 2 and member.life.break_out == "none"
         case = with_shift(member)
         Positions(case, Scales.of(case)).check_travel()
+
+
+def test_waves_that_are_left_out_are_the_short_ones_alone():
+    x, heights = short_waves.profiles(1)
+    waves = np.fft.rfftfreq(x.size, x[1] - x[0])
+    both, long = (np.abs(np.fft.rfft(heights[name])) for name in ("all", "long"))
+    is_long = waves <= 1.0 / short_waves.LONGEST
+    assert heights["long"].std() == pytest.approx(short_waves.SQ)
+    assert both[is_long] == pytest.approx(long[is_long], abs=1e-9 * both.max())
+    assert long[~is_long].max() < 1e-9 * both.max()
+    added = np.sqrt(heights["all"].var() - heights["long"].var())
+    # spectra 1 to q0, then q^-2.6: (1 + (1 - 9^-1.6)/1.6)/(1 + (1 - 3^-1.6)/1.6) - 1
+    assert added == pytest.approx(0.242 * short_waves.SQ, rel=0.05)
+
+
+def test_a_pass_of_short_waves_is_a_case_and_its_first_failures_are_printed(tmp_path, monkeypatch, capsys):
+    made = life()
+    cells = np.zeros((2, 4))
+    cells[1, 2] = 1e-6
+    made.rows[0]["p_max"] = 3e9
+    made.bodies[0] = tuple(body._replace(damage_rate=cells) for body in made.bodies[0])
+    monkeypatch.setattr(short_waves, "run_life", lambda case, path, **_: made)
+    short_waves.main([str(tmp_path), "2"])
+    printed = capsys.readouterr().out.splitlines()
+    assert len(printed) == len(short_waves.RUNS)
+    first = "first failures after 1e+06 and 1e+06 passes, 750000.0 and 750000.0 um deep"
+    assert printed[0] == f"seed 2, all waves, a/96: 3.00 GPa, {first}"
+    case = with_shift(load(short_waves.CASE, short_waves.settings(tmp_path / "all_2.csv", 32)))
+    Positions(case, Scales.of(case)).check_travel()
