@@ -29,6 +29,7 @@ class Kind(NamedTuple):
 
     `has_ends`: whether the contact ends along its length, as of a roller.
     `picture`: module of `ehlpetsc.pictures.frames` that draws its fields.
+    `surroundings`: of a part of a contact, a function that solves what is beyond its mesh; "": nothing is.
     """
 
     is_whole: bool
@@ -40,6 +41,7 @@ class Kind(NamedTuple):
     linear_solver: str
     has_ends: bool = False
     picture: str = "line"
+    surroundings: str = ""
 
     @property
     def mean_height(self) -> str:
@@ -84,6 +86,13 @@ KINDS["roller"] = KINDS["point"]._replace(
     has_ends=True,
     picture="roller",
 )
+KINDS["window"] = KINDS["roller"]._replace(
+    radii=" in a window of a roller, of one radius and a length",
+    geometry="physics.contact.window:WINDOW",
+    forecast="run.forecast.kinds:WINDOW",
+    picture="plane",
+    surroundings="run.surroundings:of_roller",
+)
 """Kinds of contact by name, :attr:`Case.kind`."""
 
 
@@ -95,7 +104,7 @@ def kind_of(tables: dict[str, Any]) -> str:
     if isinstance(contact.get("radius"), list | tuple):
         return "point"
     if contact.get("length") is not None:
-        return "roller"
+        return "roller" if mesh.get("window") is None else "window"
     return "line" if mesh.get("width") is None else "strip"
 
 

@@ -35,7 +35,7 @@ SCENES: dict[str, Callable[[Any], bool]] = {
     "mixed": lambda case: case.contact.has_contact_pressure,
     "compliant": lambda case: case.contact.asperity_height is not None,
     "tilted": lambda case: case.contact.tilt is not None or case.contact.self_aligning,
-    "roller": lambda case: KINDS[case.kind].has_ends,
+    "roller": lambda case: KINDS[case.kind].has_ends and not KINDS[case.kind].surroundings,
     "roller in oil": lambda case: SCENES["roller"](case) and case.fluid is not None,
     "variable": lambda case: case.conditions is not None,
     "mixed row": lambda case: SCENES["mixed"](case) and not KINDS[case.kind].is_whole,

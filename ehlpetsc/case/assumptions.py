@@ -38,6 +38,10 @@ def _reversal(case: Case) -> str:
     return "" if speeds is None or speeds.min() >= 0.0 else "an entrainment speed that becomes negative"
 
 
+def _window(case: Case) -> str:
+    return "mesh.window, a part of it" if case.mesh.window else ""
+
+
 class Departure(NamedTuple):
     """What in a case departs from an assumption.
 
@@ -55,6 +59,7 @@ DEPARTURES = {
         _line, "take a strip of few rows, mesh.width = 0.5 and mesh.points_per_half_width = [50, 8]"
     ),
     "one direction of entrainment": Departure(_reversal),
+    "a whole contact": Departure(_window),
 }
 """By the assumption."""
 
@@ -68,16 +73,19 @@ class Feature(NamedTuple):
 
 FEATURES = {
     "contact.coating": Feature(_coated, ("a contact in the plane", "half-spaces")),
-    "contact.yield_pressure": Feature(lambda case: case.contact.yield_pressure, ("homogeneous bodies",)),
+    "contact.yield_pressure": Feature(
+        lambda case: case.contact.yield_pressure, ("homogeneous bodies", "a whole contact")
+    ),
     "contact.asperity_height": Feature(lambda case: case.contact.asperity_height, ("homogeneous bodies",)),
     "fluid.inlet_film": Feature(
         lambda case: case.fluid and case.fluid.inlet_film, ("one direction of entrainment",)
     ),
-    "[heat]": Feature(lambda case: case.heat, ("homogeneous bodies",)),
+    "[heat]": Feature(lambda case: case.heat, ("homogeneous bodies", "a whole contact")),
     "[life]": Feature(lambda case: case.life, ("homogeneous bodies",)),
+    "[operation]": Feature(lambda case: case.conditions, ("a whole contact",)),
 }
 STRESSES = "stresses below the surface"
-COMMANDS = {STRESSES: ("homogeneous bodies",)}
+COMMANDS = {STRESSES: ("homogeneous bodies", "a whole contact")}
 """Assumptions of features that no key asks for."""
 
 

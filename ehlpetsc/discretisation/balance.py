@@ -28,7 +28,7 @@ class Load:
     by_border, by_forces = np.zeros(1), np.ones(1)
 
     def __init__(self, scales: Scales):
-        self.scales = scales
+        self.scales, self.outside = scales, scales.grid.surroundings.load
 
     @property
     def unknowns(self) -> int:
@@ -40,8 +40,8 @@ class Load:
         return inputs.load_share * (inputs.conditions.load / self.scales.load)
 
     def load(self, inputs: StepInputs) -> float:
-        """Integral of the pressure that balances the load of a step."""
-        return self.scales.grid.load * self.share(inputs)
+        """Integral of the pressure on the mesh that balances the load of a step."""
+        return self.scales.grid.load * self.share(inputs) - self.outside
 
     def uniform(self, gap: float) -> np.ndarray:
         """Unknowns that add the same gap at every node."""
@@ -87,8 +87,9 @@ class Load:
         return np.linalg.solve(matrix, rows - self.by_forces * forces)
 
     def error(self, border: np.ndarray, load: float, conditions: Conditions) -> float:
-        """Relative error of the equation; load in N or N/m."""
-        return abs(load / conditions.load - 1.0)
+        """Relative error of the equation; load on the mesh in N or N/m."""
+        beyond = self.outside / self.scales.grid.load * self.scales.load
+        return abs((load + beyond) / conditions.load - 1.0)
 
 
 class Approach(Load):

@@ -11,7 +11,8 @@ pressures in p0; F is divided by u times a film scale, so that the sum over node
 
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes` along x,
 :mod:`ehlpetsc.discretisation.plane.cross_flow` across. Beyond the outlet and, in a point contact, beyond the
-sides the oil has ambient pressure and the film of the last node. A strip is periodic across.
+sides the oil has ambient pressure and the film of the last node; beyond the sides of a part of a contact those
+of its surroundings. A strip is periodic across.
 
 Without oil the Reynolds unknown vanishes: in direct contact q is then the pressure of the solids,
 complementary to the gap; in mixed contact, whose solids have a pressure of their own, q = 0.
@@ -110,6 +111,7 @@ class Reynolds(NoOil):
         grid = scales.grid
         super().__init__(grid, share)
         self.scales, self.film_scale, self.gap, self.has_sides = scales, film_scale, gap, has_sides
+        self.given = grid.surroundings.sides
         self.dx, self.dy, self.cell = grid.dx, 1.0 if has_sides is None else grid.increments[0], grid.cell
         rows = max(self.size // self.n_x, 1)
         self.shape = n_y, n_x = rows, self.size // rows
@@ -152,8 +154,11 @@ class Reynolds(NoOil):
         inner = at[:, int(has_lower) : n_y + 2 - int(has_upper)]
         inner[:, :, :n_x] = flat[:, : len(q)].reshape(oil.rows, rows, n_x)
         inner[:, :, n_x] = flat[:, len(q) :]
-        for has_side, beyond, last in ((has_lower, 0, 1), (has_upper, -1, -2)):
-            if has_side:
+        for given, has_side, beyond, last in zip(self.given, self.has_sides, (0, -1), (1, -2), strict=True):
+            if has_side and given is not None:
+                oil.fill(*given, slice(0, n_x), side := np.empty((oil.rows, n_x + 1)))
+                at[:, beyond] = side
+            elif has_side:
                 at[:, beyond] = at[:, last]
                 at[OF_PRESSURE, beyond] = at[OF_PRESSURE, last, n_x:]
         return at.reshape(oil.rows, -1)
@@ -191,13 +196,14 @@ class Reynolds(NoOil):
         return residual, derivatives
 
     def _beyond_edges(self, derivatives: np.ndarray) -> None:
-        """Add derivatives by the film beyond an edge to those of the film of the last node."""
+        """Add derivatives by the film beyond an edge to those of the film of the last node, if it follows it."""
         has_lower, has_upper = self.has_sides or (False, False)
-        for is_edge, edge, at in (
-            (self.has_outlet, derivatives[:, -1], OWN + 2),
-            (has_lower, derivatives[0], BELOW),
-            (has_upper, derivatives[-1], ABOVE),
+        below, above = self.given
+        for is_edge, follows, edge, at in (
+            (self.has_outlet, True, derivatives[:, -1], OWN + 2),
+            (has_lower, below is None, derivatives[0], BELOW),
+            (has_upper, above is None, derivatives[-1], ABOVE),
         ):
             if is_edge:
-                edge[..., OWN + 1] += edge[..., at + 1]
+                edge[..., OWN + 1] += follows * edge[..., at + 1]
                 edge[..., at : at + 2] = 0.0

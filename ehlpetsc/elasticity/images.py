@@ -39,11 +39,13 @@ def free_ends(bodies: Bodies, mesh: Mesh) -> Kernel | None:
 
 
 def images(mesh: Mesh) -> np.ndarray:
-    """Kernel of the images of the pressures beyond both end planes, by the reversed rows, shape (n_y, n_x).
+    """Kernel of the images of the pressures beyond both end planes, see :class:`.kernel.Kernel`.
 
     With the planes half a cell beyond the outer rows, row j is j + l + 1 rows from the image of row l below
     and 2 n_y - 1 - j - l from that above: n_y + j - m and n_y - j + m by the reversed row m = n_y - 1 - l.
+    Rows between the outer ones and a plane count twice.
     """
     (n_y, n_x), (dy, dx) = mesh.shape, mesh.spacings
-    at = free_kernel(n_x, 2 * n_y, dx, dy)
-    return at[n_y:] + at[n_y:0:-1]
+    below, above = (2 * rows for rows in mesh.to_ends)
+    at = free_kernel(n_x, 2 * n_y + max(below, above), dx, dy)
+    return at[below + 1 : below + 2 * n_y] + at[above + 1 : above + 2 * n_y][::-1]

@@ -13,19 +13,22 @@ class Mesh(NamedTuple):
 
     `shape`: rows, nodes in a row. `spacings`: dy, dx in half-widths. `periodic`: across.
     `a`: half-width [m].
+    `to_ends`: rows between the outer rows and the end faces of a finite body, below and above.
     """
 
     shape: Sequence[int]
     spacings: Sequence[float]
     periodic: bool
     a: float
+    to_ends: tuple[int, int] = (0, 0)
 
 
 class Kernel(NamedTuple):
     r"""Deflection at the nodes by the pressure of one cell.
 
     `direct`: at distances 0 .. n - 1 nodes, shape (n_y, n_x).
-    `mirrored`: the same by the pressures in reversed order of the rows; None: none.
+    `mirrored`: at distances 1 - n .. n - 1 across, by the pressures in reversed order of the rows, shape
+        (2 n_y - 1, n_x); None: none.
     `softening`: of wave numbers k in 1/a: compliance over :math:`2\pi C/k`; of a term what it adds.
     """
 

@@ -156,6 +156,10 @@ class Simulation:
             raise UsageError("after: allowed: a pass at its end, on the same nodes, of the same contact law")
         if faults := domain_faults(case, self.scales):
             raise CaseError(faults)
+        self._beyond_mesh = None
+        if KINDS[case.kind].surroundings:
+            around = KINDS[case.kind].part("surroundings")(case, self.scales, self._solved)
+            self.scales, self._beyond_mesh = around
         columns = Columns(self.comm, self.scales.grid.shape[-1]) if self.comm.size > 1 else None
         self.scene = Scene.of_pass(case, self.scales, self.operation, self.pass_number, columns)
         self.roughness = self.scene.roughness
@@ -310,6 +314,8 @@ class Simulation:
         resolved = points * self.scales.size(self.operation.at(0.0))
         is_heated = case.heat is not None and case.fluid is not None and resolved >= 2 * MIN_HEATED_POINTS
         is_first = is_heated or self.scales.grid.n > MANY_NODES and not is_hertz
+        if self._beyond_mesh:
+            yield self._beyond_mesh(self.stepper.problem), {}
         if not is_first:
             yield None, {}
         coarse = self._coarse_guess(watch) if is_first or points >= 2 * MIN_COARSE_POINTS else None
@@ -317,6 +323,12 @@ class Simulation:
             yield coarse
         if is_first:
             yield None, {}
+
+    def _solved(self, case: Case) -> Simulation:
+        """Simulation of another steady case on these ranks, solved."""
+        simulation = Simulation(case, self.comm, self._options)
+        simulation.advance()
+        return simulation
 
     def _coarse_guess(self, watch: Watch) -> tuple[Unknowns, dict] | None:
         """Steady solution on a mesh with half as many nodes per half-width; None: there is none."""

@@ -18,6 +18,7 @@ LAYER_NODES = 8  # longest wave of a layer whose surfaces have no short_cutoff, 
 MIXED = 'contact.model = "mixed"'
 VARYING = ("[gears]", "[operation]")
 LAYER = "contact.asperity_height"
+ROLLERS = ("roller", "window")
 
 
 PROFILE = {
@@ -94,7 +95,7 @@ KEYS = {
     "length": Key(
         "of a roller of one radius: a line contact with ends; load in N, `a` and `p0` of load over length",
         *("m", 1e-6, 10),
-        contacts=("roller",),
+        contacts=ROLLERS,
     ),
     "profile": Key(
         'of a roller along its length: { kind = "'
@@ -107,20 +108,20 @@ KEYS = {
     "end_radius": Key(
         "of the rounds beyond both ends of a roller; left out: sharp ends, where the mesh stops",
         *("m", 1e-6, 1),
-        contacts=("roller",),
+        contacts=ROLLERS,
     ),
     "free_ends": Key(
         "the end faces of a roller, body 1, are free and the ring is longer; false: both are half-spaces",
         kind=bool,
         default=True,
-        contacts=("roller",),
+        contacts=ROLLERS,
         equation="deflection of the roller also by pressures mirrored about its end faces, times "
         "`1.29 - (0.08 - 0.5 nu)/(1 - nu)`",
     ),
     "tilt": Key(
         "misalignment of a roller or point contact: slope of the gap across; it moves a point `-tilt Ry`",
         *("", -0.1, 0.1),
-        contacts=("point", "roller"),
+        contacts=("point", *ROLLERS),
         needs=("contact.approach left out",),
         equation="`h = h00 + tilt y + g`, `g` the shapes and the elastic deflection",
     ),

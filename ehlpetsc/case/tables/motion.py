@@ -13,6 +13,7 @@ from ehlpetsc.gears.load_sharing import RULES
 if TYPE_CHECKING:
     from ehlpetsc.gears.geometry import GearPair
 
+MIN_COARSE_POINTS = 4  # of the smooth roller of a window: nodes per half-width, rows on half of its length
 MAX_NODES_ALONG = 200_000  # with more a time step would take hours; more likely a typing error
 COLUMNS = {  # allowed names of the columns of a file, by key
     "time": ("time", "t"),
@@ -171,7 +172,29 @@ def _complete_mesh(mesh: Mesh) -> dict[str, Any]:
     values = {"points_per_half_width": along, "points_across": across}
     if mesh.copy(values).nodes > MAX_NODES_ALONG + 1:
         raise Refused(key="points_per_half_width")
+    for points, parts in zip((along, across), mesh.window.coarsening if mesh.window else (), strict=False):
+        if points is None or points % parts or points < MIN_COARSE_POINTS * parts:
+            allowed = f"two, multiples of mesh.window.coarsening and at least {MIN_COARSE_POINTS} times as many"
+            raise Refused(f"allowed: {allowed}", "points_per_half_width")
     return values
+
+
+WINDOW = KeyTable(
+    "mesh.window",
+    "part of a roller that is computed, beside which the smooth roller is held; left out: all of it",
+    {
+        "from": Required("y of its begin, rounded to a row of the smooth roller", *("m", -5, 5), below="to"),
+        "to": Required("y of its end; of the length or more: with the end of the roller", "m", -5, 5),
+        "coarsening": Key(
+            "spacings of the smooth roller over those of the window, along and across",
+            *("", 1, 1000),
+            kind=int,
+            many="two",
+            default=(1, 1),
+        ),
+    },
+    needs=("contact.length",),
+)
 
 
 MESH_KEYS = {
@@ -192,6 +215,7 @@ MESH_KEYS = {
     "near_field": Key(
         "nodes of deflection in the matrix, each side", "", 2, 1000, kind=int, default=3, contacts=("line",)
     ),
+    "window": WINDOW.key,
 }
 MESH = KeyTable("mesh", "nodes", MESH_KEYS, required=True, values=Mesh, complete=_complete_mesh)
 

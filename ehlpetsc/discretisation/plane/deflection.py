@@ -17,8 +17,8 @@ further transform: with :math:`\hat p_k` the transform across over a length L, t
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -66,7 +66,8 @@ class Convolution:
     """Product with a kernel symmetric along and across, by FFT, in the precision of its argument.
 
     `kernel`: at distances 0 .. n - 1 nodes, shape (n_y, n_x); over a period across if `periodic`.
-    `mirrored`: of a second product, with the rows of its argument in reversed order; None: none.
+    `mirrored`: of a second product, with the rows of its argument in reversed order, at distances 1 - n ..
+        n - 1 across, shape (2 n_y - 1, n_x); None: none.
     """
 
     def __init__(
@@ -77,20 +78,25 @@ class Convolution:
         self.length_y = self.n_y if periodic else next_fast_len(2 * self.n_y - 1)
         self.waves = self.length_x // 2 + 1
         self.waves_here = ranks.wave_numbers(self.waves)
-        spectrum = self._spectrum(kernel, periodic)
+        across = np.asarray if periodic else partial(_even, length=self.length_y, axis=0)
+        spectrum = np.ascontiguousarray(self._spectrum(kernel, across).real)
         self.spectra = {spectrum.dtype: spectrum, np.dtype(np.float32): spectrum.astype(np.float32)}
         self.of_reversed: dict[np.dtype, np.ndarray] = {}
         if mirrored is not None:
             turn = np.exp(-2j * np.pi * np.arange(self.length_y) * (self.n_y - 1) / self.length_y)
-            product = turn[:, None] * self._spectrum(mirrored, periodic)
+            product = turn[:, None] * self._spectrum(
+                mirrored, partial(_of_both_signs, length=self.length_y)
+            )
             self.of_reversed = {spectrum.dtype: product, np.dtype(np.float32): product.astype(np.complex64)}
             self.opposite = -np.arange(self.length_y) % self.length_y
 
-    def _spectrum(self, kernel: np.ndarray, periodic: bool) -> np.ndarray:
-        """Transform of a kernel at the wave numbers of this rank, shape (length_y, waves)."""
+    def _spectrum(self, kernel: np.ndarray, continued: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Transform of a kernel at the wave numbers of this rank, shape (length_y, waves).
+
+        `continued`: continues its rows to a period.
+        """
         along = rfft(_even(kernel, self.length_x, axis=1), axis=1).real[:, self.waves_here]
-        across = along if periodic else _even(along, self.length_y, axis=0)
-        return np.ascontiguousarray(fft(across, axis=0).real)
+        return fft(continued(along), axis=0)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
         """Product with values at the local nodes, shape (local rows n_x,)."""
@@ -113,6 +119,14 @@ def _even(values: np.ndarray, length: int, axis: int) -> np.ndarray:
     out = np.zeros((length, *values.shape[1:]))
     out[: len(values)], out[length - len(values) + 1 :] = values, values[:0:-1]
     return np.moveaxis(out, 0, axis)
+
+
+def _of_both_signs(values: np.ndarray, length: int) -> np.ndarray:
+    """Values at distances 1 - n .. n - 1 continued to a period of `length`, along the first axis."""
+    n = (len(values) + 1) // 2
+    out = np.zeros((length, *values.shape[1:]))
+    out[:n], out[length - n + 1 :] = values[n - 1 :], values[: n - 1]
+    return out
 
 
 class Deflection:

@@ -74,7 +74,8 @@ def plane_system(
     cuts = first_rows(grid.shape[0], ranks.size)
     share, has_sides = share_of(grid.shape, cuts[ranks.rank : ranks.rank + 2], grid.periodic)
     transposition = RankTransposition(cuts, ranks) if ranks.size > 1 else None
-    kernel = kernel_of(Bodies.of(case.contact), Mesh(grid.shape, grid.increments, grid.periodic, scales.a))
+    mesh = Mesh(grid.shape, grid.increments, grid.periodic, scales.a, grid.to_ends)
+    kernel = kernel_of(Bodies.of(case.contact), mesh)
     law = kernel, scales.stiffness, film_scale_of(case, scales, film_scale), grid.periodic
     deflection = Deflection(grid.increments, *law, share.owned, transposition)
     problem = problem_of(case, scales, film_scale, share, deflection, has_sides, bound_tolerance)

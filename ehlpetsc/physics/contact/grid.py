@@ -12,6 +12,24 @@ from ehlpetsc.physics.contact.shape import Shape
 
 
 @dataclass(frozen=True)
+class Surroundings:
+    """Part of a contact beyond its mesh, which does not change.
+
+    `gap`: deflection by the pressures there, at the nodes of the mesh in a^2/R, flat.
+    `load`: integral of the pressure there, in p0 and a.
+    `sides`: q and film [a^2/R] of the row of nodes below the first row and of that above the last one, shape
+        (2, nx) each; None: the contact ends with the mesh.
+    """
+
+    gap: np.ndarray | float = 0.0
+    load: float = 0.0
+    sides: tuple[np.ndarray | None, np.ndarray | None] = (None, None)
+
+
+NOTHING = Surroundings()
+
+
+@dataclass(frozen=True)
 class Grid:
     r"""Nodes of a contact, in half-widths a; fields over them are flat, x last and fastest.
 
@@ -37,6 +55,12 @@ class Grid:
         Of the dry contact across, which a tilt moves.
     tilt
         Slope of the gap across with which a contact that aligns itself begins.
+    origin
+        Place across of the middle of maps of roughness.
+    to_ends
+        Rows between the first row and the end face of the body below it, and beyond the last row.
+    surroundings
+        Part of the contact beyond the mesh.
     """
 
     axes: tuple[np.ndarray, ...]
@@ -49,6 +73,9 @@ class Grid:
     periodic: bool = False
     middle: float = 0.0
     tilt: float = 0.0
+    origin: float = 0.0
+    to_ends: tuple[int, int] = (0, 0)
+    surroundings: Surroundings = NOTHING
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -99,10 +126,10 @@ class Grid:
 
     @cached_property
     def profiles(self) -> np.ndarray:
-        """Gap of the profiles of the undeformed solids in a^2/R, flat."""
+        """Gap of the profiles of the undeformed solids and by the surroundings in a^2/R, flat."""
         axes = zip(self.axes, self.shapes, strict=True)
         gaps = np.meshgrid(*(shape.beside(nodes) for nodes, shape in axes), indexing="ij")
-        return sum(gaps[1:], start=gaps[0]).ravel()
+        return sum(gaps[1:], start=gaps[0]).ravel() + self.surroundings.gap
 
     def undeformed(self, curvature: float = 1.0, nodes: slice = slice(None)) -> np.ndarray:
         """Gap of the undeformed solids that touch in the middle in a^2/R, flat.

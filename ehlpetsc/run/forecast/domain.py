@@ -105,7 +105,8 @@ def refusals(case: Case, scales: Scales) -> list[str]:
 def ramps_coarsely(case: Case) -> bool:
     """Whether roughness, ramped up in the plane, is all that a state on a coarser mesh has to hand on."""
     only_rough = case.heat is None and case.wear is None and case.contact.yield_pressure is None
-    return KINDS[case.kind].is_areal and case.time.start == "rough" and case.fluid is not None and only_rough
+    kind = KINDS[case.kind]
+    return kind.is_areal and not kind.surroundings and case.time.start == "rough" and case.fluid is not None and only_rough
 
 
 def has_passes(case: Case) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from ehlpetsc.base.counts import whole_up
@@ -21,7 +22,9 @@ from ehlpetsc.physics.film_formulas import (
 from ehlpetsc.physics.scales import NODE_TOLERANCE, Scales
 
 if TYPE_CHECKING:
+    from ehlpetsc.physics.contact.grid import Grid
     from ehlpetsc.physics.contact.roller import RollerGrid
+    from ehlpetsc.physics.contact.window import WindowGrid
 
 MIN_FILM_RATIO = 0.95  # film over that of a flooded contact, below which the inlet is reported as too near
 PROPOSED_FILM_RATIO = 0.99  # film over that of a flooded contact, with the proposed inlet
@@ -80,6 +83,19 @@ def _roller_shape(s: Scales) -> tuple[str, str, list[str]]:
     return shape, widths, [slices]
 
 
+def _window_shape(s: Scales) -> tuple[str, str, list[str]]:
+    shape, widths, slices = _roller_shape(replace(s, grid=cast("WindowGrid", s.grid).whole))
+    first, last = (1e3 * s.a * (y + side * s.grid.increments[0]) for y, side in _sides(s.grid))
+    whole = " x ".join(map(str, cast("WindowGrid", s.grid).whole.shape[::-1]))
+    held = f"Window: y = {first:.4g} to {last:.4g} mm; the smooth roller beside it on {whole} nodes"
+    return shape, widths, [*slices, held]
+
+
+def _sides(grid: Grid) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Outer rows, and the direction of the side beyond each in halves of a row."""
+    return (grid.axes[0][0], -0.5), (grid.axes[0][-1], 0.5)
+
+
 def _no_ends(case: Case, scales: Scales) -> list[str]:
     return []
 
@@ -135,6 +151,15 @@ def _roller_faults(case: Case, scales: Scales) -> list[str]:
                 "load per length; allowed: further out"
             )
     return faults
+
+
+def _window_faults(case: Case, scales: Scales) -> list[str]:
+    """A window beyond its roller, or of too few rows."""
+    window, half = case.mesh.window, 0.5 * case.contact.length
+    if not -half * (1.0 + NODE_TOLERANCE) <= window.from_ < window.to <= half * (1.0 + NODE_TOLERANCE):
+        place = f"from {window.from_:g} to {window.to:g} m"
+        return [f"mesh.window = {place}; allowed: on the roller, from {-half:g} to {half:g} m"]
+    return _roller_faults(case, scales)
 
 
 def _nothing(scalars: dict[str, Any]) -> list[str]:
@@ -263,3 +288,4 @@ POINT = Forecast(
 ROLLER = LINE._replace(
     shape=_roller_shape, near=_roller_near, ends=_roller_ends, faults=_roller_faults, found=_along_roller
 )
+WINDOW = ROLLER._replace(shape=_window_shape, faults=_window_faults, found=_nothing)

@@ -215,7 +215,7 @@ def rough_surface(case: Case, scales: Scales, spec: Values, given: Passage) -> R
     folder, grid = case.path.parent, scales.grid
     if not KINDS[case.kind].is_areal:
         return RoughSurface(samples(folder, spec), given)
-    y, dy = scales.a * grid.axes[0], grid.spacings[0]
+    y, dy = scales.a * (grid.axes[0] - grid.origin), grid.spacings[0]
     surface = areal_samples(folder, spec, dy * len(y), grid.periodic)
     return RoughSurface(surface, given, cell_faces(y, dy))
 
