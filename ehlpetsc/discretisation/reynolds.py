@@ -11,8 +11,8 @@ pressures in p0; F is divided by u times a film scale, so that the sum over node
 
 Finite volumes, one node a cell: :mod:`ehlpetsc.discretisation.finite_volumes` along x,
 :mod:`ehlpetsc.discretisation.plane.cross_flow` across. Beyond the outlet and, in a point contact, beyond the
-sides the oil has ambient pressure and the film of the last node; beyond the sides of a part of a contact those
-of its surroundings. A strip is periodic across.
+sides the oil has ambient pressure and the film of the last node; beside a part of a contact those of its
+surroundings. A strip is periodic across.
 
 Without oil the Reynolds unknown vanishes: in direct contact q is then the pressure of the solids,
 complementary to the gap; in mixed contact, whose solids have a pressure of their own, q = 0.
@@ -156,7 +156,8 @@ class Reynolds(NoOil):
         inner[:, :, n_x] = flat[:, len(q) :]
         for given, has_side, beyond, last in zip(self.given, self.has_sides, (0, -1), (1, -2), strict=True):
             if has_side and given is not None:
-                oil.fill(*given, slice(0, n_x), side := np.empty((oil.rows, n_x + 1)))
+                side = np.empty((oil.rows, n_x + 1))
+                oil.fill(given[0], given[1], slice(0, n_x), side)
                 at[:, beyond] = side
             elif has_side:
                 at[:, beyond] = at[:, last]
@@ -196,7 +197,7 @@ class Reynolds(NoOil):
         return residual, derivatives
 
     def _beyond_edges(self, derivatives: np.ndarray) -> None:
-        """Add derivatives by the film beyond an edge to those of the film of the last node, if it follows it."""
+        """Add derivatives by the film beyond an edge that is that of the last node to those by it."""
         has_lower, has_upper = self.has_sides or (False, False)
         below, above = self.given
         for is_edge, follows, edge, at in (

@@ -1,8 +1,6 @@
-"""Smooth roller around a window: its steady solution, from which the window begins and beside which it is held.
+"""Smooth roller of a window: its steady solution, with which the window begins and beside which it is held.
 
-Its pressures, linear along x and constant across a row as the kernel has them, are the same function on the
-rows of the window; those beside the window deflect it by the kernel of the window on the whole length. Without
-roughness on the same rows the window is then the smooth roller to rounding.
+Rows next to the window have its pressure and film, interpolated between its rows.
 """
 
 from __future__ import annotations
@@ -14,18 +12,14 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
+from ehlpetsc.discretisation.plane.beside import gap_and_load_beside
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.elasticity.bodies import Bodies
-from ehlpetsc.elasticity.kernel import Mesh
-from ehlpetsc.elasticity.kernels import kernel_of
 from ehlpetsc.physics.contact.grid import Grid, Surroundings
-from ehlpetsc.physics.contact.window import smooth_mesh
+from ehlpetsc.physics.contact.window import WindowGrid, smooth_mesh
 from ehlpetsc.stepping.steady_start import guess_of
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
-    from ehlpetsc.physics.contact.window import WindowGrid
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.run.simulation import Simulation
 
@@ -46,43 +40,21 @@ def smooth_roller(case: Case) -> Case:
 
 def of_roller(case: Case, scales: Scales, solve: Callable[[Case], Simulation]) -> Solved:
     """Surroundings of a window of a roller; `solve`: simulation of a steady case, solved."""
-    simulation = solve(smooth_roller(case))
+    simulation, grid = solve(smooth_roller(case)), cast(WindowGrid, scales.grid)
     state, problem = simulation.dimensionless, simulation.stepper.problem
-    grid = cast("WindowGrid", scales.grid)
     film = problem.model.state(state.q, state.w).film
-    rows = _beyond(problem.grid, grid, state.q), _beyond(problem.grid, grid, film)
-    sides = [
-        None if not count else np.stack([field[side] for field in rows])
-        for count, side in zip(grid.to_ends, (0, -1), strict=True)
-    ]
-    gap, load = _far_pressure(case, scales, grid, state.p)
-    around = Surroundings(gap, load, (sides[0], sides[1]))
-    return Solved(
-        replace(scales, grid=replace(grid, surroundings=around)),
-        lambda window: guess_of(state, problem, window),
+    rows = next_to(grid, problem.grid, state.q), next_to(grid, problem.grid, film)
+    below, above = (
+        np.stack([field[side] for field in rows]) if to_end else None
+        for side, to_end in zip((0, -1), grid.to_ends, strict=True)
     )
+    gap, load = gap_and_load_beside(case.contact, scales, grid, state.p)
+    around = replace(grid, surroundings=Surroundings(gap, load, (below, above)))
+    return Solved(replace(scales, grid=around), lambda window: guess_of(state, problem, window))
 
 
-def _beyond(whole: Grid, grid: WindowGrid, field: np.ndarray) -> np.ndarray:
-    """A flat field of the roller on the rows of the window and on one more at either side."""
+def next_to(grid: WindowGrid, whole: Grid, field: np.ndarray) -> np.ndarray:
+    """A flat field of the roller on the row below a window and on that above it, shape (2, nx)."""
     step, y = grid.increments[0], grid.y
-    wider = replace(grid, axes=(np.concatenate([[y[0] - step], y, [y[-1] + step]]), grid.x))
-    return wider.rows(whole.interpolated(field, wider))
-
-
-def _far_pressure(
-    case: Case, scales: Scales, grid: WindowGrid, pressure: np.ndarray
-) -> tuple[np.ndarray, float]:
-    """Gap of the window by the pressures of the roller beside it in a^2/R, flat, and their load."""
-    whole, finer = grid.whole, case.mesh.window.coarsening[1]
-    first, behind = grid.to_ends[0] // finer, len(whole.y) - grid.to_ends[1] // finer
-    beside = whole.rows(pressure).copy()
-    beside[first:behind] = 0.0
-    along = np.array([np.interp(grid.x, whole.x, row) for row in beside])
-    fine = np.repeat(along, finer, axis=0)
-    mesh = Mesh(fine.shape, grid.increments, False, scales.a)
-    kernel = kernel_of(Bodies.of(case.contact), mesh)
-    mirrored = None if kernel.mirrored is None else scales.stiffness * kernel.mirrored
-    product = Convolution(scales.stiffness * kernel.direct, False, Transposition(), mirrored)
-    gap = product(fine.ravel()).reshape(fine.shape)[first * finer : behind * finer]
-    return gap.ravel(), float(whole.cell * beside.sum())
+    rows = replace(grid, axes=(np.array([y[0] - step, y[-1] + step]), grid.x))
+    return rows.rows(whole.interpolated(field, rows))

@@ -17,7 +17,9 @@ SHAPES = {
     "strip": ({"radius": 0.01, "load": 2e5}, {"width": 0.5}),
     "point": ({"radius": [0.01, 0.01], "load": 20.0}, {"width": 3.2}),
     "roller": ({"radius": 0.01, "load": 200.0, "length": 1e-3}, {}),
+    "window": ({"radius": 0.01, "load": 200.0, "length": 1e-3}, {"points_per_half_width": [8, 16]}),
 }
+SHAPES["window"][1]["window"] = {"from": 1e-4, "to": 5e-4, "coarsening": [1, 2]}
 BODIES = {"homogeneous": {}, "coated": {"coating": LAYER}}
 OIL = {"viscosity": 0.02, "law": "barus", "pressure_viscosity": 1.5e-8, "density": "incompressible"}
 MOVING = {"fluid": OIL, "motion": {"entrainment_speed": 1.0, "slide_roll_ratio": 0.1}}
@@ -67,7 +69,7 @@ def test_features_of_coated_bodies_are_refused_where_they_assume_homogeneous_one
             continue
         names_both = [line for line in coated if feature in line and "contact.coating" in line]
         assert len(names_both) == (feature in NOT_COATED), (shape, coated)
-        assert len(coated) == (shape in ("line", "roller")) + len(names_both), (shape, coated)
+        assert len(coated) == (shape in ("line", "roller", "window")) + len(names_both), (shape, coated)
 
 
 def test_a_coated_line_is_told_of_strips_and_a_coated_roller_of_its_ends():
@@ -106,14 +108,58 @@ def test_stresses_below_a_coating_are_refused():
 
 
 ALLOWED = [(shape, feature) for shape in ("strip", "point", "roller") for feature in ("", "oil")]
-ALLOWED += [("point", "tilt"), ("point", "approach"), ("roller", "tilt")]
+ALLOWED += [("point", "tilt"), ("point", "approach"), ("roller", "tilt"), ("window", "oil")]
 
 
 @pytest.mark.parametrize(("shape", "feature"), ALLOWED)
 def test_allowed_features_of_coated_bodies_run(shape, feature):
     case = tables(shape, "coated", feature)
-    if shape == "roller":
+    if shape in ("roller", "window"):
         case["contact"]["free_ends"] = False
     with ehlpetsc.solve(load(case), options={}) as result:
         assert np.isfinite(result.pressure[-1]).all() and np.isfinite(result.film_thickness[-1]).all()
         assert abs(result.steps("load_error")).max() < 1e-6
+
+
+SLIDING = {"fluid": OIL | {"eyring_stress": 5e6, "limiting_shear": 0.05}}
+MOVING_ROUGHNESS = GIVEN["rough"] | {"time": {"travel": 0.4}}
+LAYERED = {"contact": {"model": "mixed", "asperity_height": 2e-8}}
+VARYING = {"operation": {"time": [0.0, 1e-4], "radius": [0.01, 0.008]}}
+FOUR = (GIVEN["[heat]"], SLIDING, LAYERED, MOVING_ROUGHNESS)
+
+
+@pytest.mark.parametrize(
+    ("shape", "features"),
+    [
+        *(("roller", (one,)) for one in (SLIDING, LAYERED, MOVING_ROUGHNESS, VARYING)),
+        ("roller", FOUR),
+        ("window", FOUR[1:]),
+    ],
+    ids=["limiting shear", "layer", "moving roughness", "operation", "four with heat", "three in a window"],
+)
+def test_features_of_rollers_in_oil_run(shape, features):
+    case = tables(shape, "homogeneous", "oil")
+    for given in features:
+        case |= {name: case.get(name, {}) | table for name, table in given.items()}
+    case["contact"] |= {"tilt": 1e-4, "profile": {"kind": "iso", "diameter": 0.02}}
+    case["mesh"] |= {"inlet": -2.4, "outlet": 2.0, "points_per_half_width": [8, 16]}
+    case["motion"] = {"entrainment_speed": 4.0, "slide_roll_ratio": 0.1}  # no false contact on few nodes
+    if "operation" in case:
+        del case["contact"]["radius"]
+    simulation = ehlpetsc.Simulation(load(case))
+    states = list(simulation)
+    assert simulation.finished and len(states) > (1 if "time" in case or "operation" in case else 0)
+    assert max(state.load_error for state in states) < 1e-6
+    assert max(state.mass_error for state in states) < 1e-4
+    assert all(np.isfinite(field).all() for field in states[-1].fields.values())
+    if "surface" in case:
+        assert abs(states[-1].film_thickness - states[0].film_thickness).max() > 5e-9
+
+
+@pytest.mark.parametrize("feature", ["[heat]", "contact.yield_pressure", "[operation]"])
+def test_features_of_whole_contacts_are_refused_in_a_window(feature):
+    case = tables("window", "homogeneous", feature)
+    if feature == "[operation]":
+        case |= VARYING | MOVING
+        del case["contact"]["radius"]
+    assert f"{feature}: assumes a whole contact, and this case has mesh.window" in "; ".join(faults(case))

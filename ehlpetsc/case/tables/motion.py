@@ -174,7 +174,9 @@ def _complete_mesh(mesh: Mesh) -> dict[str, Any]:
         raise Refused(key="points_per_half_width")
     for points, parts in zip((along, across), mesh.window.coarsening if mesh.window else (), strict=False):
         if points is None or points % parts or points < MIN_COARSE_POINTS * parts:
-            allowed = f"two, multiples of mesh.window.coarsening and at least {MIN_COARSE_POINTS} times as many"
+            allowed = (
+                f"two, multiples of mesh.window.coarsening and at least {MIN_COARSE_POINTS} times as many"
+            )
             raise Refused(f"allowed: {allowed}", "points_per_half_width")
     return values
 

@@ -84,16 +84,14 @@ class Convolution:
         self.of_reversed: dict[np.dtype, np.ndarray] = {}
         if mirrored is not None:
             turn = np.exp(-2j * np.pi * np.arange(self.length_y) * (self.n_y - 1) / self.length_y)
-            product = turn[:, None] * self._spectrum(
-                mirrored, partial(_of_both_signs, length=self.length_y)
-            )
+            product = turn[:, None] * self._spectrum(mirrored, partial(_of_both_signs, length=self.length_y))
             self.of_reversed = {spectrum.dtype: product, np.dtype(np.float32): product.astype(np.complex64)}
             self.opposite = -np.arange(self.length_y) % self.length_y
 
     def _spectrum(self, kernel: np.ndarray, continued: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         """Transform of a kernel at the wave numbers of this rank, shape (length_y, waves).
 
-        `continued`: continues its rows to a period.
+        `continued`: its rows continued to a period.
         """
         along = rfft(_even(kernel, self.length_x, axis=1), axis=1).real[:, self.waves_here]
         return fft(continued(along), axis=0)

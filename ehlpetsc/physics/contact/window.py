@@ -84,7 +84,9 @@ def smooth_mesh(mesh: Values) -> Values:
     """Table `[mesh]` of the smooth roller of a window."""
     x, y = mesh.window.coarsening
     points = {"points_per_half_width": mesh.points_per_half_width // x}
-    return mesh.copy(points | {"points_across": mesh.points_across and mesh.points_across // y, "window": None})
+    return mesh.copy(
+        points | {"points_across": mesh.points_across and mesh.points_across // y, "window": None}
+    )
 
 
 def coarse_rows(contact: Values, mesh: Values, dry: Dry) -> tuple[RollerGrid, int, int]:
@@ -92,7 +94,9 @@ def coarse_rows(contact: Values, mesh: Values, dry: Dry) -> tuple[RollerGrid, in
     whole = roller_grid(contact, smooth_mesh(mesh), dry)
     n_y, step = len(whole.y), whole.increments[0] * dry.a
     places = [round(place / step + 0.5 * n_y) for place in (mesh.window.from_, mesh.window.to)]
-    ends = [abs(place) >= 0.5 * contact.length * (1.0 - 1e-9) for place in (mesh.window.from_, mesh.window.to)]
+    ends = [
+        abs(place) >= 0.5 * contact.length * (1.0 - 1e-9) for place in (mesh.window.from_, mesh.window.to)
+    ]
     first = 0 if ends[0] and mesh.window.from_ < 0.0 else min(max(places[0], 0), n_y - 1)
     behind = n_y if ends[1] and mesh.window.to > 0.0 else min(max(places[1], first + 1), n_y)
     return whole, first, behind

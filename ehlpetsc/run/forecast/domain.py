@@ -106,7 +106,13 @@ def ramps_coarsely(case: Case) -> bool:
     """Whether roughness, ramped up in the plane, is all that a state on a coarser mesh has to hand on."""
     only_rough = case.heat is None and case.wear is None and case.contact.yield_pressure is None
     kind = KINDS[case.kind]
-    return kind.is_areal and not kind.surroundings and case.time.start == "rough" and case.fluid is not None and only_rough
+    return (
+        kind.is_areal
+        and not kind.surroundings
+        and case.time.start == "rough"
+        and case.fluid is not None
+        and only_rough
+    )
 
 
 def has_passes(case: Case) -> bool:
