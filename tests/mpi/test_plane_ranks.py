@@ -52,6 +52,7 @@ ROLLER = {
     "time": {"travel": 0.5},
 }
 ROLLER["contact"]["profile"] = {"kind": "iso", "diameter": 12e-3}
+WINDOW = {"mesh.window": {"from": -2e-3, "to": -0.8e-3}}
 TIGHT = {"snes_atol": "1e-10"}
 CASES = {
     "point": (lambda: load(point(50.0, 5.0, 10)), 1),
@@ -64,6 +65,7 @@ CASES = {
     "rough point": (lambda: load(point(50.0, 5.0, 8), MIXED), 1),
     "rough point, reversed": (lambda: load(point(50.0, 5.0, 8), MIXED | REVERSED), 1),
     "roller": (lambda: load(ROLLER), 3),
+    "window of a roller": (lambda: load(ROLLER, WINDOW), 3),
     "strip": (lambda: load(CASE, STRIP), 12),
     "strip with a layer": (lambda: load(CASE, STRIP | LAYER), 12),
 }

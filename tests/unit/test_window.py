@@ -1,0 +1,123 @@
+"""Windows of rollers: the smooth roller again, finer rows, images of far ends, what is refused."""
+
+import copy
+
+import numpy as np
+import pytest
+from support import roelands_oil
+
+from ehlpetsc.base.errors import CaseError
+from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
+from ehlpetsc.elasticity.half_space import free_kernel
+from ehlpetsc.elasticity.images import images
+from ehlpetsc.elasticity.kernel import Mesh
+from ehlpetsc.physics.scales import Scales
+from ehlpetsc.run.forecast.explain import explain
+from ehlpetsc.run.simulation import Simulation
+
+L, R, W = 4e-3, 6e-3, 800.0
+DRY = {
+    "title": "a window of a roller",
+    "contact": {"radius": R, "length": L, "load": W, "material": "100Cr6", "tilt": 5e-4},
+    "mesh": {"inlet": -2.4, "outlet": 2.0, "points_per_half_width": [10, 40]},
+}
+DRY["contact"]["profile"] = {"kind": "circular", "radius": 0.02, "straight": 3e-3}
+OIL = {
+    "fluid": roelands_oil(0.02, 2e-8),
+    "motion": {"entrainment_speed": 3.0, "slide_roll_ratio": 0.1},
+}
+END, MIDDLE = {"from": -2e-3, "to": -1e-3}, {"from": -0.5e-3, "to": 0.5e-3}
+
+
+def tables(oil=None, window=None, points=(10, 40), coarsening=(1, 1), **more):
+    case = copy.deepcopy(DRY) | (oil or {}) | more
+    case["mesh"]["points_per_half_width"] = list(points)
+    if window:
+        case["mesh"]["window"] = window | {"coarsening": list(coarsening)}
+    return case
+
+
+def solved(*args, **options):
+    simulation = Simulation(load(tables(*args, **options)))
+    return simulation.scales.grid, simulation.advance()
+
+
+@pytest.mark.parametrize("oil", [{}, OIL], ids=["dry", "in oil"])
+def test_smooth_window_is_the_smooth_roller(oil):
+    whole, state = solved(oil)
+    for window, to_ends in ((END, (0, 60)), (MIDDLE, (30, 30))):
+        grid, found = solved(oil, window)
+        assert grid.shape[0] == 20 and grid.to_ends == to_ends
+        rows = slice(to_ends[0], to_ends[0] + 20)
+        np.testing.assert_allclose(grid.y, whole.y[rows], rtol=1e-13)
+        np.testing.assert_allclose(found.pressure, state.pressure[rows], atol=1e-12 * state.p_max)
+        np.testing.assert_allclose(found.film_thickness, state.film_thickness[rows], atol=1e-18, rtol=1e-12)
+        assert found.load == pytest.approx(state.pressure[rows].sum() * whole.node_size, rel=1e-12)
+        assert found.load_error < 1e-14
+
+
+def test_window_on_finer_rows_is_a_finer_roller():
+    """Loaded end of a roller, whose films need rows of 13 um; load of the window by rows of 50 um."""
+    window = {"from": -2e-3, "to": -1.4e-3}
+    _, state = solved(OIL, points=(10, 160))
+    grid, found = solved(OIL, window, (10, 160), (1, 4))
+    part = slice(0, grid.shape[0])
+    _, coarse = solved(OIL)
+    errors = [one.film_thickness.min() / state.h_min - 1.0 for one in (found, coarse)]
+    assert abs(errors[0]) < 3e-3 < 0.1 < abs(errors[1])
+    assert found.p_max == pytest.approx(state.pressure[part].max(), rel=3e-3)
+
+
+def test_images_of_a_window_are_those_of_the_roller_around_it():
+    before, rows, behind, n_x, steps = 3, 5, 7, 6, (0.05, 0.03)
+    pressure = np.random.default_rng(4).random((rows, n_x))
+    long = np.zeros((before + rows + behind, n_x))
+    long[before : before + rows] = pressure
+    meshes = Mesh((rows, n_x), steps, False, 1e-4, (before, behind)), Mesh(long.shape, steps, False, 1e-4)
+    of_window, of_roller = (
+        Convolution(free_kernel(n_x, mesh.shape[0], *steps[::-1]), False, Transposition(), images(mesh))
+        for mesh in meshes
+    )
+    expected = of_roller(long.ravel()).reshape(long.shape)[before : before + rows]
+    np.testing.assert_allclose(of_window(pressure.ravel()), expected.ravel(), rtol=1e-13)
+
+
+def test_maps_of_roughness_begin_in_the_middle_of_a_window():
+    z = np.add.outer(np.arange(41.0), np.zeros(9))  # a step a row of 20 um
+    surface = {"surface": {"1": {"z": z.tolist(), "spacing": 2e-5, "scale": 1e-9}}}
+    simulation = Simulation(load(tables({}, {"from": 1e-3, "to": 1.4e-3}, **surface)))
+    heights = simulation.roughness.phi_after(np.zeros(3), (0.0, 0.0)).reshape(8, 3)[:, 0]
+    np.testing.assert_allclose(np.diff(heights), -2.5e-9, rtol=1e-3)
+    assert abs(heights.mean()) < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"mesh": {"window": {"from": 1e-3, "to": 0.5e-3}}}, "mesh.window.from = 0.001: allowed"),
+        ({"mesh": {"window": {"from": 1e-3, "to": 3e-3}}}, "allowed: on the roller, from -0.002 to 0.002 m"),
+        ({"mesh": {"window": {"from": 1e-3, "to": 2e-3, "coarsening": [1, 3]}}}, "multiples of mesh.window"),
+        ({"mesh": {"window": {"from": 1e-3, "to": 2e-3, "coarsening": [1, 20]}}}, "multiples of mesh.window"),
+        ({"mesh": {"window": END, "points_per_half_width": 10}}, "points_per_half_width = 10: allowed: two"),
+        ({"contact": {"length": None}, "mesh": {"window": END}}, "mesh.window: needs contact.length"),
+        (
+            {"contact": {"tilt": None, "self_aligning": True}, "mesh": {"window": END}},
+            "contact.self_aligning",
+        ),
+    ],
+)
+def test_faults_of_windows_are_named(changes, message):
+    case = tables()
+    for name, table in changes.items():
+        case[name] = {key: value for key, value in (case[name] | table).items() if value is not None}
+    with pytest.raises(CaseError) as error:
+        Simulation(load(case))
+    assert message in str(error.value)
+
+
+def test_window_is_said_before_the_run():
+    text = explain(load(tables(OIL, END, (20, 160), (2, 4))))
+    assert "a roller, radius 0.006 m, length 4 mm" in text
+    assert "Window: y = -2 to -1 mm; the smooth roller beside it on 45 x 80 nodes" in text
+    assert Scales.of(load(tables(OIL, END))).moes_m == Scales.of(load(tables(OIL))).moes_m
