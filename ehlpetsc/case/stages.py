@@ -44,7 +44,7 @@ from ehlpetsc.case.values import is_number, show
 from ehlpetsc.effects import EFFECTS
 
 NO_SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
-MAX_PLANE_NODES = 1_000_000  # of a plane, which take 5 GB and minutes a time step
+MAX_PLANE_NODES = 1_100_000  # of a plane, 1,048 a side, which take some GB and seconds a time step
 
 
 class Checked(NamedTuple):

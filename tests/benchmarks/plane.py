@@ -12,8 +12,8 @@ scenes of a circular contact, M = 200 and L = 10, each in a process of its own; 
 Waves and roughness fill the contact from the first step on (`time.start = "rough"`).
 
 Time is processor time, on several ranks wall time; its unit is a zero-padded convolution of the mesh, the
-median of some in the same process. Without exchange is the processor time of a rank outside of the messages
-that are counted; with `OMPI_MCA_mpi_yield_when_idle=1` waiting takes hardly any. The last column is the
+median of some in the same process. Without waiting is the processor time of a rank outside of MPI
+(`waiting.py`). The last column is the
 processor time of the whole process. Errors of the smooth films, the minimum that of a parabola through 3 x 3
 nodes, are against check values, extrapolated from two independent programs, and have an order and a limit;
 all others are against the finest mesh at the same instant.
@@ -45,6 +45,7 @@ import petsc4py
 
 petsc4py.init(sys.argv[:1])
 import numpy as np
+from benchmarks import waiting
 from mpi4py import MPI
 from support.convergence import order_and_limit
 from support.points import lowest, moes_film, point
@@ -84,7 +85,7 @@ COLUMNS = {
     "gmres": "GMRES an iteration",
     "builds": "builds a step",
     "seconds": "s a step",
-    "worked": "without exchange",
+    "worked": "without waiting",
     "calls": "exchanges a step",
     "sent": "MB sent",
     "convolution": "convolution, ms",
@@ -133,12 +134,12 @@ class Counter:
 
 
 class Traffic(MPI.Intracomm):
-    """Communicator that counts its calls, the bytes that this rank sends and the time in them.
+    """Communicator that counts its calls and the bytes that this rank sends.
 
     PETSc's own messages, of norms and of overlapping rows, are not among them.
     """
 
-    calls, sent, seconds = 0, 0, 0.0
+    calls, sent = 0, 0
 
     @classmethod
     def of(cls, simulation: Simulation) -> Traffic:
@@ -159,11 +160,7 @@ def counted(name: str, size: Callable) -> Callable:
 
     def method(ranks: Traffic, *arguments: Any, **named: Any) -> Any:
         ranks.calls, ranks.sent = ranks.calls + 1, ranks.sent + size(ranks, *arguments)
-        at = time.process_time()
-        try:
-            return call(ranks, *arguments, **named)
-        finally:
-            ranks.seconds += time.process_time() - at
+        return call(ranks, *arguments, **named)
 
     return method
 
@@ -188,7 +185,7 @@ def inside(scene: str, side: int, travel: float, options: dict[str, str | None],
     counter, newton, halved, taken, at = Counter(simulation), 0, 0, [], clock()
     state = simulation.advance()
     is_steady = simulation.finished
-    traffic, worked = Traffic.of(simulation) if comm.size > 1 else None, time.process_time()
+    traffic, worked = Traffic.of(simulation) if comm.size > 1 else None, waiting.seconds_outside_mpi()
     begun, started = (0, 0) if is_steady else (counter.linear, counter.builds), clock() - at
     while not simulation.finished:
         at = clock()
@@ -199,7 +196,7 @@ def inside(scene: str, side: int, travel: float, options: dict[str, str | None],
     newton, seconds = (state.newton, started) if is_steady else (newton, sum(taken) / steps)
     figures = {"steps": steps, "newton": newton / steps, "halved": halved, "seconds": seconds}
     figures |= {"gmres": (counter.linear - begun[0]) / newton, "builds": (counter.builds - begun[1]) / steps}
-    worked = (time.process_time() - worked - (traffic.seconds if traffic else 0.0)) / steps
+    worked = comm.allreduce(waiting.seconds_outside_mpi() - worked, MPI.MAX) / steps
     figures |= {"worked": seconds if is_steady else worked, "calls": 0.0, "sent": 0.0}
     if traffic:
         figures |= {"calls": traffic.calls / steps, "sent": traffic.sent / steps / 1e6}
@@ -238,7 +235,8 @@ def measured(scene: str, side: int, ranks: int, chosen: argparse.Namespace, fiel
     command += ["--travel", str(chosen.travel)]
     command += ["--options", *chosen.options] if chosen.options else []
     command += ["--fields", str(fields)] if fields else []
-    printed = subprocess.run(command, env=ENVIRONMENT, text=True, stdout=subprocess.PIPE, check=True).stdout
+    variables = ENVIRONMENT | chosen.loaded
+    printed = subprocess.run(command, env=variables, text=True, stdout=subprocess.PIPE, check=True).stdout
     return json.loads(printed.splitlines()[-1])
 
 
@@ -308,8 +306,10 @@ def summary(chosen: argparse.Namespace, rows: list[dict], folder: Path) -> None:
         if len(first) > 1:
             print(f"\n{scene}: time a step grows with nodes to the power of {exponent(first):.2f}")
         for ranks in chosen.ranks[1:]:
-            faster = [a["seconds"] / b["seconds"] for a, b in zip(first, of_scene[ranks], strict=True)]
-            print(f"\n{scene}: {ranks} ranks over {chosen.ranks[0]}:", ", ".join(f"{f:.2f}" for f in faster))
+            for key, what in (("seconds", ""), ("worked", " in processor time without waiting")):
+                faster = [a[key] / b[key] for a, b in zip(first, of_scene[ranks], strict=True)]
+                ratios = ", ".join(f"{f:.2f}" for f in faster)
+                print(f"\n{scene}: {ranks} ranks over {chosen.ranks[0]}{what}: {ratios}")
     if 1 not in chosen.ranks:
         return
     print("", line(["scene", "nodes", "s", *ERRORS.values()]), line(["---"] * (3 + len(ERRORS))), sep="\n")
@@ -347,6 +347,7 @@ def main() -> None:
         options = {name: value or None for name, _, value in pairs}
         return inside(chosen.inside, chosen.meshes[0], chosen.travel, options, chosen.fields)
     with tempfile.TemporaryDirectory() as folder:
+        chosen.loaded = waiting.preload(Path(folder)) if max(chosen.ranks) > 1 else {}
         summary(chosen, measure(chosen, Path(folder)), Path(folder))
 
 

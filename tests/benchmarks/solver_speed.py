@@ -6,7 +6,8 @@ time a step over nodes; Newton iterations a step. Wall time of SNES, processor t
 pairs in turns.
 
 ``... --ranks 1 2 [--meshes 200]``: the same steps in contact on each number of ranks, in turns: medians of
-the time of an iteration, the speed-up over the first number, maximum memory of a rank.
+the time of an iteration, the speed-up over the first number, maximum memory of a rank; of whole steps the
+processor time of a rank without waiting, and how many times that of the first number it goes into.
 """
 
 import argparse
@@ -16,13 +17,14 @@ import resource
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 ENVIRONMENT = dict(os.environ)  # of other processes: without the variables that MPI sets in this one
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 from ehlpetsc.base import environment
 
 environment.need_solver()
@@ -30,6 +32,7 @@ import petsc4py
 
 petsc4py.init(sys.argv[:1])
 import numpy as np
+from benchmarks import waiting
 from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.linalg import lapack
@@ -131,23 +134,27 @@ def exponent(meshes):
     print(f"time a step goes with nodes to the power {slope:.2f}", flush=True)
 
 
-def on_ranks(points, ranks):
-    """Figures of one group of processes."""
+def on_ranks(points, ranks, loaded):
+    """Figures of one group of processes; `loaded`: variables of :func:`.waiting.preload`."""
     command = ["mpirun", "-n", str(ranks), "--oversubscribe", sys.executable, __file__, "--inside"]
-    printed = subprocess.check_output([*command, str(points)], env=ENVIRONMENT, text=True)
+    printed = subprocess.check_output([*command, str(points)], env=ENVIRONMENT | loaded, text=True)
     return json.loads(printed.splitlines()[-1])
 
 
 def inside(points, steps=16):
     """Run on every rank; the first one prints the figures."""
     comm = MPI.COMM_WORLD
+    waiting.follow_lines()
     simulation = rough(points, "mesh.outlet=1.3", comm=comm)
     spent = timed(simulation, comm.Barrier)
+    begun = waiting.seconds_outside_mpi()
     newton, _ = advance(simulation, steps)
+    worked = comm.allreduce(waiting.seconds_outside_mpi() - begun, MPI.MAX)
     memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, MPI.MAX)
     if comm.rank == 0:
         figures = {"nodes": simulation.scales.nx, "newton": newton, "memory": memory}
-        print(json.dumps(figures | {"snes": 1e3 * spent[0] / newton}), flush=True)
+        figures |= {"snes": 1e3 * spent[0] / newton, "worked": 1e3 * worked / steps}
+        print(json.dumps(figures), flush=True)
 
 
 def main():
@@ -159,6 +166,13 @@ def main():
     chosen = parser.parse_args()
     if chosen.inside:
         return inside(chosen.inside)
+    with tempfile.TemporaryDirectory() as folder:
+        measure(chosen, Path(folder))
+
+
+def measure(chosen, folder):
+    """Print the figures of the command."""
+    loaded = waiting.preload(folder) if chosen.ranks else {}
     for points in chosen.meshes:
         if not chosen.ranks:
             against_lapack(points, rough(points, *FULL_FILM, inlet=-2.5), "full film")
@@ -167,13 +181,19 @@ def main():
         taken = {ranks: [] for ranks in chosen.ranks}
         for _ in range(PAIRS):
             for ranks, figures in taken.items():
-                figures.append(on_ranks(points, ranks))
-        first = [one["snes"] for one in taken[chosen.ranks[0]]]
+                figures.append(on_ranks(points, ranks, loaded))
+        first = taken[chosen.ranks[0]]
         for ranks, figures in taken.items():
             median = {name: statistics.median(one[name] for one in figures) for name in figures[0]}
-            faster = statistics.median(b / one["snes"] for b, one in zip(first, figures, strict=True))
+            faster, less = (
+                statistics.median(b[key] / one[key] for b, one in zip(first, figures, strict=True))
+                for key in ("snes", "worked")
+            )
             print(f"{median['nodes']:.0f} nodes, {ranks} ranks, {faster:.2f} times as fast:", end=" ")
-            print(f"{median['snes']:.2f} ms, {median['newton']:.0f} Newton, {median['memory']:.0f} MB")
+            print(
+                f"{median['snes']:.2f} ms, {median['newton']:.0f} Newton, {median['memory']:.0f} MB;", end=" "
+            )
+            print(f"a step without waiting {median['worked']:.1f} ms of a rank, {less:.2f} times less")
     if not chosen.ranks:
         exponent((100, 200, 400, 800, 1600))
         for overrides, name in ((FULL_FILM, "full film"), ((), "in contact")):

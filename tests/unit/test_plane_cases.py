@@ -63,7 +63,7 @@ REFUSED = {  # by key: tables, overrides, words of the message
     "[life]": (POINT, {"life": {"passes": 10}}, "of line and strip contacts, and this is a point"),
     "mesh.near_field": (POINT, {"mesh.near_field": 5}, "of line contacts, and this is a point"),
     "contact.load": (STRIP, {"contact.load": "20 N"}, "allowed: one of N/m"),
-    "mesh": (POINT, {"mesh.width": 900}, "allowed: 1000000 in all"),
+    "mesh": (POINT, {"mesh.width": 900}, "allowed: 1100000 in all"),
     "wavelength_across": (STRIP, {"surface.1": {"synthetic": ACROSS}}, "allowed: whole waves over the width"),
     "direction": (POINT, {"surface.1": {"synthetic": WAVE, "direction": 30.0}}, "of a map in a file or"),
     "spacing_across": (POINT, {"surface.1": PROFILE | {"spacing_across": 1e-5}}, "of a map, not of a"),
