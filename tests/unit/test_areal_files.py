@@ -196,11 +196,25 @@ def test_a_format_without_a_reader_is_refused_whatever_is_stated(tmp_path, suffi
             read_map(path, layout)
 
 
-def test_a_damaged_file_is_refused(tmp_path):
+def test_a_file_of_no_format_is_refused_in_one_sentence_whatever_readers_print(tmp_path, capsys):
     optional("SurfaceTopography")
     path = tmp_path / "map.x3p"
     path.write_bytes(b"\x01\x02 nothing")
-    with pytest.raises(ProfileError, match="^SurfaceTopography cannot read it: "):
+    with pytest.raises(ProfileError, match="^of no format that the installed SurfaceTopography"):
+        read_map(path)
+    assert capsys.readouterr().out == ""
+
+
+def test_a_damaged_file_is_refused(tmp_path, monkeypatch):
+    def fail(path):
+        raise IndexError("list index out of range")
+
+    package = ModuleType("SurfaceTopography")
+    package.read_topography = fail
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", package)
+    path = tmp_path / "map.nms"
+    path.write_bytes(b"\x01\x02 nothing")
+    with pytest.raises(ProfileError, match="^SurfaceTopography cannot read it: list index out of range"):
         read_map(path)
 
 

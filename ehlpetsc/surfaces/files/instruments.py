@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Callable
 from os import PathLike
@@ -70,9 +71,18 @@ def _unknown(path: Path) -> Map | Trace:
 
 
 def _by_surface_topography(path: Path) -> Map | Trace:
-    from SurfaceTopography import read_topography
+    import SurfaceTopography
 
-    topography = read_topography(str(path))
+    try:
+        with contextlib.redirect_stdout(None):  # some of its readers print
+            topography = SurfaceTopography.read_topography(str(path))
+    except Exception as error:
+        if type(error).__name__ != "CannotDetectFileFormat":
+            raise
+        allowed = f"{OTHERWISE}, or .x3p, .sdf, .sur"
+        raise ProfileError(
+            f"of no format that the installed SurfaceTopography reads; allowed: {allowed}"
+        ) from None
     if topography.unit is None:
         raise ProfileError(f"no unit of length in it; allowed: {OTHERWISE}")
     topography = topography.to_unit("m")
