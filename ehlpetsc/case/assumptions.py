@@ -42,6 +42,10 @@ def _window(case: Case) -> str:
     return "mesh.window, a part of it" if case.mesh.window else ""
 
 
+def _profile_along(case: Case) -> str:
+    return "contact.profile_along" if case.contact.profile_along else ""
+
+
 class Departure(NamedTuple):
     """What in a case departs from an assumption.
 
@@ -55,6 +59,7 @@ class Departure(NamedTuple):
 DEPARTURES = {
     "homogeneous bodies": Departure(_coated),
     "half-spaces": Departure(_free_ends, "contact.free_ends = false"),
+    "a parabola along the motion": Departure(_profile_along),
     "a contact in the plane": Departure(
         _line, "take a strip of few rows, mesh.width = 0.5 and mesh.points_per_half_width = [50, 8]"
     ),
@@ -80,12 +85,17 @@ FEATURES = {
     "fluid.inlet_film": Feature(
         lambda case: case.fluid and case.fluid.inlet_film, ("one direction of entrainment",)
     ),
+    "[gears]": Feature(lambda case: case.gears, ("a parabola along the motion",)),
     "[heat]": Feature(lambda case: case.heat, ("homogeneous bodies", "a whole contact")),
     "[life]": Feature(lambda case: case.life, ("homogeneous bodies",)),
     "[operation]": Feature(lambda case: case.conditions, ("a whole contact",)),
 }
 STRESSES = "stresses below the surface"
-COMMANDS = {STRESSES: ("homogeneous bodies", "a whole contact")}
+SMOOTH = "damage of the smooth contact"
+COMMANDS = {
+    STRESSES: ("homogeneous bodies", "a whole contact"),
+    SMOOTH: ("homogeneous bodies", "a parabola along the motion"),
+}
 """Assumptions of features that no key asks for."""
 
 

@@ -1,7 +1,7 @@
 """Case of its tables in three stages, each of which returns new tables and leaves the given ones as they are.
 
-- :func:`resolved`: what the file and overrides say, in SI units, with the points of a roller's profile and
-  the height of a measured layer: all that is stored with the case;
+- :func:`resolved`: what the file and overrides say, in SI units, with the points of profiles and the
+  height of a measured layer: all that is stored with the case;
 - :func:`derived`: with all that follows from it, as constants of steels and oils, the load of an approach,
   conditions over time of tables and gears, the reference state of the scales;
 - :func:`checked`: values by the table of keys, then what keys mean together: a mesh for reversing oil,
@@ -57,20 +57,20 @@ class Checked(NamedTuple):
 
 def resolved(folder: Path, written: Tables, kind: str) -> tuple[Tables, list[Fault]]:
     """First stage, with the faults so far; `written`: tables of a case file with its overrides."""
-    tables, of_profile = _with_profile(folder, written)
+    tables, of_profiles = _with_profiles(folder, written)
     tables, of_units = in_si(tables, kind)
-    faults = of_profile + of_units
+    faults = of_profiles + of_units
     tables, of_layer = with_measured_layer(folder, tables, {fault.place for fault in faults})
     return tables, faults + of_layer
 
 
-def _with_profile(folder: Path, written: Tables) -> tuple[Tables, list[Fault]]:
+def _with_profiles(folder: Path, written: Tables) -> tuple[Tables, list[Fault]]:
     contact = written.get("contact")
-    if not isinstance(contact, dict) or "profile" not in contact:
+    if not isinstance(contact, dict) or not contact.keys() & {"profile", "profile_along"}:
         return written, []
-    from ehlpetsc.case.profile_files import with_profile  # of rollers alone
+    from ehlpetsc.case.profile_files import with_profiles  # few cases need it
 
-    return with_profile(folder, written)
+    return with_profiles(folder, written)
 
 
 class Derived(NamedTuple):

@@ -85,6 +85,10 @@ class Deflection(Protocol[S]):
     def largest_eigenvalue(self) -> float:
         """Bound of the eigenvalues of `integral`."""
 
+    @property
+    def is_homogeneous(self) -> bool:
+        """Whether both bodies are homogeneous."""
+
     def residual(self, separation: np.ndarray, of_border: float | np.ndarray, sums: S) -> np.ndarray:
         """Local rows, from the separation at the nodes of the window and the gap of the border."""
 

@@ -29,12 +29,14 @@ class Kernel(NamedTuple):
     `direct`: at distances 0 .. n - 1 nodes, shape (n_y, n_x).
     `mirrored`: at distances 1 - n .. n - 1 across, by the pressures in reversed order of the rows, shape
         (2 n_y - 1, n_x); None: none.
+    `is_homogeneous`: whether it is that of homogeneous half-spaces, or of a term whether the bodies stay so.
     `softening`: of wave numbers k in 1/a: compliance over :math:`2\pi C/k`; of a term what it adds.
     """
 
     direct: np.ndarray
     mirrored: np.ndarray | None = None
     softening: Callable[[np.ndarray], np.ndarray] = np.ones_like
+    is_homogeneous: bool = True
 
     def plus(self, term: Kernel) -> Kernel:
         """Sum of a kernel and a term."""
@@ -43,4 +45,5 @@ class Kernel(NamedTuple):
             self.direct + term.direct,
             sum(both[1:], start=both[0]) if both else None,
             lambda k: self.softening(k) + term.softening(k),
+            self.is_homogeneous and term.is_homogeneous,
         )

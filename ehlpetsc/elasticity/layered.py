@@ -82,9 +82,11 @@ def layer_term(layer: Layer, share: float, mesh: Mesh) -> Kernel:
     (n_y, n_x), (dy, dx) = mesh.shape, mesh.spacings
     half_space = (periodic_kernel if mesh.periodic else free_kernel)(n_x, n_y, dx, dy)
     smooth = (periodic_cells if mesh.periodic else free_cells)(layer, mesh)
+    direct = share * ((short_waves(layer) - 1.0) * half_space + smooth)
     return Kernel(
-        share * ((short_waves(layer) - 1.0) * half_space + smooth),
+        direct,
         softening=lambda k: share * (softening(layer, k * layer.thickness) - 1.0),
+        is_homogeneous=not direct.any(),  # a layer of the body's own moduli
     )
 
 

@@ -17,6 +17,7 @@ from ehlpetsc.base.compiled import compiled
 from ehlpetsc.base.errors import OutputError, PostError
 from ehlpetsc.base.materials import DEFAULT, FATIGUE_KEYS
 from ehlpetsc.base.version import __version__
+from ehlpetsc.case.assumptions import COMMANDS, SMOOTH, refusal
 from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.counting import count_of
@@ -166,7 +167,12 @@ def _solve_depths(
 
 
 def smooth_contacts(prepared: Prepared, surface: str, job: Job) -> dict[str, SmoothContact]:
-    """Smooth contact of a surface by each criterion of damage, by the name of the damage in the file."""
+    """Smooth contact of a surface by each criterion of damage, by the name of the damage in the file.
+
+    None of a case whose smooth contact is not Hertz's.
+    """
+    if refusal(prepared.loads.case, SMOOTH, COMMANDS[SMOOTH]):
+        return {}
     ratio, counts = prepared.materials[surface].poisson_ratio, _counts(prepared, surface, job)
     return {
         names[0]: smooth_contact(prepared.loads, ratio, count)

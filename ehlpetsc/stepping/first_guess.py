@@ -1,12 +1,8 @@
-r"""Initial guesses of steady solutions: Hertz pressure with an even film, and yielding solids.
+"""Initial guesses of steady solutions: dry pressure with an even film, and yielding solids.
 
-Where solids yield under Hertz' pressure, the guess is their dry contact as a convex problem,
-
-.. math:: \min_p\ \tfrac12\,p\cdot Ap+p\cdot g,\qquad 0\le p\le p_y,\quad \sum p\,\Delta x=W,
-
-A the deflection, g the gap of the undeformed shapes: the gradient is the deformed gap without the approach.
-Projected gradients with Nesterov's momentum, restarted where a step turns back, converge from any guess;
-where nearly all nodes in contact yield, Newton's method alone does not find the set of elastic nodes.
+The dry contact is Hertz's where bodies and shapes are his, and solved (:mod:`ehlpetsc.elasticity.dry`) where
+they are not, and where solids yield under Hertz's pressure: where nearly all nodes in contact yield, Newton's
+method alone does not find the set of elastic nodes.
 """
 
 import numpy as np
@@ -21,9 +17,8 @@ SMOOTHING = 0.2  # width of the smoothing of the pressure in lengths of the inle
 MAX_DIRECT_REACH = 1000  # nodes on either side: for longer weights a transform is faster than the sum
 START_FILM = 1.3  # over the expected film
 AMBIENT_PRESSURE = 1e-6  # p0: pressure of full oil at ambient pressure in a guess
-MAX_ITERATIONS = 1000  # of the projected gradient method
 STEP_TOLERANCE = 1e-5  # of the yield pressure: smaller changes end the iteration
-FILM_BISECTIONS = 60  # of an interval, down to rounding
+GUESS_TOLERANCE = 1e-4  # p0: the same without yielding, whose guess oil smooths
 
 
 def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
@@ -32,8 +27,34 @@ def undeformed_gap(problem: EHLProblem, inputs: StepInputs) -> np.ndarray:
     return inputs.phi + change * problem.grid.parabolas
 
 
+def dry_contact(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
+    """Dry pressure in p0, and the mask of the nodes outside the contact.
+
+    Of homogeneous bodies Hertz's line and ellipse, of a roller by slices; of other shapes and bodies solved.
+    """
+    grid = problem.grid
+    room = grid.room(problem.balance.share(inputs), inputs.conditions.radius / problem.scales.R)
+    p = np.sqrt(np.maximum(room, 0.0))
+    if grid.is_hertzian and problem.deflection.is_homogeneous:
+        return p, room < 0.0
+    p = _solved_pressure(problem, inputs, p, GUESS_TOLERANCE)
+    return p, p == 0.0
+
+
+def _solved_pressure(
+    problem: EHLProblem, inputs: StepInputs, guess: np.ndarray, tolerance: float, limit: float = np.inf
+) -> np.ndarray:
+    """Pressure of the dry contact of any shape and bodies in p0."""
+    from ehlpetsc.elasticity.dry import dry_pressure  # few contacts are not Hertz's
+
+    balance, deflection = problem.balance, problem.deflection
+    gap = balance.gap(balance.uniform(0.0)) + problem.grid.undeformed() + undeformed_gap(problem, inputs)
+    total, eigenvalue = balance.load(inputs) / problem.grid.cell, deflection.largest_eigenvalue
+    return dry_pressure(gap, total, deflection.integral, eigenvalue, guess, tolerance, limit)
+
+
 def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknowns:
-    """Hertz pressure with a film above the expected one at every node; downstream of the contact a cavity.
+    """Dry pressure with a film above the expected one at every node; downstream of the contact a cavity.
 
     The pressure is smoothed over `SMOOTHING` times the length of the inlet sweep, film^(2/3): the infinite
     slope at the edge of the Hertz pressure would dominate the flow through a thick film. `film` is the
@@ -42,8 +63,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknown
     Without entrainment the solids carry the load, in oil at ambient pressure: no flow fills a cavity.
     """
     grid, balance = problem.grid, problem.balance
-    room = grid.room(balance.share(inputs), inputs.conditions.radius / problem.scales.R)
-    p = np.sqrt(np.maximum(room, 0.0))
+    p, is_outside = dry_contact(problem, inputs)
     oil_carries = problem.fluid is not None and not inputs.rests
     if oil_carries:
         p = smoothed_over(grid, p, SMOOTHING * film ** (2.0 / 3.0))
@@ -57,7 +77,7 @@ def hertz_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unknown
     raised = problem.model.start_film(START_FILM * film) - h.min()
     h += raised
     oil, w = problem.model.oil_start(p, h)
-    behind = (problem.x > 0.0) & (room < 0.0) & (p < AMBIENT_PRESSURE)
+    behind = (problem.x > 0.0) & is_outside & (p < AMBIENT_PRESSURE)
     entrained = film + np.repeat(grid.rows(h).min(axis=1) - h.min(), len(grid.x))  # beside the contact more
     q = np.where(behind, np.minimum(entrained / h - 1.0, 0.0), np.maximum(oil, AMBIENT_PRESSURE))
     return Unknowns(q, w, balance.uniform(raised))
@@ -96,31 +116,11 @@ def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unkno
 
 
 def bounded_pressure(problem: EHLProblem, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
-    """Pressure of the dry contact in p0, 0 <= p <= p_y, and its gap without the approach in a^2/R."""
-    limit, balance, grid = problem.model.yield_pressure, problem.balance, problem.grid
-    total, phi = balance.load(inputs) / grid.cell, undeformed_gap(problem, inputs)
-    border, room = balance.uniform(0.0), grid.room(balance.share(inputs), 1.0)
-    rate = 1.0 / problem.deflection.largest_eigenvalue
-    p = ahead = project(np.sqrt(np.maximum(room, 0.0)), limit, total)
-    momentum = 1.0
-    for _ in range(MAX_ITERATIONS):
-        new = project(ahead - rate * problem.film(ahead, border, phi), limit, total)
-        if np.abs(new - p).max() < STEP_TOLERANCE * limit:
-            break
-        if (ahead - new) @ (new - p) > 0.0:
-            momentum = 1.0
-        following = 0.5 * (1.0 + np.sqrt(1.0 + 4.0 * momentum**2))
-        ahead, p, momentum = new + (momentum - 1.0) / following * (new - p), new, following
-    return new, problem.film(new, border, phi)
-
-
-def project(p: np.ndarray, limit: float, total: float) -> np.ndarray:
-    """Projection of p onto pressures between 0 and `limit` with the sum `total`: shifted and clipped."""
-    low, high = -p.max(), limit - p.min()
-    for _ in range(FILM_BISECTIONS):
-        shift = 0.5 * (low + high)
-        low, high = (shift, high) if np.clip(p + shift, 0.0, limit).sum() < total else (low, shift)
-    return np.clip(p + high, 0.0, limit)
+    """Pressure of the dry contact of yielding solids in p0, and its gap without the approach in a^2/R."""
+    limit, border = problem.model.yield_pressure, problem.balance.uniform(0.0)
+    guess = np.sqrt(np.maximum(problem.grid.room(problem.balance.share(inputs), 1.0), 0.0))
+    p = _solved_pressure(problem, inputs, guess, STEP_TOLERANCE * limit, limit)
+    return p, problem.film(p, border, undeformed_gap(problem, inputs))
 
 
 def bounded_start(problem: EHLProblem, film: float, inputs: StepInputs, smoothing: float) -> Unknowns:

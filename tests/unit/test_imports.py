@@ -26,7 +26,7 @@ MAY_IMPORT = {
     "results": "case surfaces physics effects",
     "discretisation": "physics elasticity",
     "nonlinear": "discretisation physics elasticity",
-    "stepping": "nonlinear discretisation physics effects",
+    "stepping": "nonlinear discretisation physics effects elasticity",
     "run": "stepping nonlinear discretisation physics effects case surfaces results",
     "analysis": "gears results physics effects elasticity",
     "post": "case results physics",

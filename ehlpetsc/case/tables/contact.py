@@ -8,7 +8,7 @@ from typing import Any
 from ehlpetsc.base.case import Contact, Fluid
 from ehlpetsc.base.declarations import Key, KeyTable, Refused, Required
 from ehlpetsc.base.materials import GRADES, STEELS
-from ehlpetsc.physics.contact.profiles import PROFILES
+from ehlpetsc.physics.contact.profiles import ALONG, PROFILES
 from ehlpetsc.physics.oil.laws import DENSITY_LAWS, LAW_TABLES, LAWS, completed
 from ehlpetsc.physics.oil.oils import OILS
 
@@ -32,6 +32,17 @@ PROFILE = {
     for name, law in PROFILES.items()
 }
 """Keys of the profile of a roller by its kind."""
+
+ALONG_TABLES = {
+    name: KeyTable(
+        "contact.profile_along",
+        "profile along the direction of motion",
+        {"kind": Required("of profile", choices=(name,), equation=law.equation)} | law.keys,
+        complete=law.check,
+    )
+    for name, law in ALONG.items()
+}
+"""Keys of the profile along the motion by its kind."""
 
 
 def _complete(contact: Contact) -> dict[str, Any]:
@@ -104,6 +115,15 @@ KEYS = {
         "or a file of both [m]; left out: straight",
         kind=dict,
         variants=PROFILE,
+    ),
+    "profile_along": Key(
+        'gap of the solids along the motion beside the parabola of the radius: { kind = "'
+        + '" | "'.join(ALONG)
+        + '", ... }, or a table of x and z, or a file of both [m]; it rests in the contact and keeps its '
+        "heights under varying radii; `a`, `p0` and film formulas are those without it",
+        kind=dict,
+        variants=ALONG_TABLES,
+        equation="`g = x^2/(2 R) + z(x)`",
     ),
     "end_radius": Key(
         "of the rounds beyond both ends of a roller; left out: sharp ends, where the mesh stops",

@@ -101,6 +101,8 @@ class Deflection:
     `load_weights`: coefficients of the local pressures in `PressureSums.load`, shape (3, last - first).
     """
 
+    is_homogeneous = True
+
     def __init__(self, n: int, dx: float, first: int, last: int):
         self.n, self.dx, self.first, self.last = n, dx, first, last
         self.window = slice(max(first - HALO, 0), min(last + HALO, n))

@@ -165,6 +165,11 @@ class Deflection:
         """Local rows, from the separation at the nodes of the window and the gap of the border."""
         return self.row_scale * (separation[self.owned] - of_border - sums.deflection)
 
+    @property
+    def is_homogeneous(self) -> bool:
+        """Whether both bodies are homogeneous."""
+        return self.kernel.is_homogeneous
+
     @cached_property
     def largest_eigenvalue(self) -> float:
         """Bound of the eigenvalues of `integral`: the largest sum of a row."""

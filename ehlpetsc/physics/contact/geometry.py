@@ -26,6 +26,7 @@ from ehlpetsc.physics.contact.films import (
 )
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_line
+from ehlpetsc.physics.contact.profiles import gap_along
 from ehlpetsc.physics.contact.shape import CYLINDER, STRAIGHT, Shape
 
 POINT_WIDTH = 4.0  # half-widths b: of the mesh of a point contact across, unless given
@@ -74,6 +75,14 @@ def along(mesh: Values) -> np.ndarray:
     return mesh.inlet + np.arange(mesh.nodes) / mesh.points_per_half_width
 
 
+def shape_along(contact: Values, dry: Dry) -> Shape:
+    """Shape along the direction of motion: the parabola of the radius, and the profile beside it."""
+    profile, unit = contact.profile_along, dry.a**2 / contact.radius
+    if profile is None:
+        return CYLINDER
+    return CYLINDER._replace(profile=lambda x: gap_along(x * dry.a, profile) / unit)
+
+
 def unit_length(contact: Values) -> float:
     """Extent of a line contact, of a load per length: 1 m."""
     return 1.0
@@ -107,7 +116,13 @@ def point_half_width(load: np.ndarray, radius: np.ndarray, modulus: float, exten
 
 def line_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
     """Nodes of a line contact."""
-    return Grid((along(mesh),), (dry.a / mesh.points_per_half_width,), (1.0,), (CYLINDER,), 0.5 * np.pi)
+    return Grid(
+        (along(mesh),),
+        (dry.a / mesh.points_per_half_width,),
+        (1.0,),
+        (shape_along(contact, dry),),
+        0.5 * np.pi,
+    )
 
 
 def one_row(contact: Values, mesh: Values, dry: Dry) -> int:
@@ -137,7 +152,7 @@ def strip_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
         (y, along(mesh)),
         spacings,
         (math.inf, 1.0),
-        (STRAIGHT, CYLINDER),
+        (STRAIGHT, shape_along(contact, dry)),
         load,
         breadth=mesh.width,
         periodic=True,
@@ -156,7 +171,7 @@ def point_grid(contact: Values, mesh: Values, dry: Dry) -> Grid:
         (y, along(mesh)),
         spacings,
         (ratio, 1.0),
-        (across, CYLINDER),
+        (across, shape_along(contact, dry)),
         2.0 * np.pi / 3.0 * ratio,
         growth=2.0 / 3.0,
         breadth=2.0 * ratio,

@@ -147,6 +147,11 @@ class Grid:
         return np.sqrt(((y - self.middle) / b) ** 2 + (x / a) ** 2)
 
     @property
+    def is_hertzian(self) -> bool:
+        """Whether `room` is that of the shape."""
+        return all(shape.profile is None for shape in self.shapes)
+
+    @property
     def widening(self) -> float:
         """Largest half-width of the dry contact in half-widths a."""
         return 1.0

@@ -1,4 +1,6 @@
-r"""Profiles of rollers along their length by name: drop z(y) beside the cylinder, positive into the body.
+r"""Profiles by name: of rollers along their length, and of any contact along the motion.
+
+Of rollers the drop z(y) beside the cylinder, positive into the body:
 
 .. math:: z=A\ln\frac1{1-k\,t^2},\qquad t=\frac{(|y|-s/2)_+}{(L-s)/2},\qquad k=1-e^{-z_m/A}
 
@@ -14,7 +16,7 @@ tapered rollers A = 0.00045 D, s = 0.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -46,6 +48,15 @@ class Profile(NamedTuple):
     equation: str
     keys: dict[str, Key]
     drop: Callable[[np.ndarray, Values, Design], np.ndarray]
+    check: Callable[[Values], Any] = lambda profile: {}
+
+
+class ProfileAlong(NamedTuple):
+    """A profile along the motion: its constants as keys, gap z [m] at x [m], a check that may refuse."""
+
+    equation: str
+    keys: dict[str, Key]
+    gap: Callable[[np.ndarray, Values], np.ndarray]
     check: Callable[[Values], Any] = lambda profile: {}
 
 
@@ -111,10 +122,14 @@ def _two_radii(y: np.ndarray, profile: Values, design: Design) -> np.ndarray:
 
 
 def _table(y: np.ndarray, profile: Values, design: Design) -> np.ndarray:
+    return between(profile.y, profile.z, y)
+
+
+def between(points: Sequence[float], z: Sequence[float], s: np.ndarray) -> np.ndarray:
+    """Monotone cubics through z at points, the same on both sides if these begin at 0 or above."""
     from scipy.interpolate import PchipInterpolator
 
-    is_one_sided = profile.y[0] >= 0.0
-    return PchipInterpolator(profile.y, profile.z)(np.abs(y) if is_one_sided else y)
+    return PchipInterpolator(points, z)(np.abs(s) if points[0] >= 0.0 else s)
 
 
 def _one_of_radius_and_drop(profile: Values) -> dict[str, Any]:
@@ -123,11 +138,12 @@ def _one_of_radius_and_drop(profile: Values) -> dict[str, Any]:
     return {}
 
 
-def _as_many(profile: Values) -> dict[str, Any]:
-    if len(profile.y) != len(profile.z):
-        raise Refused(f"y has {len(profile.y)} values, z {len(profile.z)}; allowed: as many")
-    if any(later <= sooner for sooner, later in zip(profile.y, profile.y[1:], strict=False)):
-        raise Refused("allowed: increasing distances", "y")
+def _as_many(profile: Values, name: str = "y") -> dict[str, Any]:
+    points = profile.as_dict()[name]
+    if len(points) != len(profile.z):
+        raise Refused(f"{name} has {len(points)} values, z {len(profile.z)}; allowed: as many")
+    if any(later <= sooner for sooner, later in zip(points, points[1:], strict=False)):
+        raise Refused("allowed: increasing distances", name)
     return {}
 
 
@@ -204,6 +220,48 @@ PROFILES = {
     ),
 }
 """Profiles by name; `contact.profile.kind`."""
+
+
+def _power(x: np.ndarray, profile: Values) -> np.ndarray:
+    return profile.height * np.abs(x / profile.distance) ** profile.exponent
+
+
+def _points_along(x: np.ndarray, profile: Values) -> np.ndarray:
+    nearest = np.abs(x) if profile.x[0] >= 0.0 else x
+    return between(profile.x, profile.z, np.clip(nearest, profile.x[0], profile.x[-1]))
+
+
+ALONG = {
+    "power": ProfileAlong(
+        "`z = height |x/distance|^exponent`",
+        {
+            "height": Required("at the distance", "m", -1e-2, 1e-2),
+            "distance": Required("from the middle", "m", 1e-9, 1),
+            "exponent": Required("of the distance", "", 1, 100),
+        },
+        _power,
+    ),
+    "table": ProfileAlong(
+        "monotone cubics between the points, beyond them z of the last one",
+        {
+            "x": Required(
+                "distance from the middle, positive downstream: from 0, of equal sides, or over both",
+                *("m", -10, 10),
+                many="list",
+                min_items=2,
+            ),
+            "z": Required("positive into the body", "m", -1e-2, 1e-2, many="list", min_items=2),
+        },
+        _points_along,
+        lambda profile: _as_many(profile, "x"),
+    ),
+}
+"""Profiles along the direction of motion beside the parabola; `contact.profile_along.kind`."""
+
+
+def gap_along(x: np.ndarray, profile: Values) -> np.ndarray:
+    """Gap [m] of a profile at distances x [m] along the motion from the middle."""
+    return ALONG[profile.kind].gap(x, profile)
 
 
 def drop_of(y: np.ndarray, profile: Values | None, design: Design) -> np.ndarray:

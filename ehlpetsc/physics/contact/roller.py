@@ -19,11 +19,11 @@ import numpy as np
 
 from ehlpetsc.base.counts import whole_near, whole_up
 from ehlpetsc.base.declarations import Values
-from ehlpetsc.physics.contact.geometry import LINE, Dry, along
+from ehlpetsc.physics.contact.geometry import LINE, Dry, along, shape_along
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.hertz import hertz_line
 from ehlpetsc.physics.contact.profiles import MAX_GAP, Design, drop_of
-from ehlpetsc.physics.contact.shape import CYLINDER, Shape
+from ehlpetsc.physics.contact.shape import Shape
 
 SLICE = 2.0  # approach of a slice over its load: a^2/R over the mean load
 PROFILE_POINTS = 4001  # across, of the end of the contact of slices
@@ -59,6 +59,11 @@ class RollerGrid(Grid):
         """See :class:`Grid`: of a rectangle."""
         (y, x), (b, a) = self.coordinates, self.half_widths
         return np.maximum(np.abs(y) / b, np.abs(x) / a)
+
+    @property
+    def is_hertzian(self) -> bool:
+        """See :class:`Grid`: slices know the profile across."""
+        return self.shapes[-1].profile is None
 
     @cached_property
     def widening(self) -> float:
@@ -200,7 +205,7 @@ def roller_grid(contact: Values, mesh: Values, dry: Dry) -> RollerGrid:
         (y, along(mesh)),
         (step * dry.a, dry.a / mesh.points_per_half_width),
         (ratio, 1.0),
-        (Shape(profile=profile), CYLINDER),
+        (Shape(profile=profile), shape_along(contact, dry)),
         np.pi * ratio,
         breadth=2.0 * ratio,
         drop=profile(y) + tilt * y,

@@ -43,6 +43,11 @@ class WindowGrid(Grid):
         return self.whole.widening
 
     @property
+    def is_hertzian(self) -> bool:
+        """See :class:`Grid`: of the roller."""
+        return self.whole.is_hertzian
+
+    @property
     def is_sharp(self) -> bool:
         """See :class:`RollerGrid`."""
         return self.whole.is_sharp

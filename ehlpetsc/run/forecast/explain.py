@@ -70,7 +70,8 @@ def _dry(case: Case, s: Scales) -> list[str]:
     load, pressure = f"{load}, reduced modulus {s.E / 1e9:.4f} GPa", f"p0 = {s.p0 / 1e9:.6f} GPa"
     shape, widths, more = KINDS[case.kind].part("forecast").shape(s)
     lines = [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}", *more]
-    return [*lines, *_coatings(case.contact)]
+    along = ["Profile along the motion beside the parabola, which Hertz and film formulas do not know"]
+    return [*lines, *along * (case.contact.profile_along is not None), *_coatings(case.contact)]
 
 
 def _coatings(contact: Contact) -> Iterator[str]:
