@@ -266,3 +266,21 @@ def test_many_nodes_start_from_a_coarser_mesh_and_end_in_the_same_state(monkeypa
     nested = Simulation(case).advance()
     assert np.abs(nested.pressure - direct.pressure).max() < 1e-6 * direct.p_max
     assert nodes == [(17**2, 33**2), (33**2, 65**2)]
+
+
+@pytest.mark.parametrize("speed", [3e-4, 1e-5])
+def test_a_strip_starts_with_a_film_far_thinner_than_its_layer_as_a_line_does(speed):
+    """Films of 0.16 and 0.02 nm in a layer of 10 nm; a strip of four equal rows is the line."""
+    contact = {"radius": 0.0191, "load": 527e3, "material": "SAE4340", "model": "mixed"}
+    contact |= {"asperity_height": 10e-9, "asperity_stiffness": 3.74e-4}
+    case = {
+        "title": "oil locked in",
+        "contact": contact,
+        "fluid": roelands_oil(0.002, 11.1e-9) | {"eyring_stress": 10e6},
+        "motion": {"entrainment_speed": speed, "slide_roll_ratio": 0.25},
+        "mesh": {"inlet": -1.5, "outlet": 1.3, "points_per_half_width": 16},
+    }
+    line = Simulation(load(case)).advance()
+    strip = Simulation(load(case, {"mesh.width": 0.25})).advance()
+    np.testing.assert_allclose(strip.film_thickness, np.tile(line.film_thickness, (4, 1)), rtol=1e-6)
+    assert strip.contact_share == pytest.approx(line.contact_share, rel=1e-6) and strip.newton < 120

@@ -45,7 +45,7 @@ FREE_RISE = 0.1  # p0: asperity pressure that a Newton step may reach from anywh
 CARRIED = 0.01  # p0: from this asperity pressure on a step leads to the linearised one
 LEAST = 0.5  # of the asperity pressure: asperities that lose more take the film of the step
 ADVECTED = 1e-2  # p0: nodes whose asperities carry more are moved by whole nodes
-DRY_START_EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess
+EDGE_PRESSURE = 1e-3  # p0: asperity pressure at the edge of a dry first guess, and from which on they touch
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,7 @@ class CompliantContact(SeparatedContact):
         self.layer = layer
         self.law = tuple(layer.law)
         self.minimum_film = asperity_separation(1.0, *self.law)
+        self.touching_film = asperity_separation(EDGE_PRESSURE, *self.law)
         self._known: dict[int, tuple] = {}
 
     def _solids(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -130,10 +131,10 @@ class CompliantContact(SeparatedContact):
         return np.where(closed, self._separation(contact_pressure), self.w_from_film(h))
 
     def _separation(self, pressure: np.ndarray) -> np.ndarray:
-        return asperity_separations(np.maximum(pressure, DRY_START_EDGE_PRESSURE), self.law)
+        return asperity_separations(np.maximum(pressure, EDGE_PRESSURE), self.law)
 
     def dry_start(self, pressure: np.ndarray, gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        film = np.maximum(gap, asperity_separation(DRY_START_EDGE_PRESSURE, *self.law))
+        film = np.maximum(gap, self.touching_film)
         return np.zeros_like(pressure), np.where(pressure > 0.0, self._separation(pressure), film)
 
     def start_film(self, film: float) -> float:

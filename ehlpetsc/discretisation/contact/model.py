@@ -20,6 +20,7 @@ class ContactModel:
     """Elastic solids that carry load with the oil; the defaults hold for every model with p_c of its own.
 
     `minimum_film`: smallest film that the model aims at, in a^2/R.
+    `touching_film`: film below which solids carry beside oil, in a^2/R; 0: only where the film closes.
     `lower_bound`: bound of w that the nonlinear solver enforces (SNESVI); None: no bound.
     `starts_unconstrained`: whether a bounded system is solved without its bound first, where the guess is
         clear of it.
@@ -29,6 +30,7 @@ class ContactModel:
     """
 
     minimum_film = 0.0
+    touching_film = 0.0
     lower_bound: float | None = None
     starts_unconstrained = False
     bound_tolerance = 0.0
