@@ -83,6 +83,7 @@ KINDS["roller"] = KINDS["point"]._replace(
     radii=" in a roller, of one radius and a length",
     geometry="physics.contact.roller:ROLLER",
     forecast="run.forecast.kinds:ROLLER",
+    linear_solver="nonlinear.options:roller_solver",
     has_ends=True,
     picture="roller",
 )
@@ -90,6 +91,7 @@ KINDS["window"] = KINDS["roller"]._replace(
     radii=" in a window of a roller, of one radius and a length",
     geometry="physics.contact.window:WINDOW",
     forecast="run.forecast.kinds:WINDOW",
+    linear_solver=KINDS["point"].linear_solver,
     picture="plane",
     surroundings="run.surroundings:of_roller",
 )

@@ -105,7 +105,7 @@ def test_profile_of_a_file_is_stored_with_its_points(tmp_path):
 @pytest.mark.parametrize(
     ("contact", "message"),
     [
-        ({"radius": [R, R]}, "contact.length: of roller contacts, and this is a point; leave it out"),
+        ({"radius": [R, R]}, "contact.length: of roller and window contacts, and this is a point"),
         ({"length": None, "profile": ISO}, "contact.profile: needs contact.length"),
         ({"profile": {"kind": "circular"}}, "contact.profile: needs either radius or drop"),
         ({"profile": BLEND | {"straight": 13e-3}}, "profile"),
