@@ -20,6 +20,7 @@ with contextlib.suppress(ImportError):  # SurfaceTopography needs a newer one th
 sys.path.remove(PACKAGES)
 sys.path.append(PACKAGES)
 os.environ.setdefault("MPLBACKEND", "Agg")  # no windows
+os.environ["EHLPETSC_CACHE"] = os.devnull  # no folder: neither reads speeds of earlier runs nor keeps any
 MPI_TESTS = Path(__file__).parent / "mpi"
 # Files of two seconds of processor time and more, about longest first. The first two compile post-processing
 # and the solver, those up to test_report_page nothing, those up to test_stops but the first one nothing with

@@ -32,7 +32,8 @@ from ehlpetsc.life.rounds import Ranks, Round
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.smooth_contact import worst_instant
 from ehlpetsc.results.output_guard import Lock, check_derived, check_output_path, inputs_of
-from ehlpetsc.run.forecast.cost import work_time
+from ehlpetsc.run.forecast.cost import expected_work, solver_of
+from ehlpetsc.run.forecast.speed import expected_seconds
 from ehlpetsc.run.ranks import StopRequest, on_root
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.surfaces.motion.profile_checks import mesh_warnings
@@ -199,9 +200,11 @@ class _Life:
             self.positions.check_travel()
             for line in mesh_warnings(self._scene.roughness, self.scales):
                 self.show(f"warning: {line}")
-            seconds = duration(work_time(self.case, self.scales, self._scene.roughness))
+            amount = expected_work(self.case, self.scales, self._scene.roughness)
+            seconds = expected_seconds(solver_of(self.case.kind), amount)
+            each = "" if seconds is None else f" and {duration(seconds)} on one rank"
             steps, count = self._scene.operation.step_count(self.scales.dt), self.positions.count
-            self.show(f"passes of a round: {count}, each of {steps} steps and {seconds} on one rank")
+            self.show(f"passes of a round: {count}, each of {steps} steps{each}")
         while not self._is_over and rounds != max_rounds:
             begun, self._passes = clock.monotonic(), 0
             solved_round = self._solve(stop)

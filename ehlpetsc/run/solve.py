@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 
 WATCHED_STEPS = 100  # after the first state, before which code is compiled
+MIN_SECONDS = 0.5  # of a run whose speed is kept
 MAX_WAITING = 0.5  # waiting time over processor time of the rank that waits most
 
 
@@ -49,6 +50,34 @@ class BusyCores(Output):
                 f"note: a rank waits {waiting:.1f} times as long as it computes, as other processes use its "
                 "core; all ranks wait for it: -n 1, or a less busy machine, may be faster"
             )
+
+
+class SpeedMeter(Output):
+    """Output of rank 0 that keeps the speed of a finished run for the forecasts of later ones.
+
+    Of a run over time the steps alone count, before which code is compiled.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._case, self._nodes = simulation.case, simulation.scales.grid.n
+        self._seconds, self._iterations, self._steps = 0.0, 0, 0
+
+    def write(self, state: AcceptedState) -> None:
+        """Add time and iterations of a step."""
+        if state.step or self._case.time is None:
+            self._seconds += state.scalars["wall"]
+            self._iterations += state.scalars["newton"]
+            self._steps += 1
+
+    def close(self, status: ExitStatus) -> None:
+        """Keep the speed of a run that is long enough to have one."""
+        if status is not ExitStatus.DONE or self._seconds < MIN_SECONDS:
+            return
+        from ehlpetsc.run.forecast.cost import solver_of, work
+        from ehlpetsc.run.forecast.speed import keep
+
+        kind = self._case.kind
+        keep(solver_of(kind), self._seconds, work(kind, self._nodes, self._iterations, self._steps))
 
 
 Outcome = tuple[ExitStatus, NotConverged | OutputError | None]  # of a run, with the reason of a failure
@@ -116,6 +145,8 @@ class Run(Output):
             printed: list[Output] = (
                 [] if not self.root else [self, self._progress or Progress(self.simulation, self.out)]
             )
+            if self.simulation.comm.size == 1:
+                printed.append(SpeedMeter(self.simulation))
             of_ranks: list[Output] = [BusyCores(self.simulation.comm, self._print)]
             return solve(self.simulation, [self.recorder, *of_ranks, *printed], self.stop)
 

@@ -34,6 +34,7 @@ SCRIPT = {
     # which one removes while another needs it: each worker of the tests has a TMPDIR of its own
     "OMPI_MCA_ess_singleton_isolated": "1",
     "TMPDIR": TEMPORARY_FOLDER.name,
+    "EHLPETSC_CACHE": TEMPORARY_FOLDER.name,
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
     "OMPI_MCA_hwloc_base_binding_policy": "none",

@@ -1,18 +1,22 @@
 """explain: figures of a case, size and run time, warnings; lines at the end of a run about its validity."""
 
 import csv
+import os
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from support import CASES, ROOT, is_line_with
 
 from ehlpetsc.api import solve
+from ehlpetsc.base.errors import ExitStatus
 from ehlpetsc.case import loading as case
 from ehlpetsc.case.loading import load
 from ehlpetsc.commands.explain import main
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast import cost as forecast
+from ehlpetsc.run.forecast import speed
 from ehlpetsc.run.forecast.cost import file_size
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.forecast.limits import limits
@@ -27,6 +31,7 @@ from ehlpetsc.run.forecast.mesh_error import (
     wave_error,
 )
 from ehlpetsc.run.forecast.validity import heat_warnings, warnings
+from ehlpetsc.run.solve import SpeedMeter
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
 MIXED = ("mesh.points_per_half_width=100", "time.travel=3", "mesh.inlet=-1.5")
@@ -402,3 +407,46 @@ def test_damage_case_has_a_heat_warning():
 def test_slow_or_rolling_contacts_have_no_heat_warning(name):
     assert warned(name) == []
     assert limited(name, 0.0114) == []
+
+
+def run_time(points=20):
+    c = load(CASES / "table1_smooth.toml", {"mesh.points_per_half_width": points})
+    return starting(explain(c).splitlines(), "Run time on one rank: ")[0]
+
+
+def test_run_time_is_that_of_earlier_runs_on_this_machine(tmp_path, monkeypatch):
+    monkeypatch.setenv(speed.CACHE, str(tmp_path / "new"))
+    assert run_time().startswith("Run time on one rank: no estimate yet, ")
+    c = load(CASES / "ridge.toml")
+    meter = SpeedMeter(SimpleNamespace(case=c, scales=Scales.of(c)))
+    for step, wall in ((0, 60.0), (1, 1.0), (2, 2.0)):  # code is compiled in the start
+        meter.write(SimpleNamespace(step=step, scalars={"wall": wall, "newton": 4}))
+    meter.close(ExitStatus.NOT_CONVERGED)
+    assert "no estimate" in run_time()
+    meter.close(ExitStatus.DONE)
+    amount = forecast.work("line", Scales.of(c).grid.n, 8, 2)
+    assert speed.expected_seconds("line", amount) == pytest.approx(3.0)
+    assert "about" in run_time() and speed.expected_seconds("plane", amount) is None
+    for seconds in (9.0, 1.0, 1.0):  # of four the second: one slow run changes nothing
+        speed.keep("line", seconds, amount)
+    assert speed.expected_seconds("line", 2.0 * amount) == pytest.approx(2.0)
+    short = SpeedMeter(SimpleNamespace(case=c, scales=Scales.of(c)))
+    short.write(SimpleNamespace(step=1, scalars={"wall": 0.1, "newton": 400}))
+    for _ in range(5):
+        short.close(ExitStatus.DONE)
+    assert speed.expected_seconds("line", 2.0 * amount) == pytest.approx(2.0)
+
+
+SPOILED = ["", "{", "[1.0]", '{"line": 3}', '{"line": ["x"]}', '{"line": [-1.0, 0.0]}', None]
+
+
+@pytest.mark.parametrize("text", SPOILED)
+def test_cache_that_is_spoiled_or_cannot_be_written_is_no_fault(tmp_path, monkeypatch, text):
+    monkeypatch.setenv(speed.CACHE, str(tmp_path))
+    if text is None:
+        monkeypatch.setenv(speed.CACHE, os.devnull)
+    else:
+        (tmp_path / "speed.json").write_text(text)
+    assert "no estimate yet" in run_time()
+    speed.keep("line", 3.0, 3.0)
+    assert speed.expected_seconds("line", 2.0) == (None if text is None else 2.0)

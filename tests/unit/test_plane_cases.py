@@ -16,7 +16,7 @@ from ehlpetsc.case.loading import load, members, stored_case
 from ehlpetsc.physics.contact.hertz import hertz_ellipse, hertz_load
 from ehlpetsc.physics.flash_temperature import flash_temperature
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.run.forecast.cost import file_size, work_time
+from ehlpetsc.run.forecast.cost import expected_work, file_size
 from ehlpetsc.run.forecast.domain import domain_faults
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.forecast.limits import limits
@@ -177,7 +177,7 @@ def test_limits_of_a_point_and_the_rise_of_a_sliding_film_over_the_walls():
 def test_forecast_grows_with_the_nodes_and_the_precision():
     coarse, fine = (load(copy.deepcopy(POINT), {"mesh.points_per_half_width": n}) for n in (24, 48))
     single = load(copy.deepcopy(POINT), {"output.precision": "float32"})
-    times = [work_time(case, Scales.of(case), None) for case in (coarse, fine)]
+    times = [expected_work(case, Scales.of(case), None) for case in (coarse, fine)]
     assert 2 * 3 < times[1] / times[0] < 2 * 4**1.15  # twice the steps
     sizes = [file_size(case, Scales.of(case)) for case in (single, coarse, fine)]
     assert sizes[0] < 0.55 * sizes[1] and 7 < sizes[2] / sizes[1] < 9

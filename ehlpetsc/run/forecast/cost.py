@@ -1,4 +1,4 @@
-"""Before a run: heading, both surfaces, forecast of run time and file size."""
+"""Before a run: heading, both surfaces, forecast of work, memory and file size."""
 
 from __future__ import annotations
 
@@ -18,28 +18,34 @@ if TYPE_CHECKING:
     from ehlpetsc.physics.scales import Scales
     from ehlpetsc.surfaces.motion.roughness import Roughness, RoughSurface
 
-START_SECONDS = 1.6  # wall clock time of a run's start on one core of a server
 FULL_FILM = 3.0  # lambda ratio above which lubrication is full film
 
 
-class Speed(NamedTuple):
-    """Wall clock times [s] of a kind of contact: of a Newton iteration, each node in it, a step besides.
+class Iterations(NamedTuple):
+    """Expected iterations of Newton's method of a kind of contact.
 
-    `smooth`, `film`, `mixed`: iterations of a step before roughness enters, with roughness in full film, in
-        mixed lubrication, and `start` those of a steady solution.
+    `smooth`, `film`, `mixed`: of a step before roughness enters, with roughness in full film, in mixed
+        lubrication. `start`: of a steady solution.
     """
 
-    iteration: float
-    node: float
-    step: float
     smooth: float
     film: float
     mixed: float
     start: float
 
 
-LINE_SPEED = Speed(2.4e-3, 1.5e-6, 3.6e-3, smooth=1.6, film=2.5, mixed=4.5, start=20.0)
-PLANE_SPEED = Speed(0.0, 2.4e-6, 0.015, smooth=2.5, film=3.75, mixed=10.0, start=25.0)
+ITERATIONS = {"line": Iterations(1.6, 2.5, 4.5, 20.0), "plane": Iterations(2.5, 3.75, 10.0, 25.0)}
+"""By the solver, :func:`solver_of`."""
+
+
+class Overhead(NamedTuple):
+    """Work of an iteration and of a step besides that of its nodes, in nodes."""
+
+    iteration: float
+    step: float
+
+
+OVERHEADS = {"line": Overhead(1600.0, 2400.0), "plane": Overhead(0.0, 6250.0)}
 START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
 POINT_MEMORY = 70  # of a measured map, while it is read, for each point [bytes]
 COMPRESSED = 0.6  # of the size of the fields
@@ -51,12 +57,21 @@ def lambda_ratio(case: Case, s: Scales, rough: Roughness | None) -> float:
     return film / rq if rq > 0 else math.inf
 
 
-def work_time(case: Case, s: Scales, rough: Roughness | None) -> float:
-    """Wall clock time of the steps [s]."""
-    speed = PLANE_SPEED if KINDS[case.kind].is_areal else LINE_SPEED
+def solver_of(kind: str) -> str:
+    """Name of the solver of a kind of contact."""
+    return "plane" if KINDS[kind].is_areal else "line"
+
+
+def work(kind: str, nodes: int, count: float, steps: float) -> float:
+    """Work of so many iterations and steps; a node in an iteration of Newton's method is the unit."""
+    overhead = OVERHEADS[solver_of(kind)]
+    return count * (overhead.iteration + nodes) + steps * overhead.step
+
+
+def expected_work(case: Case, s: Scales, rough: Roughness | None) -> float:
+    """Work of all passes."""
     count, passes = (steps(case, s), case.time.passes) if case.time else (0, 1)
-    each = speed.iteration + speed.node * s.grid.n
-    return passes * (iterations(case, s, rough, speed) * each + count * speed.step)
+    return passes * work(case.kind, s.grid.n, iterations(case, s, rough), count)
 
 
 def memory(s: Scales, rough: Roughness | None) -> float:
@@ -66,12 +81,12 @@ def memory(s: Scales, rough: Roughness | None) -> float:
     return START_MEMORY + NODE_MEMORY * s.grid.n + POINT_MEMORY * points
 
 
-def iterations(case: Case, s: Scales, rough: Roughness | None, speed: Speed = LINE_SPEED) -> float:
+def iterations(case: Case, s: Scales, rough: Roughness | None) -> float:
     """Expected Newton iterations of a pass."""
-    fraction = _rough_fraction(case, s, rough)
+    fraction, expected = _rough_fraction(case, s, rough), ITERATIONS[solver_of(case.kind)]
     is_mixed = bool(rough) and (case.fluid is None or lambda_ratio(case, s, rough) < FULL_FILM)
-    each = (1.0 - fraction) * speed.smooth + fraction * (speed.mixed if is_mixed else speed.film)
-    return speed.start + (steps(case, s) if case.time else 0) * each
+    each = (1.0 - fraction) * expected.smooth + fraction * (expected.mixed if is_mixed else expected.film)
+    return expected.start + (steps(case, s) if case.time else 0) * each
 
 
 def _rough_fraction(case: Case, s: Scales, rough: Roughness | None) -> float:

@@ -20,15 +20,16 @@ from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oil.oils import OILS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast.cost import (
-    START_SECONDS,
+    expected_work,
     file_size,
     lambda_line,
     memory,
+    solver_of,
     steps,
     surface_lines,
-    work_time,
 )
 from ehlpetsc.run.forecast.mesh_error import wave_lines
+from ehlpetsc.run.forecast.speed import expected_seconds
 from ehlpetsc.run.forecast.validity import load_unit, warnings
 from ehlpetsc.surfaces.motion.roughness import Roughness
 
@@ -173,7 +174,7 @@ def _variable(case: Case, s: Scales) -> list[str]:
 
 
 def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
-    seconds, passes = START_SECONDS + work_time(case, s, rough), case.time.passes if case.time else 1
+    passes = case.time.passes if case.time else 1
     each = f" for each of {passes} passes" if passes > 1 else ""
     nodes = " x ".join(map(str, s.grid.shape[::-1]))
     spacing = " x ".join(f"{1e6 * length:.3f}" for length in s.grid.spacings[::-1])
@@ -184,10 +185,18 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
         extent += f" along, {-edge:g} to {edge:g} {unit} across"
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
-        f"Expected run time on one rank: about {duration(seconds)}; "
+        f"Run time on one rank: {_time(case.kind, expected_work(case, s, rough))}; "
         f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}; "
         f"memory: about {1e-6 * memory(s, rough):.0f} MB",
     ]
+
+
+def _time(kind: str, amount: float) -> str:
+    """Expected time of an amount of work."""
+    seconds = expected_seconds(solver_of(kind), amount)
+    if seconds is None:
+        return f"no estimate yet, the first run of a {solver_of(kind)} measures this machine"
+    return f"about {duration(seconds)}, as fast as the last runs here"
 
 
 def _series(case: Case) -> list[str]:
@@ -197,12 +206,12 @@ def _series(case: Case) -> list[str]:
         f"{key} = {', '.join(map(str, values))}"
         for key, values in zip(keys_of(series), zip(*combinations(series), strict=True), strict=True)
     )
-    seconds, size = START_SECONDS, 0.0
+    amount, size = 0.0, 0.0
     for _, member in members(case):
         scales = Scales.of(member)
-        seconds += work_time(member, scales, Roughness.of(member, scales))
+        amount += expected_work(member, scales, Roughness.of(member, scales))
         size += file_size(member, scales)
     return [
         f"A series: {values}; below, the base case.",
-        f"All members on one rank: about {duration(seconds)}, result files: about {1e-6 * size:.1f} MB",
+        f"All members on one rank: {_time(case.kind, amount)}; result files: about {1e-6 * size:.1f} MB",
     ]
