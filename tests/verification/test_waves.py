@@ -12,7 +12,7 @@ FASTER, SLOWER, PASSING = 1.0933, 0.8015, 1.609  # ripples, slide/roll 0.5 and 1
 FRICTION = 0.01486  # of the measured profiles with a layer, their load on the solids 0.0050
 
 
-@pytest.mark.parametrize(("courant", "within"), [(1.0, 0.03), (0.5, 0.03)])
+@pytest.mark.parametrize(("courant", "within"), [(1.0, 0.025), (0.5, 0.025)])
 def test_eight_nodes_a_wave_keep_its_amplitude(courant, within):
     assert line_wave(0.25, 8, courant=courant).film == pytest.approx(QUARTER, rel=within)
 
@@ -33,9 +33,13 @@ def test_ten_nodes_a_wave_keep_that_of_a_point():
 
 @pytest.mark.parametrize(
     ("sliding", "side", "limit", "within"),
-    [(0.5, 2, SLOWER, 0.025), (0.5, 1, FASTER, 0.02), (1.9, 1, PASSING, 0.075)],
+    [(0.5, 2, SLOWER, 0.02), (0.5, 1, FASTER, 0.015), (1.9, 1, PASSING, 0.07)],
 )
 def test_pressure_ripple_of_a_wave_that_slides_past_the_film(sliding, side, limit, within):
+    """The mesh makes ripples 1.9, 1.2 and 6.9 % too large.
+
+    Means over cells, waves 2.5 % lower, give ripples 2.4 % smaller, whose errors are the sum of both.
+    """
     assert line_wave(0.125, 8, sliding, side).ripple == pytest.approx(limit, rel=within)
 
 
