@@ -148,7 +148,12 @@ class Case(Values):
     def default_friction(self) -> float | None:
         """Coefficient of friction of sliding solids by default; None: given, or nothing slides."""
         given = "boundary_friction" in self._tables["contact"]
-        slides = self.motion is not None and (self.conditions is not None or self.motion.slide_roll_ratio)
+        slides = self.motion is not None and (
+            self.conditions is not None
+            or self.motion.slide_roll_ratio
+            or self.motion.spin
+            or self.contact.groove_radius
+        )
         return self.contact.boundary_friction if slides and not given else None
 
     @property

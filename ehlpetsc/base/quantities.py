@@ -38,6 +38,9 @@ SCENES: dict[str, Callable[[Any], bool]] = {
     "roller": lambda case: KINDS[case.kind].has_ends and not KINDS[case.kind].surroundings,
     "roller in oil": lambda case: SCENES["roller"](case) and case.fluid is not None,
     "variable": lambda case: case.conditions is not None,
+    "rows apart": lambda case: (
+        case.contact.groove_radius is not None or bool(case.motion and case.motion.spin)
+    ),
     "mixed row": lambda case: SCENES["mixed"](case) and not KINDS[case.kind].is_whole,
     "mixed point": lambda case: SCENES["mixed"](case) and KINDS[case.kind].is_whole,
     "compliant row": lambda case: SCENES["compliant"](case) and not KINDS[case.kind].is_whole,
@@ -57,6 +60,24 @@ FIELDS = {
     "void_fraction": Field("1", "void fraction of the film", only="fluid", of=lambda o: o.void_fraction),
     "shear_stress_1": Field("Pa", "shear stress on surface 1", of=lambda o: o.shear_stresses[0]),
     "shear_stress_2": Field("Pa", "shear stress on surface 2", of=lambda o: o.shear_stresses[1]),
+    "shear_stress_across_1": Field(
+        "Pa",
+        "shear stress on surface 1 in +y",
+        only="rows apart",
+        of=lambda o: o.shear_stresses_across[0],
+    ),
+    "shear_stress_across_2": Field(
+        "Pa",
+        "shear stress on surface 2 in +y",
+        only="rows apart",
+        of=lambda o: o.shear_stresses_across[1],
+    ),
+    "sliding_speed": Field(
+        "m/s",
+        "magnitude of the sliding velocity",
+        only="rows apart",
+        of=lambda o: o.slip.speed,
+    ),
     "in_contact": Field(
         "1",
         "surfaces in contact (film at its bound, or solids carry)",
@@ -75,6 +96,7 @@ AtEnd = partial(StepScalar, over_run="last", summary=".4g")
 Compared = partial(StepScalar, compared=True)
 Integral = partial(StepScalar, integrated=True, compared=True)
 Condition = partial(StepScalar, only="variable")
+OfRows = partial(StepScalar, only="rows apart", over_run="last", compared=True, summary=".4g")
 OfRoller = partial(StepScalar, only="roller", over_run="last", compared=True)
 
 
@@ -212,6 +234,15 @@ STEP_SCALARS = {
         "1",
         "magnitude of the mean friction force of both walls over load",
         of=lambda o: 0.5 * abs(o.friction_2 - o.friction_1) / o.load,
+    ),
+    "spin_moment": OfRows(
+        "N m",
+        "moment of the shear stresses on surface 2 about the normal, in the direction of the spin",
+        of=lambda o: o.spin_moment,
+    ),
+    "sliding_power": OfRows("W", "power of sliding and spin in the contact", of=lambda o: o.sliding_power),
+    "friction_power": OfRows(
+        "W", "power of the shear stresses on both surfaces, also of rolling", of=lambda o: o.friction_power
     ),
     "film_central": AtEnd(
         "m", "mean film of the middle half of the Hertz contact of the instant", of=lambda o: o.mean_film

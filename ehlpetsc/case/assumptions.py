@@ -46,6 +46,18 @@ def _profile_along(case: Case) -> str:
     return "contact.profile_along" if case.contact.profile_along else ""
 
 
+def _speeds_across(case: Case) -> str:
+    return _spin(case) or _groove(case)
+
+
+def _spin(case: Case) -> str:
+    return "motion.spin" if case.motion and case.motion.spin else ""
+
+
+def _groove(case: Case) -> str:
+    return "contact.groove_radius" if case.contact.groove_radius is not None else ""
+
+
 class Departure(NamedTuple):
     """What in a case departs from an assumption.
 
@@ -65,6 +77,7 @@ DEPARTURES = {
     ),
     "one direction of entrainment": Departure(_reversal),
     "a whole contact": Departure(_window),
+    "one speed across": Departure(_speeds_across),
 }
 """By the assumption."""
 
@@ -79,7 +92,8 @@ class Feature(NamedTuple):
 FEATURES = {
     "contact.coating": Feature(_coated, ("a contact in the plane", "half-spaces")),
     "contact.yield_pressure": Feature(
-        lambda case: case.contact.yield_pressure, ("homogeneous bodies", "a whole contact")
+        lambda case: case.contact.yield_pressure,
+        ("homogeneous bodies", "a whole contact", "one speed across"),
     ),
     "contact.asperity_height": Feature(lambda case: case.contact.asperity_height, ("homogeneous bodies",)),
     "fluid.inlet_film": Feature(
@@ -87,14 +101,20 @@ FEATURES = {
     ),
     "[gears]": Feature(lambda case: case.gears, ("a parabola along the motion",)),
     "[heat]": Feature(lambda case: case.heat, ("homogeneous bodies", "a whole contact")),
-    "[life]": Feature(lambda case: case.life, ("homogeneous bodies",)),
+    "[life]": Feature(lambda case: case.life, ("homogeneous bodies", "one speed across")),
     "[operation]": Feature(lambda case: case.conditions, ("a whole contact",)),
+    "[surface]": Feature(
+        lambda case: case.surface.body_1 or case.surface.body_2, ("one speed across",)
+    ),  # which a map that moves with its rows would leave
+    "[wear]": Feature(lambda case: case.wear, ("one speed across",)),
+    "motion.spin": Feature(_spin, ("one direction of entrainment", "a whole contact")),
+    "contact.groove_radius": Feature(_groove, ("one direction of entrainment",)),
 }
 STRESSES = "stresses below the surface"
 SMOOTH = "damage of the smooth contact"
 COMMANDS = {
-    STRESSES: ("homogeneous bodies", "a whole contact"),
-    SMOOTH: ("homogeneous bodies", "a parabola along the motion"),
+    STRESSES: ("homogeneous bodies", "a whole contact", "one speed across"),
+    SMOOTH: ("homogeneous bodies", "a parabola along the motion", "one speed across"),
 }
 """Assumptions of features that no key asks for."""
 

@@ -219,7 +219,7 @@ def with_reference_state(tables: Tables, table: ConditionsTable | None, kind: st
     contact, constants = contact | {"load": load, "radius": radii}, _constants(tables)
     speeds = {"speed_1": table.u1, "speed_2": table.u2}
     if any((speed != constants.get(key)).any() for key, speed in speeds.items()):
-        motion = {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
+        motion = motion | {"entrainment_speed": u, "slide_roll_ratio": min(max(xi, -100.0), 100.0)}
     if "gears" in tables and "pass_shift" not in time:
         time = time | {"pass_shift": check(GEARS, tables["gears"])[0].pair.hunting_shift}
     if "travel" not in time:

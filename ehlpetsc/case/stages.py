@@ -42,6 +42,7 @@ from ehlpetsc.case.tables import CASE
 from ehlpetsc.case.tables.surface import AREAL
 from ehlpetsc.case.values import is_number, show
 from ehlpetsc.effects import EFFECTS
+from ehlpetsc.physics.scales import Scales
 
 NO_SPEEDS = "motion is missing; allowed: a table (speeds; needed with [fluid] and with [time])"
 MAX_PLANE_NODES = 1_100_000  # of a plane, 1,048 a side, which take some GB and seconds a time step
@@ -172,7 +173,8 @@ def contact_faults(case: Case, data: Tables) -> list[Fault]:
         if case.kind not in of
     ]
     faults += [Fault(place, text) for place, text in departures(case)]
-    return faults + (_size_faults(case) if KINDS[case.kind].is_areal else [])
+    too_large = _size_faults(case) if KINDS[case.kind].is_areal else []
+    return faults + too_large + ([] if faults or too_large else _speed_faults(case))
 
 
 def _listed(words: Collection[str]) -> str:
@@ -189,6 +191,24 @@ def _size_faults(case: Case) -> list[Fault]:
     size = f"{case.mesh.nodes} x {rows} nodes; allowed: {MAX_PLANE_NODES} in all"
     cure = "a smaller mesh.width or mesh.points_per_half_width (two: along and across) has fewer"
     return [Fault("mesh", f"mesh: {size}; {cure}")]
+
+
+def _speed_faults(case: Case) -> list[Fault]:
+    """Fault of rows whose oil enters at the outlet, by the spin or the groove."""
+    if case.motion is None or not (case.motion.spin or case.contact.groove_radius):
+        return []
+    scales = Scales.of(case)
+    slowest = scales.conditions
+    if case.conditions is not None:
+        k = case.conditions.entrainment.argmin()
+        slowest = slowest._replace(u1=case.conditions.u1[k], u2=case.conditions.u2[k])
+    speeds, y = scales.across.entrainment(slowest), scales.across.y
+    if speeds.min() > 0.0:
+        return []
+    row = 1e3 * y[speeds.argmin()]
+    text = f"motion: an entrainment speed of {speeds.min():.3g} m/s at y = {row:.3g} mm; allowed: above 0 in "
+    text += "each row: a smaller mean of motion.spin of both bodies, or a smaller mesh.width"
+    return [Fault("motion", text)]
 
 
 def _file_fault(data: Tables, error: ProfileError) -> Fault:

@@ -92,14 +92,20 @@ class FilmLevels(NamedTuple):
         return max(abs(self.moved), abs(self.moved_older)) > ONE_NODE
 
 
-def film_history(levels: FilmLevels, is_rough: bool = False, smooth: np.ndarray | None = None) -> FilmHistory:
+def film_history(
+    levels: FilmLevels,
+    is_rough: bool = False,
+    smooth: np.ndarray | None = None,
+    has_one_speed: bool = True,
+) -> FilmHistory:
     """History of the film for one step.
 
     `is_rough`: whether roughness moves with the surfaces.
     `smooth`: mass per area of the smooth steady film under constant conditions, shape (rows, nx); None:
         conditions vary.
+    `has_one_speed`: whether all rows move at one speed; otherwise each row has its own Couette flux.
     """
-    if levels.is_long and not is_rough:
+    if not has_one_speed or (levels.is_long and not is_rough):
         return levels_at_nodes(levels)
     return levels_along_path(levels, smooth if levels.is_long else None)
 

@@ -242,9 +242,23 @@ def flux_through(at: np.ndarray, behind: int, left: int, right: int, table: np.n
     )
 
 
+@inlined
+def law_of_row(law: tuple, speeds: np.ndarray, row: int) -> tuple:
+    """Law of the faces of a row; `law` as of :func:`flux_through`, `speeds` as of :func:`balance`."""
+    per_length, per_film, stress, rise, _, _, layer, leaks = law
+    return per_length, per_film, stress, rise, speeds[row, 0], speeds[row, 1], layer, leaks
+
+
 @compiled
 def balance(
-    at: np.ndarray, layout: tuple, law: tuple, table: np.ndarray, storage: tuple, breadth: float, rows: tuple
+    at: np.ndarray,
+    layout: tuple,
+    law: tuple,
+    speeds: np.ndarray,
+    table: np.ndarray,
+    storage: tuple,
+    breadth: float,
+    rows: tuple,
 ) -> None:
     """Fill in the mass balance of cells in rows along x, outflow - inflow + storage, and its derivatives.
 
@@ -257,6 +271,8 @@ def balance(
         row; the same among the filled rows; whether there are two nodes before the cells.
     law, table
         As of :func:`flux_through`.
+    speeds : shape (rows, 2)
+        As of :func:`.step_inputs.row_speeds`, in place of those of `law`.
     storage
         `m`, `extrapolated`, at the filled rows, and `k` of :class:`.step_inputs.FilmHistory`; cell over time
         step, 0: steady.
@@ -271,12 +287,12 @@ def balance(
     for line in range(unsigned(n_rows)):  # numba takes longer over indices that may be negative
         begin = unsigned(first) + line * unsigned(stride)
         place = unsigned(filled) + line * unsigned(filled_stride)
-        left = begin - ONE
+        left, here_law = begin - ONE, law_of_row(law, speeds, line)
         behind = left - ONE if has_behind else left
-        inflow = flux_through(at, behind, left, begin, table, law)
+        inflow = flux_through(at, behind, left, begin, table, here_law)
         for i in range(unsigned(cells)):
             node, here = begin + i, place + i
-            outflow = flux_through(at, node - ONE, node, node + ONE, table, law)
+            outflow = flux_through(at, node - ONE, node, node + ONE, table, here_law)
             stored, by_m, _ = positive_extrapolation(at[M, node], m_old[here], k)
             residual[here] = breadth * (outflow[0] - inflow[0]) + (stored - extrapolated[here]) * rate
             by[here, 0], by[here, 1] = -breadth * inflow[1], -breadth * inflow[2]

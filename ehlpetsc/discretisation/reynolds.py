@@ -40,7 +40,13 @@ from ehlpetsc.discretisation.finite_volumes import (
     balance,
     reynolds_product,
 )
-from ehlpetsc.discretisation.step_inputs import StepInputs, inlet, shear_constants
+from ehlpetsc.discretisation.step_inputs import (
+    StepInputs,
+    face_speeds,
+    inlet,
+    row_speeds,
+    shear_constants,
+)
 from ehlpetsc.discretisation.unknowns import Share, n_dofs
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.oil.laws import density
@@ -115,7 +121,7 @@ class Reynolds(NoOil):
         self.dx, self.dy, self.cell = grid.dx, 1.0 if has_sides is None else grid.increments[0], grid.cell
         rows = max(self.size // self.n_x, 1)
         self.shape = n_y, n_x = rows, self.size // rows
-        begin = share.first % self.n_x
+        self.first_row, begin = divmod(share.first, self.n_x)
         self.has_inlet, self.has_outlet = begin == 0, begin + n_x == self.n_x
         cells, inlets, behind = n_x - self.has_inlet, int(self.has_inlet), begin > 1
         if has_sides is not None:
@@ -169,6 +175,11 @@ class Reynolds(NoOil):
         s, leaks = self.scales, self.gap.leaks or inputs.leaks
         return s.p0 / (s.a * spacing), s.h, *shear_constants(inputs, s), self.gap.layer, leaks
 
+    def speeds(self, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
+        """Speeds of the local rows and of the faces below, between and above them, see `row_speeds`."""
+        rows, first, count = row_speeds(inputs, self.scales), self.first_row, self.shape[0]
+        return rows[first : first + count], face_speeds(rows)[first : first + count + 1]
+
     def storage(self, inputs: StepInputs) -> tuple:
         """Storage of the local nodes for :func:`.finite_volumes.balance`."""
         history, local = inputs.history, self.local
@@ -181,15 +192,16 @@ class Reynolds(NoOil):
         """See :class:`NoOil`."""
         table, (*history, rate), scale = inputs.flow_table, self.storage(inputs), self.film_scale
         at, law = self.properties(q, h, inputs.oil), self.face_law(inputs, self.dx)
+        of_rows, of_faces = self.speeds(inputs)
         rows = residual, derivatives = np.empty(self.size), np.empty((self.size, self.width))
         first = slice(None, None, self.shape[1])
         if self.has_inlet:
             derivatives[first] = 0.0
-        balance(at, self.layout, law, table, (*history, rate / scale), self.dy / scale, rows)
+        balance(at, self.layout, law, of_rows, table, (*history, rate / scale), self.dy / scale, rows)
         if self.has_sides is not None:
             law = self.face_law(inputs, self.dy)
             across = inputs.cross_flow_table
-            self._add_across(at, self.shape, law, inputs.flow, across, self.dx / scale, rows)
+            self._add_across(at, self.shape, law, of_faces, inputs.flow, across, self.dx / scale, rows)
         self._beyond_edges(derivatives.reshape(*self.shape, -1))
         if self.has_inlet:
             of_inlet = inlet(q[self.owned][first], h[self.owned][first], inputs.inlet_film)

@@ -12,6 +12,7 @@ from ehlpetsc.elasticity.bodies import reduced_modulus
 from ehlpetsc.physics.contact.geometry import Geometry
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.operation import Conditions
+from ehlpetsc.physics.speeds_across import SpeedsAcross
 
 NODE_TOLERANCE = 1e-9  # relative: half-widths, and x/a of nodes, nearer than this are equal
 
@@ -35,12 +36,15 @@ class Scales:
     u, xi, u1, u2
         Mean speed [m/s], slide/roll ratio, u1 = u (1 + xi/2) of surface 1 and u2 = u (1 - xi/2) of surface 2;
         with xi < 0 surface 1 is the slower one. 0 where nothing moves.
+    across
+        Variation of u1 and u2, which are those of the middle, over the rows of nodes.
     eta0
         Viscosity at ambient pressure [Pa s]; None in a dry case.
     moes_m, moes_l
         Moes' M and L; None in a dry case.
     dt
-        Time step [s], courant dx / max(u, |u1 - u2|/2), with a tolerance the shortest one; None if steady.
+        Time step [s], courant dx / max(u, |u1 - u2|/2) of the fastest row, with a tolerance the shortest one;
+        None if steady.
     duration
         Time in which the faster surface covers the travel [s]; None in a steady case.
     """
@@ -59,6 +63,7 @@ class Scales:
     xi: float
     u1: float
     u2: float
+    across: SpeedsAcross
     eta0: float | None
     moes_m: float | None
     moes_l: float | None
@@ -126,14 +131,15 @@ class Scales:
             moes_m, moes_l = geometry.moes(
                 eta0, u, case.fluid.pressure_viscosity, contact.load, contact.radius, modulus, extent
             )
-        dx = a / mesh.points_per_half_width
+        dx, grid = a / mesh.points_per_half_width, geometry.grid(contact, mesh, dry)
+        across = SpeedsAcross.of(case, grid, a)
         if case.time:
             now = Conditions(contact.load, contact.radius, u1, u2)
-            dt = case.time.shortest * dx / now.step_speed
+            dt = case.time.shortest * dx / across.step_speed(now)
             duration = case.time.travel * a / max(abs(u1), abs(u2))
         return cls(
             geometry=geometry,
-            grid=geometry.grid(contact, mesh, dry),
+            grid=grid,
             E=modulus,
             R=contact.radius,
             load=contact.load,
@@ -146,6 +152,7 @@ class Scales:
             xi=xi,
             u1=u1,
             u2=u2,
+            across=across,
             eta0=eta0,
             moes_m=moes_m,
             moes_l=moes_l,

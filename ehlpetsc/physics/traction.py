@@ -20,13 +20,13 @@ def shear_stresses(
     fluid: Fluid,
     solids: np.ndarray,
     gradient: np.ndarray,
-    sliding: float,
+    sliding: float | np.ndarray,
     oil: np.ndarray,
     h: np.ndarray,
     sheared: np.ndarray,
     mean: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Shear stress [Pa] in +x on surfaces 1 (upper) and 2 (lower).
+    """Shear stress [Pa] in +x on surfaces 1 (upper) and 2 (lower); or in the direction across.
 
     In the film :func:`wall_shear` under the oil's pressure, times the fraction of
     the gap in which oil is sheared; between the solids their friction, + on surface 2 and - on surface 1
@@ -42,7 +42,7 @@ def shear_stresses(
     gradient
         Of the oil's pressure along x [Pa/m].
     sliding
-        u1 - u2 [m/s].
+        u1 - u2 [m/s]; where `mean` is given, its sign or a component of its direction.
     oil
         Pressure of the oil [Pa].
     h
@@ -52,7 +52,8 @@ def shear_stresses(
     mean
         Mean shear stress of the film [Pa], not negative; None: isothermal.
     """
-    shear_2 = np.sign(sliding) * solids
+    direction = np.sign(sliding) if mean is None else sliding
+    shear_2 = direction * solids
     shear_1 = -shear_2
     if fluid is None:
         return shear_1, shear_2
@@ -60,7 +61,7 @@ def shear_stresses(
     if mean is None:
         lower, upper = wall_shear(film, gradient, viscosity(oil, fluid)[0], fluid, sliding, oil)
     else:
-        lower, upper = (np.sign(sliding) * mean + sign * 0.5 * film * gradient for sign in (-1.0, 1.0))
+        lower, upper = (direction * mean + sign * 0.5 * film * gradient for sign in (-1.0, 1.0))
     return shear_1 - upper * sheared, shear_2 + lower * sheared
 
 
@@ -84,14 +85,29 @@ def wall_shear(
     lower, upper : ndarray
         Shear stress [Pa] in the film at the walls of surface 2 (lower) and 1 (upper), at h > 0.
     """
-    flow, limit = flow_law(fluid), getattr(fluid, "limiting_shear", None)
-    half, mean = 0.5 * h * gradient, np.zeros_like(h)
-    if sliding:
-        table, viscous = flow_table(flow.kind, flow.n, flow.a), fluid.viscosity * abs(sliding)
-        constants = stress_pressure(fluid), viscous, flow, np.inf if limit is None else float(limit), table
-        _mean_stress(h, half, ln_eta, p, *constants, mean)
+    half, mean = 0.5 * h * gradient, mean_shear(h, gradient, ln_eta, fluid, abs(sliding), p)
     mean *= np.sign(sliding)
     return mean - half, mean + half
+
+
+def mean_shear(
+    h: np.ndarray,
+    gradient: np.ndarray | float,
+    ln_eta: np.ndarray,
+    fluid: Fluid,
+    speed: float | np.ndarray,
+    p: np.ndarray,
+) -> np.ndarray:
+    """Mean shear stress of an isothermal film [Pa], not negative, see :func:`wall_shear`.
+
+    `speed`: magnitude of the sliding velocity [m/s].
+    """
+    flow, limit = flow_law(fluid), getattr(fluid, "limiting_shear", None)
+    half, mean = 0.5 * h * gradient, np.zeros_like(h)
+    table, viscous = flow_table(flow.kind, flow.n, flow.a), np.full(len(h), fluid.viscosity * speed)
+    constants = stress_pressure(fluid), viscous, flow, np.inf if limit is None else float(limit), table
+    _mean_stress(h, half, ln_eta, p, *constants, mean)
+    return mean
 
 
 @compiled
@@ -101,15 +117,17 @@ def _mean_stress(
     ln_eta: np.ndarray,
     p: np.ndarray,
     rise: float,
-    viscous: float,
+    viscous: np.ndarray,
     law: FlowLaw,
     limit: float,
     table: np.ndarray,
     out: np.ndarray,
 ) -> None:
     for i in range(len(h)):
+        if viscous[i] == 0.0:
+            continue
         flow = FlowLaw(law.kind, law.stress * (1.0 + rise * p[i]), law.n, law.a)
-        x = np.log(viscous / (h[i] * flow.stress)) + ln_eta[i]
+        x = np.log(viscous[i] / (h[i] * flow.stress)) + ln_eta[i]
         if flow.kind != NEWTON:
             x -= stress_spread(abs(half[i]) / flow.stress, x, table)
         out[i] = flow_stress(x, flow, limit * p[i] if limit < np.inf else limit)[0]

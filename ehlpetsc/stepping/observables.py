@@ -15,9 +15,11 @@ from ehlpetsc.effects.effect import Effect
 from ehlpetsc.effects.scene import Scene
 from ehlpetsc.effects.step import Step
 from ehlpetsc.physics.film_formulas import smooth_films
+from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.physics.operation import Conditions
 from ehlpetsc.physics.scales import Scales
-from ehlpetsc.physics.traction import shear_stresses
+from ehlpetsc.physics.speeds_across import Slip
+from ehlpetsc.physics.traction import mean_shear, shear_stresses
 from ehlpetsc.stepping.state import State
 
 if TYPE_CHECKING:
@@ -66,22 +68,86 @@ class Observation:
         return np.zeros(len(q)) if self.scene.case.fluid is None else np.maximum(-q, 0.0)
 
     @cached_property
-    def shear_stresses(self) -> tuple[np.ndarray, np.ndarray]:
-        """Shear stress on surfaces 1 and 2 at the nodes [Pa]."""
-        s, loads, inputs = self.scene.scales, self.loads, self.state.solution.inputs
-        oil, solids = loads.oil_pressure * s.p0, loads.friction_pressure * s.p0
-        sheared = np.where(loads.sheared_oil, 1.0 - self.void_fraction, 0.0)
-        gradient = np.gradient(s.grid.rows(oil), s.spacing, axis=-1).ravel()
-        nodes = [inputs.boundary_friction * solids, gradient, oil, self.film, sheared]
-        nodes += [] if self.film_shear is None else [self.film_shear]
+    def slip(self) -> Slip:
+        """Sliding velocity at the nodes."""
+        return self.scene.scales.across.slip(self.conditions)
+
+    @cached_property
+    def sheared(self) -> np.ndarray:
+        """Fraction of the gap in which oil is sheared, at the nodes."""
+        return np.where(self.loads.sheared_oil, 1.0 - self.void_fraction, 0.0)
+
+    @property
+    def solid_friction(self) -> np.ndarray:
+        """Friction between the solids at the nodes where they slide [Pa]."""
+        s, inputs = self.scene.scales, self.state.solution.inputs
+        return inputs.boundary_friction * (self.loads.friction_pressure * s.p0)
+
+    def gradient(self, axis: int) -> np.ndarray:
+        """Gradient of the oil's pressure along an axis of the grid at the nodes [Pa/m]."""
+        s = self.scene.scales
+        oil = s.grid.rows(self.loads.oil_pressure * s.p0)
+        return np.gradient(oil, s.grid.spacings[axis], axis=axis).ravel()
+
+    @cached_property
+    def mean_shear(self) -> np.ndarray:
+        """Mean shear stress of the film across its thickness at the nodes [Pa], along the sliding."""
+        fluid, s = self.scene.case.fluid, self.scene.scales
+        if fluid is None or self.film_shear is not None:
+            return np.zeros(s.grid.n) if fluid is None else self.film_shear
+        film = np.where(self.sheared > 0.0, self.film, 1.0)
+        nodes = self.loads.oil_pressure * s.p0, film, self.gradient(-1), self.slip.speed
 
         def at(columns: slice) -> np.ndarray:
-            walls, slope, *others = (s.grid.at_columns(values, columns) for values in nodes)
-            of_film = self.conditions.sliding, *others
-            return s.grid.as_rows(np.stack(shear_stresses(inputs.fluid, walls, slope, *of_film)))
+            oil, film, slope, speed = (s.grid.at_columns(values, columns) for values in nodes)
+            return s.grid.as_rows(mean_shear(film, slope, viscosity(oil, fluid)[0], fluid, speed, oil))
 
-        shear_1, shear_2 = self.scene.over_columns(at)
-        return shear_1.ravel(), shear_2.ravel()
+        return self.scene.over_columns(at).ravel()
+
+    def _shear_stresses(self, axis: int, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shear stress on both surfaces in the direction of an axis, by that component of the sliding's."""
+        fluid, oil = self.scene.case.fluid, self.loads.oil_pressure * self.scene.scales.p0
+        walls = self.solid_friction, self.gradient(axis), direction
+        return shear_stresses(fluid, *walls, oil, self.film, self.sheared, self.mean_shear)
+
+    @cached_property
+    def shear_stresses(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shear stress on surfaces 1 and 2 at the nodes [Pa]."""
+        return self._shear_stresses(-1, self.slip.along)
+
+    @cached_property
+    def shear_stresses_across(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shear stress across, in +y, on surfaces 1 and 2 at the nodes [Pa]."""
+        return self._shear_stresses(0, self.slip.across)
+
+    @property
+    def spin_moment(self) -> float:
+        """Moment of the shear stresses on surface 2 about the normal, in the direction of the spin [N m]."""
+        across, x = self.scene.scales.across, self.scene.scales.across.x
+        rows = self.scene.scales.grid.rows
+        moments = across.y[:, None] * rows(self.shear_stresses[1]) - x * rows(self.shear_stresses_across[1])
+        return float(self.node_size * moments.sum())
+
+    @property
+    def friction_power(self) -> float:
+        """Power of the shear stresses on both moving surfaces [W]: of sliding, spin and rolling."""
+        s, total = self.scene.scales, 0.0
+        both = zip(s.across.surfaces(self.conditions), s.across.spins, *self._tractions, strict=True)
+        for speeds, spin, along, across in both:
+            total -= (speeds[:, None] * along - spin * s.across.x * across).sum()
+        return float(self.node_size * total)
+
+    @property
+    def _tractions(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Shear stresses of both surfaces along x, and across, in rows [Pa]."""
+        rows = self.scene.scales.grid.rows
+        return [*map(rows, self.shear_stresses)], [*map(rows, self.shear_stresses_across)]
+
+    @property
+    def sliding_power(self) -> float:
+        """Power of sliding and spin alone [W]."""
+        stress = self.mean_shear * self.sheared + self.solid_friction
+        return float(self.node_size * (stress * self.slip.speed).sum())
 
     @property
     def node_size(self) -> float:

@@ -260,7 +260,7 @@ class TimeStepping:
         levels = FilmLevels(*masses, dt * unit, dt_older * unit, *moved)
         has_smooth = levels.is_long and self._advected and self.baseline is not None
         smooth = rows(self.problem.mass_per_area(*self.baseline)) if has_smooth else None
-        return film_history(levels, self._is_rough, smooth)
+        return film_history(levels, self._is_rough, smooth, not self.scales.across.varies)
 
     def _nodes_moved(self, time: float, dt: float) -> float:
         """Distance of the film from a time [s] on in a step of `dt` [s], in nodes."""

@@ -91,9 +91,51 @@ def test_oil_of_an_inlet_needs_one_direction_of_entrainment():
     assert "fluid.inlet_film" in fault and "becomes negative" in fault
 
 
+SPINNING = {
+    "spin": {"motion": {"entrainment_speed": 1.0, "spin": 5.0}},
+    "groove": {"contact": {"groove_radius": 0.02}},
+}
+NEED_ONE_SPEED = {
+    "contact.yield_pressure": "contact.yield_pressure",
+    "[surface]": "rough",
+    "[wear]": "wear",
+}
+GIVEN["wear"] = MOVING | MIXED | {"time": {"travel": 1.0}, "wear": {"coefficient": 1e-18}}
+
+
+@pytest.mark.parametrize("motion", SPINNING)
+def test_features_that_need_one_speed_across_are_refused_where_rows_differ(motion):
+    for name, feature in NEED_ONE_SPEED.items():
+        case = tables("point", "homogeneous", feature)
+        assert faults(case) == []
+        for key, values in SPINNING[motion].items():
+            case[key] = case.get(key, {}) | values
+        (fault,) = faults(case)
+        assert name in fault and "one speed across" in fault
+    for feature in ("tilt", "approach", "oil", "[heat]", "fluid.inlet_film", "contact.asperity_height"):
+        case = tables("point", "homogeneous", feature)
+        for key, values in SPINNING[motion].items():
+            case[key] = case.get(key, {}) | values
+        assert faults(case) == []
+
+
+def test_rows_that_differ_are_of_points_and_rollers_and_of_one_direction():
+    for shape in ("line", "strip"):
+        case = tables(shape, "homogeneous", "oil")
+        case["motion"] = {"entrainment_speed": 1.0, "spin": 5.0}
+        (fault,) = faults(case)
+        assert f"motion.spin: of point and roller contacts, and this is a {shape}; leave it out" in fault
+    case = tables("roller", "homogeneous", "oil")
+    case["motion"] = {"entrainment_speed": 1.0, "spin": [0.0, 5.0]}
+    assert faults(case) == []
+    case["motion"]["spin"] = [0.0, 5000.0]  # -2 500 m/s per m over .5 mm
+    (fault,) = faults(case)
+    assert "an entrainment speed of -0.2" in fault and "y = -0.4" in fault
+
+
 def test_every_effect_and_assumption_has_its_line():
     tables = {f"[{effect.table.name}]" for effect in EFFECTS if effect.table}
-    assert tables - FEATURES.keys() == {"[wear]"}  # by pressure and sliding alone
+    assert tables <= FEATURES.keys()
     used = {assumed for feature in FEATURES.values() for assumed in feature.assumes}
     assert used | set(itertools.chain(*COMMANDS.values())) == DEPARTURES.keys()
     assert SHAPES.keys() == KINDS.keys()

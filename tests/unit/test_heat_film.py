@@ -31,7 +31,8 @@ def oil(*thermal):
 
 
 VISCOSITY, FLOW = oil(EXPONENTIAL, 0.04, 0.0), tuple(FlowLaw(EYRING, 10e6))
-LAW = FilmLaw(VISCOSITY, True, 0.02, FLOW, np.inf, 0.14, 0.0, 0.0, 12.5)
+LAW = FilmLaw(VISCOSITY, True, 0.02, FLOW, np.inf, 0.14, 0.0, 0.0)
+SLIDING = 12.5
 WALLS = (372.0, 368.0, 1.4e-8, 1.9e-8, 1.0)
 A, B, G, SPREAD = 2e4, 2e4 * 365.0, 3e7, 2.0
 
@@ -39,8 +40,8 @@ A, B, G, SPREAD = 2e4, 2e4 * 365.0, 3e7, 2.0
 MIDDLE, REFERENCE = 395.0, 375.0
 
 
-def solved(p=0.8e9, h=3e-7, left=0.9, walls=WALLS, law=LAW, guess=370.0):
-    return film_at((p, h, left), (A, B, G), (SPREAD, MIDDLE, REFERENCE), walls, law, guess)
+def solved(p=0.8e9, h=3e-7, left=0.9, walls=WALLS, law=LAW, guess=370.0, sliding=SLIDING):
+    return film_at((p, h, left, sliding), (A, B, G), (SPREAD, MIDDLE, REFERENCE), walls, law, guess)
 
 
 def film_at(node, balance, last, walls, law, guess=370.0):
@@ -78,7 +79,7 @@ def test_unequal_walls_get_the_heat_of_the_closed_form(t1, t2):
     exchange = wall_exchange(float(film.y), 0.02 * (t1 - t2))
     walls = t1, t2, 0.0, 0.0, 1.0 / exchange
     balance, last = (1e-6, 1e-6 * 363.0, 0.0), (0.0, 375.0, 375.0)
-    _, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0), balance, last, walls, LAW)
+    _, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0, SLIDING), balance, last, walls, LAW)
     assert shear == pytest.approx(12.5 * film.stress, rel=1e-8)
     assert (q1, q2) == pytest.approx((float(film.q1), float(film.q2)), rel=1e-8)
     assert exchange < 0.9
@@ -89,7 +90,7 @@ def test_shear_stress_of_a_film_without_transport(law):
     """That of the closed form between the walls, whose temperatures follow from the fluxes."""
     a, walls = 1e-6, (372.0, 372.0, 1.4e-8, 1.4e-8, 1.0)
     balance, last = (a, a * 363.0, 0.0), (SPREAD, MIDDLE, REFERENCE)
-    t, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0), balance, last, walls, law)
+    t, _, _, q1, q2, shear, *_ = film_at((0.8e9, 3e-7, 1.0, SLIDING), balance, last, walls, law)
     wall = 372.0 + 1.4e-8 * q1
     ln_eta, middle = (ln_viscosity(law.viscosity, 0.8e9, t)[0] for t in (REFERENCE, MIDDLE))
     slope = (middle - ln_eta) / (MIDDLE - REFERENCE)
@@ -131,11 +132,10 @@ OIL = {"colder than both": -5.0, "colder than the mean": 5.0, "near the mean": 3
 def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over):
     """Between surfaces far apart in temperature a parabola takes heat from the colder one into warmer oil."""
     a, walls, h = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0), 1e-6
-    law = LAW._replace(sliding=0.0)
 
     def found(h):
         balance = a, a * (363.0 + over), 0.0
-        return film_at((1e6, h, 1.0), balance, (0.0, 363.0, 363.0), walls, law)
+        return film_at((1e6, h, 1.0, 0.0), balance, (0.0, 363.0, 363.0), walls, LAW)
 
     t, _, by_h, q1, q2, *_ = found(h)
     t1, t2 = walls[0] + walls[2] * q1, walls[1] + walls[3] * q2
@@ -154,8 +154,8 @@ def test_a_film_does_not_cool_the_colder_surface_unless_it_is_colder_still(over)
 
 def test_exchange_is_continuous_and_surfaces_in_contact_have_one_temperature():
     a, walls = 1e9, (363.0, 423.0, 1.4e-8, 1.9e-8, 1.0)
-    law, inlet = LAW._replace(sliding=0.0), np.linspace(343.0, 443.0, 2001)
-    node, last = (1e6, 1e-6, 1.0), (0.0, 363.0, 363.0)
+    law, inlet = LAW, np.linspace(343.0, 443.0, 2001)
+    node, last = (1e6, 1e-6, 1.0, 0.0), (0.0, 363.0, 363.0)
     fluxes = [film_at(node, (a, a * float(t), 0.0), last, walls, law)[3:5] for t in inlet]
     steps = np.diff(np.array(fluxes), axis=0)
     assert (steps > -1e-3).all()
@@ -175,8 +175,8 @@ def test_exchange_is_continuous_and_surfaces_in_contact_have_one_temperature():
 @pytest.mark.parametrize("sliding", [1e-17, 1e-9, 12.5])
 def test_stress_of_a_film_at_rest_but_for_rounding(sliding):
     """The heat of shear is then rounding of the balance, which exceeds the heat itself."""
-    law = LAWS["newtonian"]._replace(sliding=sliding)
-    node, balance, last = (0.8e9, 3e-7, 0.9), (A, B, G), (SPREAD, MIDDLE, REFERENCE)
+    law = LAWS["newtonian"]
+    node, balance, last = (0.8e9, 3e-7, 0.9, sliding), (A, B, G), (SPREAD, MIDDLE, REFERENCE)
     film, oil = film_temperature((370.0, 0.0), node, balance, last, WALLS, law)
     rate = np.sinh(film.profile) / film.profile if film.profile > 1e-6 else 1.0
     ln_eta = oil.ln_eta - oil.beta * (film.base - REFERENCE)
@@ -210,8 +210,8 @@ def test_derivatives_of_reynolds_rows(ends):
     arrays += [363.0 + 20.0 * rng.uniform(0.0, 1.0, n) for _ in range(2)]
     arrays += [1e-8 * rng.uniform(0.5, 1.0, n)] * 2 + [np.ones(n)]
     arrays[4] = arrays[5]  # derivatives are at a constant difference of the walls
-    arrays += [np.full(n, 375.0)] * 2
-    law = film_law(case.fluid, case.heat, scales.conditions.sliding)
+    arrays += [np.full(n, 375.0)] * 2 + [np.full(n, abs(scales.conditions.sliding))]
+    law = film_law(case.fluid, case.heat)
     oil = IsothermalOil(case.fluid, scales)
     heat = FilmHeat(oil, law, np.array(arrays), state(n), None, np.zeros(n))
     inputs = StepInputs(np.zeros(n), None, oil, None, scales.conditions)
@@ -244,8 +244,8 @@ def test_neighbours_flow_at_the_mean_of_their_temperatures():
     q[20], b[20] = 1.0, 563e6
     zero, response = np.zeros(n), np.full(n, 1e-8)
     t = b / 1e6
-    of_nodes = (np.full(n, 1e6), b, zero, zero, t, t, response, response, zero + 1, t, t)
-    oil, law = IsothermalOil(case.fluid, scales), film_law(case.fluid, case.heat, 0.0)
+    of_nodes = (np.full(n, 1e6), b, zero, zero, t, t, response, response, zero + 1, t, t, zero)
+    oil, law = IsothermalOil(case.fluid, scales), film_law(case.fluid, case.heat)
     heat = FilmHeat(oil, law, np.array(of_nodes), state(n), None, zero)
     solved = heat.begin()
     cold, hot = (reynolds.properties(q, h, one) for one in (oil, solved))
@@ -263,11 +263,24 @@ def test_nodes_in_rows_have_the_properties_of_each_row_alone():
     case = load(CASE, ["mesh.points_per_half_width=16", "heat.bulk_temperature=363.0"])
     scales, (rows, n), rng = Scales.of(case), (3, 7), np.random.default_rng(2)
     q, h = rng.uniform(-0.2, 0.8, rows * n), 5e-4 * rng.uniform(0.5, 2.0, rows * n)
-    constants = [1e6, 363e6, 0.0, 0.0, 363.0, 363.0, 1e-8, 1e-8, 1.0, 363.0, 363.0]
+    constants = [
+        1e6,
+        363e6,
+        0.0,
+        0.0,
+        363.0,
+        363.0,
+        1e-8,
+        1e-8,
+        1.0,
+        363.0,
+        363.0,
+        abs(scales.conditions.sliding),
+    ]
     of_nodes = np.outer(constants, np.ones(rows * n))
     of_nodes[1] *= rng.uniform(1.0, 1.1, rows * n)
     oil = IsothermalOil(case.fluid, scales)
-    law = film_law(case.fluid, case.heat, scales.conditions.sliding)
+    law = film_law(case.fluid, case.heat)
     for one in (oil, FilmHeat(oil, law, of_nodes, state(rows * n), None, np.zeros(rows * n))):
         whole = np.empty((one.rows, rows * (n + 1)))
         one.fill(q, h, slice(0, rows * n), whole)
@@ -280,7 +293,7 @@ def test_nodes_in_rows_have_the_properties_of_each_row_alone():
 
 INLET, CAPACITY, LENGTH, TRAVEL = 363.0, 1e5, 1.0, 0.4
 THIN, NEWTONIAN = (0, padded((0.0, 1.0, 1.0)), 300.0), tuple(FlowLaw(NEWTON))
-STILL = FilmLaw(THIN, True, 1.0, NEWTONIAN, np.inf, 0.14, 0.0, 0.0, 0.0)
+STILL = FilmLaw(THIN, True, 1.0, NEWTONIAN, np.inf, 0.14, 0.0, 0.0)
 
 
 def carried(profile, nodes, way=1.0, moving=False):
@@ -302,7 +315,7 @@ def carried(profile, nodes, way=1.0, moving=False):
         film = np.array((zero, 1e-6 * full, full, t, stored, change, kept))
         a, b = explicit_transport(1, stored, flow, t, INLET)
         walls = [INLET * full] * 2 + [1e12 * full] * 2
-        of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full))
+        of_nodes = np.array((a, b, zero, zero, *walls, full, INLET * full, INLET * full, zero))
         _, _, new = state = np.array((b / a, zero, b / a))
         q1, q2, _, beyond, _ = out = np.empty((5, nodes))
         assert transport(state, film, flow, (INLET, INLET), tuple(STILL), of_nodes, out) == 1

@@ -47,6 +47,7 @@ SCENES = {
     "strip": STRIP | EYRING,
     "approach": {"contact.load": None, "contact.approach": 2e-6},
     "tilt": {"contact.self_aligning": True},
+    "spinning": EYRING | {"motion.spin": [40.0, -10.0], "contact.groove_radius": 0.02},
 }
 
 
@@ -71,7 +72,7 @@ def scene(name):
     history = None
     if case.fluid is not None:
         m = problem.mass_per_area(np.abs(q), np.abs(w) + film)
-        history = FilmHistory(m, 0.9 * m, 0.02, 0.02)
+        history = FilmHistory(m, 0.9 * m, 0.02, 0.02, follows_path=not scales.across.varies)
     inputs = problem.inputs(history=history)
     return system, Unknowns(q, w, problem.balance.uniform(-0.8)), inputs
 
@@ -236,7 +237,7 @@ def test_coarse_space_grows_as_the_root_of_the_nodes(nodes, functions):
     assert CoarseSpace(np.zeros((2, nodes)), False).counts[1] == functions
 
 
-@pytest.mark.parametrize("name", ("layer", "strip", "starved"))
+@pytest.mark.parametrize("name", ("layer", "strip", "starved", "spinning"))
 def test_balance_of_single_cells_is_that_of_the_mesh(name):
     system, state, inputs = scene(name)
     problem, reynolds = system.problem, system.problem.reynolds

@@ -103,6 +103,14 @@ KEYS = {
         contacts=("point",),
         equation="`h00 = -delta` in place of the balance of the load",
     ),
+    "groove_radius": Key(
+        "across, of the groove of body 2 in which body 1, a ball, rolls: speeds vary over the rows; the "
+        "radius of the ball follows from it and the reduced one across; left out: one speed of each body",
+        *("m", 1e-5, 10),
+        contacts=("point",),
+        equation="`u_1(y) = u_1 (1 - y^2/(2 Rc r))`, `u_2(y) = u_2 (1 + y^2/(2 Rc R2))`, `1/r = 1/Ry + "
+        "1/groove_radius`, `1/R2 = 1/Rx - 1/r`, `1/Rc = 1/r - k1/Ry`, `k1` the share of body 1 in `2/E'`",
+    ),
     "length": Key(
         "of a roller of one radius: a line contact with ends; load in N, `a` and `p0` of load over length",
         *("m", 1e-6, 10),

@@ -30,8 +30,26 @@ MOTION_KEYS = {
     "slide_roll_ratio": Key(
         "`xi = (u1 - u2)/u`; `u1 = u (1 + xi/2)`, `u2 = u (1 - xi/2)`", "", -100, 100, default=0.0
     ),
+    "spin": Key(
+        "speed of body 1 over body 2 about the normal of the contact, half of it of either body; or a list "
+        "of both bodies' speeds; positive: rows of positive y are faster along x; left out: none",
+        *("rad/s", -1e5, 1e5),
+        many="axes",
+        contacts=("point", "roller"),
+        equation="`u_i(y) = u_i + w_i y` along x, `v_i(x) = -w_i x` across",
+    ),
 }
-MOTION = KeyTable("motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS)
+
+
+def _complete_motion(motion: Values) -> dict[str, Any]:
+    spin = motion.spin
+    both = spin if isinstance(spin, tuple) else (0.5 * (spin or 0.0), -0.5 * (spin or 0.0))
+    return {"spin": both if any(both) else None}
+
+
+MOTION = KeyTable(
+    "motion", "speeds; needed with [fluid] and with [time]", MOTION_KEYS, complete=_complete_motion
+)
 
 
 def _column(text: str, unit: str, point_unit: str = "") -> Key:

@@ -35,6 +35,7 @@ from ehlpetsc.discretisation.finite_volumes import (
     face_film,
     face_mean,
     fluidities,
+    law_of_row,
 )
 from ehlpetsc.physics.contact.asperities import flow_factor
 from ehlpetsc.physics.oil.rheology import EYRING, FlowLaw, mobilities
@@ -96,7 +97,14 @@ def flux_across(at: np.ndarray, left: int, right: int, table: np.ndarray, law: t
 
 @compiled
 def add_across(
-    at: np.ndarray, shape: tuple, law: tuple, flow: FlowLaw, table: np.ndarray, breadth: float, rows: tuple
+    at: np.ndarray,
+    shape: tuple,
+    law: tuple,
+    speeds: np.ndarray,
+    flow: FlowLaw,
+    table: np.ndarray,
+    breadth: float,
+    rows: tuple,
 ) -> None:
     """Add the flow across to the mass balance of the cells and to its derivatives.
 
@@ -109,6 +117,8 @@ def add_across(
         n_y, n_x: local rows, nodes along x. The first node of each, the inlet, is left out.
     law, flow, table
         As of :func:`flux_across`.
+    speeds : shape (n_y + 1, 2)
+        As of :func:`ehlpetsc.discretisation.step_inputs.face_speeds`, in place of those of `law`.
     breadth
         Weight of the fluxes.
     rows
@@ -117,9 +127,10 @@ def add_across(
     (n_y, n_x), (residual, by) = shape, rows
     stride = unsigned(n_x + 1)
     for row in range(unsigned(n_y + 1)):
+        here_law = law_of_row(law, speeds, row)
         for i in range(ONE, unsigned(n_x)):
             below = row * stride + i
-            flux = flux_across(at, below, below + stride, table, law, flow)
+            flux = flux_across(at, below, below + stride, table, here_law, flow)
             if row > 0:
                 node = (row - ONE) * unsigned(n_x) + i
                 residual[node] += breadth * flux[0]

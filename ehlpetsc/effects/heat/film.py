@@ -29,10 +29,21 @@ from ehlpetsc.discretisation.finite_volumes import (
     face_mean,
     fill_mass,
     fluidities,
+    law_of_row,
 )
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.step_inputs import IsothermalOil, last_before
-from ehlpetsc.effects.heat.film_law import T_BASE, T_MEAN, T_SHAPE, A, B, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import (
+    SLIDING,
+    T_BASE,
+    T_MEAN,
+    T_SHAPE,
+    A,
+    B,
+    G,
+    film_temperature,
+    fixed_at,
+)
 from ehlpetsc.effects.heat.film_oil import MIN_VISCOSITY_SLOPE, FilmLaw
 from ehlpetsc.effects.heat.film_shear import wall_exchange
 from ehlpetsc.effects.heat.half_spaces import BodyStep
@@ -50,7 +61,7 @@ class FilmHeat(NamedTuple):
 
     `isothermal`: oil without heat; None: dry.
     `law`: constants of the oil.
-    `of_nodes`: rows `A` to `REFERENCE`, of :mod:`.film_law`, shape (11, n): one array,
+    `of_nodes`: rows `A` to `SLIDING`, of :mod:`.film_law`, shape (12, n): one array,
         as numba looks up the types of many in a tuple anew in some calls, slowly.
     `guess`: state of the film to start from, rows `BASE` to `MEAN`, shape (3, n).
     `walls`: temperatures without the flux of the step [K], shape (2, n).
@@ -129,7 +140,8 @@ def heated_nodal(
     zero = law.viscosity[2]
     for i in range(nodes):
         p = fill_mass(i, q[i], h[i], density, p0, film, unit, at)
-        start, node = (state[T_BASE, i], state[T_SHAPE, i]), (p, at[H, i], 1.0 + min(q[i], 0.0))
+        start = state[T_BASE, i], state[T_SHAPE, i]
+        node = p, at[H, i], 1.0 + min(q[i], 0.0), of_nodes[SLIDING, i]
         balance, (last, walls) = (of_nodes[A, i], of_nodes[B, i], of_nodes[G, i]), fixed_at(i, of_nodes)
         found, oil = film_temperature(start, node, balance, last, walls, law)
         t = found.mean
@@ -250,18 +262,25 @@ def faces(
 
 
 def faces_in_rows(
-    rows: int, at: np.ndarray, law: tuple, table: np.ndarray, oil: np.ndarray, max_flow: tuple[float, float]
+    speeds: np.ndarray,
+    at: np.ndarray,
+    law: tuple,
+    table: np.ndarray,
+    oil: np.ndarray,
+    max_flow: tuple[float, float],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Results of :func:`faces` of each row of nodes, flat: Couette flow, heat, spread, gradient.
 
+    `speeds`: of each row, in place of those of `law`, as of :func:`.finite_volumes.balance`.
     `at`: nodes of all rows, then the nodes beyond their outlets, as of :meth:`.step_inputs.Oil.fill`.
     """
-    n = len(oil)
+    n, rows = len(oil), len(speeds)
     nodes, beyond = in_rows(at[:, :n], rows), in_rows(at[:, n:], rows)
     couette, of_nodes = np.zeros((rows, n // rows + 1)), np.empty((3, rows, n // rows))
     for k, row_oil in enumerate(np.split(oil, rows)):
         row_at = np.concatenate([nodes[k], beyond[k]], axis=1)
-        faces(row_at, law, table, row_oil, max_flow, couette[k], *of_nodes[:, k])
+        row_law = *law[:4], *map(float, speeds[k]), *law[6:]
+        faces(row_at, row_law, table, row_oil, max_flow, couette[k], *of_nodes[:, k])
     return couette.ravel(), *of_nodes.reshape(3, n)
 
 
@@ -270,7 +289,7 @@ def cross_flow_heat(
     at: np.ndarray,
     shape: tuple[int, int],
     is_periodic: bool,
-    laws: tuple[tuple, FlowLaw, np.ndarray],
+    laws: tuple[tuple, np.ndarray, FlowLaw, np.ndarray],
     oil: np.ndarray,
     max_flow: tuple[float, float],
 ) -> np.ndarray:
@@ -278,15 +297,16 @@ def cross_flow_heat(
 
     `at`, `oil`, `max_flow`: as of :func:`faces_in_rows`. `shape`: rows, nodes along x.
     `is_periodic`: whether the last row is next to the first one.
-    `laws`: law, flow and table of :func:`.plane.cross_flow.flux_across`.
+    `laws`: law, speeds, flow and table of :func:`.plane.cross_flow.add_across`.
     """
-    (rows, n), (law, flow, table) = shape, laws
+    (rows, n), (law, speeds, flow, table) = shape, laws
     heat = np.zeros(rows * n)
     for left in range((rows if is_periodic else rows - 1) * n):
         right = (left + n) % (rows * n)
         if not (oil[left] and oil[right]):
             continue
-        mass = flux_across(at, unsigned(left), unsigned(right), table, law, flow)[0]
+        here_law = law_of_row(law, speeds, unsigned(left // n + 1))
+        mass = flux_across(at, unsigned(left), unsigned(right), table, here_law, flow)[0]
         pressure_flow = 2.0 * abs(mass) / (at[RHO, left] + at[RHO, right])
         film, _, _ = face_film(at[H, left], at[H, right], law[-1])
         pressure_flow = min(pressure_flow, max(max_flow[0] * film, max_flow[1]))

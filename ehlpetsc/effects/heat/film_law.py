@@ -52,7 +52,7 @@ MAX_SPLIT_CHANGE = 1e-6  # of d
 MIN_HEATING = 1e-12  # of b: less does not heat the film
 UNIFORM = 1.0 / 12.0  # mean temperature by uniform heat, over heat times thickness over conductivity
 
-A, B, G, SPREAD, W1, W2, R1, R2, BETWEEN, MIDDLE, REFERENCE = range(11)  # rows of FilmHeat.of_nodes
+A, B, G, SPREAD, W1, W2, R1, R2, BETWEEN, MIDDLE, REFERENCE, SLIDING = range(12)  # of FilmHeat.of_nodes
 T_BASE, T_SHAPE, T_MEAN = range(3)  # rows of a film's state: base temperature, y, mean temperature
 
 
@@ -130,7 +130,7 @@ def fixed_at(i: int, of_nodes: np.ndarray) -> tuple:
 @inlined
 def film_temperature(
     start: tuple[float, float],
-    node: tuple[float, float, float],
+    node: tuple[float, float, float, float],
     balance: tuple[float, float, float],
     last: tuple[float, float, float],
     walls: tuple[float, float, float, float, float],
@@ -143,17 +143,16 @@ def film_temperature(
     start
         Of the iteration: :math:`T_s` [K] and y.
     node
-        Pressure [Pa], film [m], fraction of the gap full of oil.
+        Pressure [Pa], film [m], fraction of the gap full of oil, |u1 - u2| [m/s].
     balance
         a, storage and transport per temperature [W/(m^2 K)]; b, their known part [W/m^2]; G, heat that does
         not depend on the temperature [W/m^2].
     last
-        `spread`, `middle`, `reference` of the last level, as of :func:`.film_oil.oil_at`.
+        Spread and temperatures of the last level, as of :func:`.film_oil.oil_at`.
     walls
         W1, W2 [K], R1, R2 [m^2 K/W], and the resistance of the film between the walls over r, 1/X.
     """
-    (p, h, left), (spread, middle, reference) = node, last
-    oil = oil_at(p, h, left, spread, middle, reference, law)
+    oil = oil_at(*node, last, law)
     t, y = start
     found = FilmTemperature(t, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, t, y, t)
     for kind in EXCHANGE_KINDS:

@@ -43,8 +43,6 @@ class FilmLaw(NamedTuple):
     conductivity, conductivity_pressure, conductivity_saturation
         k_f at ambient pressure [W/(m K)], its relative increase with pressure, and the
         decrease of that [1/Pa].
-    sliding
-        |u1 - u2| [m/s].
     thinnest
         Film [m] below which the shear stress is that of this film; 0: films of no thickness are not sheared.
     stress_pressure, stress_temperature
@@ -62,24 +60,21 @@ class FilmLaw(NamedTuple):
     conductivity: float
     conductivity_pressure: float
     conductivity_saturation: float
-    sliding: float
     thinnest: float = 0.0
     stress_pressure: float = 0.0
     stress_temperature: float = 0.0
     limit_temperature: float = 0.0
 
 
-def film_law(fluid: Fluid | None, heat: Values, sliding: float, thinnest: float = 0.0) -> FilmLaw:
-    """Constants of the oil in a step with u1 - u2 [m/s]; `fluid` None: dry."""
+def film_law(fluid: Fluid | None, heat: Values, thinnest: float = 0.0) -> FilmLaw:
+    """Constants of the oil in a step; `fluid` None: dry."""
     conduction = (
         float(heat.oil_conductivity),
         float(heat.oil_conductivity_pressure),
         float(heat.oil_conductivity_saturation),
     )
     if fluid is None:
-        return FilmLaw(
-            (0, (0.0,) * SLOTS, 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, *conduction, 0.0
-        )
+        return FilmLaw((0, (0.0,) * SLOTS, 300.0), True, 1.0, tuple(FlowLaw(NEWTON)), np.inf, *conduction)
     law = viscosity_law(fluid, heat)
     return FilmLaw(
         tuple(law),
@@ -88,7 +83,6 @@ def film_law(fluid: Fluid | None, heat: Values, sliding: float, thinnest: float 
         tuple(flow_law(fluid)),
         np.inf if fluid.limiting_shear is None else float(fluid.limiting_shear),
         *conduction,
-        abs(float(sliding)),
         thinnest,
         stress_pressure(fluid),
         getattr(fluid, "eyring_stress_temperature", None) or 0.0,
@@ -132,28 +126,29 @@ class NodeOil(NamedTuple):
 
 @inlined
 def oil_at(
-    p: float, h: float, left: float, spread: float, middle: float, reference: float, law: FilmLaw
+    p: float, h: float, left: float, sliding: float, last: tuple[float, float, float], law: FilmLaw
 ) -> NodeOil:
     r"""Oil of a film.
 
     `p`, `h`, `left`: pressure [Pa], film [m], fraction of the gap full of oil.
-    `spread`: :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress.
-    `middle`, `reference`: temperatures of the last level [K], in the middle of the film and :math:`T_s`:
-        :math:`\beta` is the secant of ln(eta) between them. Around the second the law is exponential, which
-        leaves one solution.
+    `sliding`: |u1 - u2| [m/s].
+    `last`: :math:`\ln(\sinh\Sigma/\Sigma)` of the Eyring stress, temperatures of the last level [K], in the
+        middle of the film and :math:`T_s`: :math:`\beta` is the secant of ln(eta) between them. Around the
+        second the law is exponential, which leaves one solution.
     """
+    spread, middle, reference = last
     over_k, k_p = _resistivity(p, left, law)
     r, conducting = h * over_k, max(left, MIN_CONDUCTING_FRACTION)
     flow, stress_p, limit_p = _stresses(p, reference, law)
     ln_eta, beta, eta_p, beta_p = _line(p, middle, reference, law)
     sheared = max(h, law.thinnest)
-    speed = left * law.sliding if sheared > 0.0 else 0.0
+    speed = left * sliding if sheared > 0.0 else 0.0
     ln_rate, limit = 0.0, np.inf
     if speed > 0.0:
-        ln_rate = np.log(law.sliding * law.eta0 / (flow.stress * sheared)) - spread
+        ln_rate = np.log(sliding * law.eta0 / (flow.stress * sheared)) - spread
         limit = np.inf if law.limit == np.inf else limit_p * p
-    heating = 0.125 * beta * law.sliding * r * conducting
-    heating_h = 0.125 * beta * law.sliding * over_k * conducting
+    heating = 0.125 * beta * sliding * r * conducting
+    heating_h = 0.125 * beta * sliding * over_k * conducting
     oil = h, sheared, r, over_k, k_p, flow, stress_p, limit, limit_p, reference, ln_eta, beta, eta_p, beta_p
     return NodeOil(*oil, speed, ln_rate, heating, heating_h)
 

@@ -9,7 +9,13 @@ import numpy as np
 from ehlpetsc.discretisation.contact import face_gap
 from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.film_history import FilmHistory
-from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored, shear_constants
+from ehlpetsc.discretisation.step_inputs import (
+    StepInputs,
+    face_speeds,
+    mirrored,
+    row_speeds,
+    shear_constants,
+)
 from ehlpetsc.discretisation.transport import carried, carried_with
 from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows
 from ehlpetsc.effects.heat.record import HeatRecord
@@ -59,9 +65,10 @@ class SolvedFilm:
         state = filled.guess if isinstance(filled, FilmHeat) else guess
         s, table, max_flow = self.scales.grid, inputs.flow_table, self._max_flow(h, oil, inputs)
         along, *across = (self._face_law(inputs, spacing) for spacing in reversed(s.increments))
-        flow = Flow(state, *faces_in_rows(self.rows, at, along, table, oil, max_flow))
+        speeds = row_speeds(inputs, self.scales)
+        flow = Flow(state, *faces_in_rows(speeds, at, along, table, oil, max_flow))
         for law in across:
-            laws = law, inputs.flow, inputs.cross_flow_table
+            laws = law, face_speeds(speeds), inputs.flow, inputs.cross_flow_table
             heat_across = cross_flow_heat(at, s.shape, s.periodic, laws, oil, max_flow)
             flow = flow._replace(pressure_heat=flow.pressure_heat + heat_across)
         if backward:
@@ -112,7 +119,7 @@ class SolvedFilm:
 
     def _rubbing(self, solution: Solution, step: Step) -> np.ndarray:
         """Heat of the friction of the solids [W/m^2]."""
-        friction = solution.inputs.boundary_friction * abs(step.conditions.sliding)
+        friction = solution.inputs.boundary_friction * self.scales.across.slip(step.conditions).speed
         return friction * solution.loads.friction_pressure * self.scales.p0
 
     def source(
@@ -122,7 +129,8 @@ class SolvedFilm:
         source = np.where(solution.loads.sheared_oil, flow.pressure_heat, 0.0)
         if not self.heat.thermal_expansion:
             return source
-        rate = step.conditions.entrainment * flow.gradient
+        speeds = np.repeat(self.scales.across.entrainment(step.conditions), self.scales.nx)
+        rate = speeds * flow.gradient
         if step.dt:
             rate = rate + (film.pressure - record.pressure) / step.dt
         return source + self.heat.thermal_expansion * film.old * film.thickness * film.left * rate

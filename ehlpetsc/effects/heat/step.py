@@ -109,13 +109,14 @@ class HeatStep:
                 flow = np.zeros_like(flow) if inputs.history.follows_path else flow
         balance = explicit_transport(self.rows, stored, flow, old, self.inlet)
         rows = *balance, record.source, record.spread
-        law = film_law(inputs.fluid, self.heat, step.conditions.sliding, self.thinnest)
+        law = film_law(inputs.fluid, self.heat, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
         between, middle = np.ones(n), record.base.copy()
         if inputs.fluid is not None:
             walls_apart = np.abs(record.wall_1 - record.wall_2)
             last_profile(record.profile, record.pressure, walls_apart, tuple(law), between, middle)
-        of_nodes = np.array((*rows, *rubbed, *responses, between, middle, record.base))
+        sliding = self.scales.across.slip(step.conditions).speed
+        of_nodes = np.array((*rows, *rubbed, *responses, between, middle, record.base, sliding))
         guess = np.array((record.base, record.profile, record.film))
         oil = None if inputs.oil is None else IsothermalOil(inputs.fluid, self.scales)
         return FilmHeat(oil, law, of_nodes, guess, np.array(walls), stored, bodies)
@@ -217,6 +218,7 @@ class HeatStep:
             change = temperatures.film - film.old
             return {"rate": change / dt, "extrapolated": temperatures.extrapolated * (step.dt or 0.0)}
         s, speed = self.scales, step.conditions.entrainment
+        speeds = np.abs(np.repeat(s.across.entrainment(step.conditions), s.nx))
         t = s.grid.rows(temperatures.film)
         if speed < 0.0:
             t = t[:, ::-1]
@@ -225,7 +227,7 @@ class HeatStep:
         turned = slice(None, None, -1 if speed < 0.0 else 1)
         beyond = limited(rise, following)[:, turned].ravel() * solution.mass * self.capacity * s.h
         rise = rise[:, turned].ravel()
-        return {"rate": rise * (abs(speed) / s.spacing), "extrapolated": beyond}
+        return {"rate": rise * (speeds / s.spacing), "extrapolated": beyond}
 
     def balance(self, temperatures: Temperatures, film: Film, source: np.ndarray) -> tuple[float, float]:
         """Heat dissipated [W/m], in a point contact [W], and the imbalance with what takes it, over it.

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, inlined
-from ehlpetsc.effects.heat.film_law import T_BASE, T_MEAN, T_SHAPE, G, film_temperature, fixed_at
+from ehlpetsc.effects.heat.film_law import SLIDING, T_BASE, T_MEAN, T_SHAPE, G, film_temperature, fixed_at
 from ehlpetsc.effects.heat.film_oil import FilmLaw
 from ehlpetsc.effects.heat.record import in_rows, joined
 
@@ -159,7 +159,8 @@ def _solve_node(
     """Temperature and fluxes of node i, between neighbours whose temperatures are given."""
     (inlet, coldest), old = ambient, film[OLD, i]
     carried, before, after = _carried_in(i, state, film, flow, limiters, inlet)
-    node, (last, walls) = (film[P, i], film[THICKNESS, i], film[ON_LEFT, i]), fixed_at(i, of_nodes)
+    node = film[P, i], film[THICKNESS, i], film[ON_LEFT, i], of_nodes[SLIDING, i]
+    last, walls = fixed_at(i, of_nodes)
     for _ in range(2):
         a, b, beyond = _balance(i, carried, before, after, film, flow, limiters)
         start, balance = (state[T_BASE, i], state[T_SHAPE, i]), (a, b, of_nodes[G, i])

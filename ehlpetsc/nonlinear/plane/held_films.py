@@ -23,7 +23,14 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, limit_cavitation, open_cavity
-from ehlpetsc.discretisation.finite_volumes import M_Q, ONE, M, flux_through, positive_extrapolation
+from ehlpetsc.discretisation.finite_volumes import (
+    M_Q,
+    ONE,
+    M,
+    flux_through,
+    law_of_row,
+    positive_extrapolation,
+)
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
@@ -51,14 +58,15 @@ class HeldFilms:
         self.reynolds, self.inputs, self.oil = reynolds, inputs, inputs.oil.begin()
         self.at, self.storage = reynolds.properties(q, film, self.oil), reynolds.storage(inputs)
         self.laws = reynolds.face_law(inputs, reynolds.dx), reynolds.face_law(inputs, reynolds.dy)
+        self.speeds = reynolds.speeds(inputs)
         self.film, self.of_mesh = film[reynolds.owned], np.arange(reynolds.local.start, reynolds.local.stop)
 
     def balance(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residual of some cells, none at the inlet, and derivatives by q of their stencils, (nodes, 6)."""
         r, tables = self.reynolds, (self.inputs.flow_table, self.inputs.cross_flow_table)
-        of_flow = tuple(self.inputs.flow), tables
+        laws = *self.laws, *self.speeds, tuple(self.inputs.flow)
         rows = np.empty(len(nodes)), np.empty((len(nodes), STENCIL))
-        balance_at(self.at, nodes, r.n_x, self.laws, *of_flow, self.storage, (r.dy, r.dx), rows)
+        balance_at(self.at, nodes, r.n_x, laws, tables, self.storage, (r.dy, r.dx), rows)
         return rows
 
     def update(self, nodes: np.ndarray, q: np.ndarray) -> None:
@@ -111,7 +119,6 @@ def balance_at(
     nodes: np.ndarray,
     n_x: int,
     laws: tuple,
-    flow: tuple,
     tables: tuple,
     storage: tuple,
     weights: tuple,
@@ -119,21 +126,25 @@ def balance_at(
 ) -> None:
     """Mass balance of some local nodes, none at the inlet, as :class:`.reynolds.Reynolds` sums it up.
 
-    `laws`, `tables`, `weights`: of the fluxes along x and across; `flow`: shear law.
+    `tables`, `weights`: of the fluxes along x and across.
+    `laws`: the same, speeds of the rows and of the faces between them, see
+        :meth:`.reynolds.Reynolds.speeds`, and the shear law.
     `rows`: filled in: residual, shape (nodes,); derivatives by q of the `STENCIL` alone, (nodes, 6).
     """
-    (along, across), (m_old, extrapolated, k, rate), law = laws, storage, FlowLaw(*flow)
+    (along, across, of_rows, of_faces, flow), (m_old, extrapolated, k, rate) = laws, storage
+    law = FlowLaw(*flow)
     table_x, table_y = tables
     (weight_x, weight_y), (residual, derivatives), stride = weights, rows, unsigned(n_x + 1)
     for j in range(len(nodes)):
         node, by = unsigned(nodes[j]), derivatives[j]
-        i = node % unsigned(n_x)
-        here = (node // unsigned(n_x) + ONE) * stride + i
+        row, i = node // unsigned(n_x), node % unsigned(n_x)
+        here, along_row = (row + ONE) * stride + i, law_of_row(along, of_rows, row)
+        of_below, of_above = law_of_row(across, of_faces, row), law_of_row(across, of_faces, row + ONE)
         behind = here - ONE - ONE if i > ONE else here - ONE
-        inflow = flux_through(at, behind, here - ONE, here, table_x, along)
-        outflow = flux_through(at, here - ONE, here, here + ONE, table_x, along)
-        below = flux_across(at, here - stride, here, table_y, across, law)
-        above = flux_across(at, here, here + stride, table_y, across, law)
+        inflow = flux_through(at, behind, here - ONE, here, table_x, along_row)
+        outflow = flux_through(at, here - ONE, here, here + ONE, table_x, along_row)
+        below = flux_across(at, here - stride, here, table_y, of_below, law)
+        above = flux_across(at, here, here + stride, table_y, of_above, law)
         stored, by_m, _ = positive_extrapolation(at[M, here], m_old[node], k)
         residual[j] = weight_x * (outflow[0] - inflow[0]) + (stored - extrapolated[node]) * rate
         residual[j] += weight_y * (above[0] - below[0])

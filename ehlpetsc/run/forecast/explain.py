@@ -126,15 +126,29 @@ def _motion(case: Case, s: Scales) -> list[str]:
     if case.conditions is not None:
         return _variable(case, s)
     line = f"Motion: mean {s.u:g} m/s, slide/roll ratio {s.xi:g}; surfaces 1, 2 at {s.u1:g}, {s.u2:g} m/s"
+    lines = [line, *_across(s)]
     if case.time is None:
-        return [line, "Time: steady"]
+        return [*lines, "Time: steady"]
     return [
-        line,
+        *lines,
         f"Time: the faster surface moves {case.time.travel:g} a = {s.u_max * s.duration * 1e3:.3f} mm in "
         f"{s.duration * 1e3:.4f} ms, {steps(case, s)} steps of {s.dt * 1e9:.2f} ns",
         *["Start: rough, after a ramp before time 0"] * (case.time.start == "rough"),
         *_post(case, s),
     ]
+
+
+def _across(s: Scales) -> list[str]:
+    """Line on speeds that vary over the rows of the dry contact; [] of one speed."""
+    if not s.across.varies:
+        return []
+    y, sliding = s.across.y, s.across.sliding(s.conditions)
+    inside = abs(y) <= s.b
+    low, high = sliding[inside].min(), sliding[inside].max()
+    bands = " and ".join(f"{1e3 * row:.3g}" for row in s.across.rolling_rows(s.conditions) if abs(row) <= s.b)
+    spin = f"; spin {s.across.spin:g} rad/s" if s.across.spin else ""
+    rolling = f"; pure rolling at y = {bands} mm" if bands else ""
+    return [f"Across: sliding along x {low:.3g} to {high:.3g} m/s within b{rolling}{spin}"]
 
 
 def _post(case: Case, s: Scales) -> list[str]:
