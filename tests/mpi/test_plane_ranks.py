@@ -36,6 +36,8 @@ MIXED = {
 REVERSED = {"mesh.inlet": -2.0, "mesh.outlet": 2.0, "motion": None, "operation.time": [0.0, 1e-1]}
 REVERSED |= {"operation.load": [1.5, 1.9], "operation.speed_1": [-0.05] * 2, "operation.speed_2": [-0.03] * 2}
 APPROACH = {"contact.load": None, "contact.approach": 2e-6}
+SPINNING = {"contact.groove_radius": 0.02, "motion.spin": [30.0, -10.0], "fluid.eyring_stress": 5e6}
+SPINNING |= {"time": {"travel": 0.3}, "motion.slide_roll_ratio": 0.02}
 COATED = {"contact.coating": {"thickness": 2e-6, "youngs_modulus": 1e11, "poisson_ratio": 0.2}}
 ROLLER = {
     "title": "a roller with free ends",
@@ -64,6 +66,7 @@ CASES = {
     "coated point": (lambda: load(point(50.0, 5.0, 8), COATED), 1),
     "rough point": (lambda: load(point(50.0, 5.0, 8), MIXED), 1),
     "rough point, reversed": (lambda: load(point(50.0, 5.0, 8), MIXED | REVERSED), 1),
+    "spinning ball": (lambda: load(point(50.0, 5.0, 8), SPINNING), 2),
     "roller": (lambda: load(ROLLER), 3),
     "window of a roller": (lambda: load(ROLLER, WINDOW), 3),
     "strip": (lambda: load(CASE, STRIP), 12),
