@@ -207,7 +207,7 @@ def _speed_faults(case: Case) -> list[Fault]:
         return []
     row = 1e3 * y[speeds.argmin()]
     text = f"motion: an entrainment speed of {speeds.min():.3g} m/s at y = {row:.3g} mm; allowed: above 0 in "
-    text += "each row: a smaller mean of motion.spin of both bodies, or a smaller mesh.width"
+    text += "each row: a smaller mean of motion.spin of both bodies, or a narrower mesh"
     return [Fault("motion", text)]
 
 

@@ -16,6 +16,9 @@ faces, so that no mass is lost. A flux is reduced where the film is thinner than
 ratio: next to solids it would otherwise take more than is there. Roughness under conditions that vary follows
 the path as a whole, and a warning states its error.
 
+Rows of different speeds (:mod:`ehlpetsc.physics.speeds_across`) have the history at the nodes in steps of any
+length, and each its own flux.
+
 `tests/verification/test_time_steps.py` holds the steady state, the mass and the waves.
 """
 

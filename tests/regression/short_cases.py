@@ -47,6 +47,7 @@ SHORT = {
     "fzg_relief": ("mesh.points_per_half_width=25", "time.travel=1.0"),
     "fzg_strip": ("mesh.points_per_half_width=16", "time.travel=0.5"),
     "fzg_stages": ("mesh.points_per_half_width=25", "time.travel=1.0", "series.values=[70.0, 265.1]"),
+    "groove_ball": ("mesh.points_per_half_width=[8, 16]",),
     "life": ("time.travel=0.6",),
     "micropitting": ("mesh.points_per_half_width=12", "time.travel=0.5"),
     "mixed": QUICK,

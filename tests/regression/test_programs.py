@@ -42,6 +42,7 @@ from ehlpetsc.physics.scales import Scales
 
 sys.path.append(str(ROOT / "cases" / "paper"))
 import anisotropy
+import ball_bearing
 import bearing_torque
 import cmod
 import collisions
@@ -129,6 +130,21 @@ def test_shares_of_the_load(capsys, monkeypatch, stored, tmp_path, few):
     assert (tmp_path / "shares.png").stat().st_size > 10_000
 
 
+def test_torque_of_a_ball_bearing(capsys, monkeypatch, tmp_path):
+    monkeypatch.setitem(ball_bearing.MESH, "points_per_half_width", [6, 8])
+    monkeypatch.setitem(ball_bearing.MESH, "inlet", -2.5)
+    monkeypatch.setattr(ball_bearing, "SPEEDS", (ball_bearing.SPEED,))
+    monkeypatch.setattr(ball_bearing, "LOADS", (ball_bearing.LOAD,))
+    ball_bearing.main(["-o", str(tmp_path / "torque.png")])
+    printed = capsys.readouterr().out
+    rows = re.findall(r"^1000, 2000, (.*): (.*)$", printed, re.MULTILINE)
+    torques = {scene: [float(value) for value in values.split("; ")] for scene, values in rows}
+    slid = [torques[scene][1] for scene in ball_bearing.SCENES]
+    assert slid[0] == 0.0 < 1.3 * slid[1] < slid[2]
+    assert torques["Heathcote and spin"][2:] == [54.68, 34.17]  # of the catalogue
+    assert (tmp_path / "torque.png").exists()
+
+
 def test_torque_of_a_bearing(capsys, monkeypatch, few, tmp_path):
     monkeypatch.setitem(bearing_torque.MESH, "points_per_half_width", 10)
     monkeypatch.setitem(bearing_torque.MESH, "inlet", -4.0)
@@ -140,6 +156,8 @@ def test_torque_of_a_bearing(capsys, monkeypatch, few, tmp_path):
     for ratio in re.findall(r"; ([\d.]+)$", printed, re.MULTILINE):
         assert 0.3 < float(ratio) < 1.5
     assert "isothermal: " in printed and (tmp_path / "torque.png").exists()
+    (change,) = re.findall(r"rows at their own speeds.*: ([-+.\d]+) %", printed)
+    assert abs(float(change)) < 0.1
 
 
 @pytest.mark.slow

@@ -128,9 +128,9 @@ def test_rows_that_differ_are_of_points_and_rollers_and_of_one_direction():
     case = tables("roller", "homogeneous", "oil")
     case["motion"] = {"entrainment_speed": 1.0, "spin": [0.0, 5.0]}
     assert faults(case) == []
-    case["motion"]["spin"] = [0.0, 5000.0]  # -2 500 m/s per m over .5 mm
+    case["motion"]["spin"] = [0.0, 5000.0]  # 1 - 2500 x 0.438e-3 m/s in the first row
     (fault,) = faults(case)
-    assert "an entrainment speed of -0.2" in fault and "y = -0.4" in fault
+    assert "an entrainment speed of -0.0938 m/s at y = -0.438 mm" in fault
 
 
 def test_every_effect_and_assumption_has_its_line():
