@@ -247,7 +247,7 @@ def test_no_attribute_of_another_object_is_set():
     assert {path: lines for path, lines in found.items() if lines} == {}
 
 
-MAX_MODULES = 127
+MAX_MODULES = 128
 CODE = """
 import sys
 from ehlpetsc.__main__ import main
