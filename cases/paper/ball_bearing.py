@@ -141,29 +141,31 @@ def draw(found: dict[str, list[Torque]], shown: tuple[Case, AcceptedState], plai
     scales = Simulation(case).scales
     figure, (over, across, panel) = style.new_figure(1, 3, (11.0, 3.8))
     y, x, inside = 1e3 * scales.across.y, scales.grid.x, scales.grid.distance.reshape(scales.grid.shape)
-    drawn = over.pcolormesh(x, y, state.sliding_speed, shading="gouraud", cmap="viridis", rasterized=True)
+    most = state.sliding_speed[inside <= 1.0].max()
+    colours = dict(shading="gouraud", cmap="viridis", rasterized=True, vmin=0.0, vmax=most)
+    drawn = over.pcolormesh(x, y, state.sliding_speed, **colours)
     over.contour(x, y, inside, [1.0], colors="w", linewidths=1.0)
-    over.set(xlabel=style.ACROSS, ylabel="y [mm]", xlim=(-1.8, 1.5), title="sliding speed [m/s]")
+    over.set(xlabel=style.ACROSS, ylabel="y [mm]", xlim=(-1.3, 1.3), title="sliding speed [m/s]")
+    over.set_ylim(-1.15e3 * scales.b, 1.15e3 * scales.b)
     figure.colorbar(drawn, ax=over)
     row = np.argmin(abs(x))
-    for one, name, colour in ((plain, "plain ball", style.FAINT), (state, "groove and spin", style.FILM)):
-        across.plot(y, 1e6 * one.film_thickness[:, row], color=colour, label=name)
+    across.plot(y, 1e6 * plain.film_thickness[:, row], color=style.FILM, label="rolling")
+    across.plot(y, 1e6 * state.film_thickness[:, row], "k:", label="Heathcote and spin")
     across.set(xlabel="y [mm]", ylabel="film at x = 0 [um]", ylim=(0.0, 1.6e6 * state.film_central))
     slides = across.twinx()
     slides.plot(y, scales.across.sliding(scales.conditions), color=style.SECOND, lw=1.0)
     slides.axhline(0.0, color=style.SECOND, lw=0.4)
     slides.set_ylabel("sliding speed along x [m/s]", color=style.SECOND)
-    across.set_xlim(-1.1e3 * scales.b, 1.1e3 * scales.b)
+    slides.set_ylim(-1.1 * most, 0.3 * most)
+    across.set_xlim(-1.15e3 * scales.b, 1.15e3 * scales.b)
     across.legend(loc="lower center", **style.SMALL)
     for (name, values), colour in zip(found.items(), style.shades(len(found)), strict=True):
         panel.plot(SPEEDS, [1e3 * one.total for one in values], color=colour, label=name)
     for name, part, line in (("total", "total", "-"), ("rolling", "rolling", "--")):
         given = [1e3 * getattr(catalogue(LOAD, speed), part) for speed in SPEEDS]
         panel.plot(SPEEDS, given, "k", ls=line, lw=0.8, marker="o", ms=3, label=f"catalogue, {name}")
-    panel.set(
-        xlabel="speed of the inner ring [1/min]", ylabel="torque [N mm]", xscale="log", ylim=(0.0, None)
-    )
-    panel.legend(**style.SMALL)
+    panel.set(xlabel="speed of the inner ring [1/min]", ylabel="torque [N mm]", ylim=(0.0, None))
+    panel.legend(loc="lower right", **style.SMALL)
     style.set_title(figure, f"Bearing 6206, {1e-3 * LOAD:g} kN along its axis, oil of {CELSIUS:g} °C")
     return figure
 
