@@ -42,7 +42,7 @@ def of_roller(case: Case, scales: Scales, solve: Callable[[Case], Simulation]) -
     """Surroundings of a window of a roller; `solve`: simulation of a steady case, solved."""
     simulation, grid = solve(smooth_roller(case)), cast(WindowGrid, scales.grid)
     state, problem = simulation.dimensionless, simulation.stepper.problem
-    film = problem.model.state(state.q, state.w).film
+    film = problem.model.film(state.q, state.w)
     rows = next_to(grid, problem.grid, state.q), next_to(grid, problem.grid, film)
     below, above = (
         np.stack([field[side] for field in rows]) if to_end else None

@@ -70,7 +70,7 @@ def solve_checked(
     if fault:
         raise SolveFailed("solution check:", fault, iterations)
     if oil is not None:
-        h = solver.problem.model.state(solution.q, solution.w).film
+        h = solver.problem.model.film(solution.q, solution.w)
         solution = solution._replace(q=np.where(h > oil, oil / np.maximum(h, oil) - 1.0, solution.q))
     return solution, iterations
 

@@ -110,7 +110,7 @@ def starved_start(problem: EHLProblem, film: float, inputs: StepInputs) -> Unkno
     """Hertz pressure and the oil film of the inlet, with void where the gap of the inlet is wider."""
     oil = inputs.inlet_film
     begin = hertz_start(problem, min(film, oil), inputs)
-    h = problem.model.state(begin.q, begin.w).film
+    h = problem.model.film(begin.q, begin.w)
     void = (problem.x < 0.0) & (problem.grid.distance > 1.0) & (h > oil)
     return begin._replace(q=np.where(void, oil / h - 1.0, begin.q))
 

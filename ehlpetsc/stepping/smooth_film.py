@@ -31,7 +31,7 @@ def computed_over_expected(
     solids, oil = problem.model.contact_pressure(w).sum(), np.maximum(q, 0.0).sum()
     if expected == 0.0 or solids > MAX_SHARE * (solids + oil):
         return 1.0
-    return float(problem.model.state(q, w).film.min()) * scales.h / expected
+    return float(problem.model.film(q, w).min()) * scales.h / expected
 
 
 def _is_rough_at_start(scene: Scene, conditions: Conditions) -> bool:

@@ -167,9 +167,9 @@ def predict(
     """
     best = min(range(len(levels)), key=lambda k: abs(nodes[k] - round(nodes[k])) + LEVEL_AGE_NODES * k)
     level, distance, model, grid = levels[best], nodes[best], problem.model, problem.grid
-    rows, old = grid.rows, model.state(level.q, level.w).film
+    rows, old = grid.rows, model.film(level.q, level.w)
     q0, q_before = (grid.at_columns(q, columns) for q in (baseline.q, level.q))
-    h0 = np.maximum(model.state(baseline.q, baseline.w).film, MIN_FILM_DIVISOR * problem.film_scale)
+    h0 = np.maximum(model.film(baseline.q, baseline.w), MIN_FILM_DIVISOR * problem.film_scale)
     q = q0 + advected(rows(level.q - baseline.q), distance, columns).ravel()
     # no cavity in the guess where there was oil: a cavity fills a few nodes an iteration, but opens at once
     pair = neighbours(rows(level.q), distance, columns)

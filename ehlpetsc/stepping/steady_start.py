@@ -73,7 +73,7 @@ def steady(
     begin, iterations = flooded_start(solver, film, replace(inputs, inlet_film=None), watch)
     q, w, _ = begin
     if problem.mass_per_area(q, w)[-1] <= oil:
-        q[0] = min(oil / problem.model.state(q, w).film[0] - 1.0, 0.0)
+        q[0] = min(oil / problem.model.film(q, w)[0] - 1.0, 0.0)
     else:
         begin = starved_start(problem, film, inputs)
     # the meniscus may move over all nodes of the inlet, one an iteration
@@ -263,6 +263,6 @@ def coarser(case: Case, ramp: str | None = None) -> Case:
 
 def guess_of(coarse: State, by: EHLProblem, problem: EHLProblem) -> Unknowns:
     """Unknowns of a problem interpolated from the solution by another one, on other nodes."""
-    h, solids = by.model.state(coarse.q, coarse.w).film, by.model.contact_pressure(coarse.w)
+    h, solids = by.model.film(coarse.q, coarse.w), by.model.contact_pressure(coarse.w)
     q, h, solids = (by.grid.interpolated(values, problem.grid) for values in (coarse.q, h, solids))
     return Unknowns(q, problem.model.w_from_state(h, solids), coarse.unknowns.border)

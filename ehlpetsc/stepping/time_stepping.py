@@ -358,6 +358,6 @@ class TimeStepping:
         if self._control is None:
             return None
         levels, model = (state.level, *state.earlier), self.problem.model
-        films = [solution.nodes.film, *(model.state(level.q, level.w).film for level in levels)]
+        films = [solution.nodes.film, *(model.film(level.q, level.w) for level in levels)]
         times = [end.time, *(level.time for level in levels)]
         return self._control.error(films, times, solution.nodes.pressure)

@@ -95,6 +95,13 @@ YIELDING = partial(YieldingContact, 0.1, 10.0, 0.6)
 PLASTIC, SMALLEST = partial(CompliantYieldingContact, LAYER, 0.6, 0.1), 1e-3 * np.log(100.0 / 0.6)
 
 
+@pytest.mark.parametrize("model", [partial(DirectContact, 0.0), SOLIDS, COMPLIANT, YIELDING, PLASTIC])
+def test_film_is_that_of_the_state(model):
+    q, w = np.random.default_rng(1).uniform(-1.0, 1.0, (2, 500))
+    w[:200] = SMALLEST * np.linspace(-1.0, 3.0, 200)  # about the film of yielding
+    np.testing.assert_array_equal(model().film(q, w), model().state(q, w).film)
+
+
 @pytest.mark.parametrize(
     "model, q, w",
     [

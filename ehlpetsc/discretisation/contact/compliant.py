@@ -114,6 +114,10 @@ class CompliantContact(SeparatedContact):
         pressure, ones = np.maximum(q, 0.0) + solids, np.ones_like(w)
         return NodeState(q, pressure, w, full_of_oil(q) * 1.0, slope, ones)
 
+    def film(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
+        """See :class:`.model.ContactModel`; without the pressure of the asperities."""
+        return np.maximum(w, self.smallest)
+
     def contact_pressure(self, w: np.ndarray) -> np.ndarray:
         return self._solids(w)[0]
 

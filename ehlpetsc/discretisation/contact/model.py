@@ -43,6 +43,10 @@ class ContactModel:
         """:class:`.node_state.NodeState` at the unknowns q, w, shape (nodes,)."""
         raise NotImplementedError
 
+    def film(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
+        """Film in a^2/R at the unknowns, that of :meth:`state`."""
+        return self.state(q, w).film
+
     def pressure(self, q: np.ndarray, w: np.ndarray) -> np.ndarray:
         """Total pressure in p0, at most the yield pressure."""
         return np.minimum(np.maximum(q, 0.0) + self.contact_pressure(w), self.yield_pressure)

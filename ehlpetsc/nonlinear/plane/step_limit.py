@@ -101,6 +101,6 @@ class ByPressures:
         q, w = np.ascontiguousarray(self.exchange.window(new).T)
         if len(changed):
             settled = q[self.problem.owned].copy()
-            cells = HeldFilms(reynolds, inputs, q, contact.state(q, w).film)
+            cells = HeldFilms(reynolds, inputs, q, contact.film(q, w))
             settle(cells, settled, changed)
             step[:, 0] = before - settled
