@@ -117,7 +117,7 @@ class Table:
         return np.abs(error) / scale
 
     def interval_errors(self) -> list[list[float]]:
-        """Expected relative errors of the intervals of each axis, as of the module."""
+        """Expected relative errors of the intervals of each axis, by the differences of the logarithms."""
         grid, found = self.logarithms, []
         for number, coordinate in enumerate(self._coordinates):
             along, errors = np.moveaxis(grid, number, 0), [0.0] * (len(coordinate) - 1)

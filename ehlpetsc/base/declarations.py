@@ -67,6 +67,11 @@ class Key:
         In which the key appears, where it is too long for messages.
     contacts
         Kinds of contact that have the key; (): all.
+    departs
+        Assumption of :mod:`ehlpetsc.case.assumptions` that does not hold where the key has another value than
+        its default; "": none.
+    assumes
+        Assumptions without which the key is refused.
     table, variants
         Keys of the table that is the value, or of the tables by the value of their key `kind`.
     """
@@ -92,6 +97,8 @@ class Key:
     is_difference: bool = False
     point_unit: str = ""
     contacts: Collection[str] = ()
+    departs: str = ""
+    assumes: tuple[str, ...] = ()
     table: KeyTable | None = None
     variants: Mapping[str, KeyTable] | None = None
 
@@ -100,7 +107,7 @@ class Key:
             object.__setattr__(self, "kind", str)
 
 
-def plain(text: str) -> str:
+def without_backticks(text: str) -> str:
     """Text for a terminal, without the backticks of equations."""
     return text.replace("`", "")
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from ehlpetsc.base.case import KINDS
-from ehlpetsc.base.declarations import Key, KeyTable, Refused, plain
+from ehlpetsc.base.declarations import Key, KeyTable, Refused, without_backticks
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.base.toml_file import Tables, copied
 from ehlpetsc.base.units import UnitFault, converted
@@ -202,7 +202,7 @@ def _checked(
         text = f"{place} = {show(value)}: allowed: {allowed(key)}{hint}"
         return None, [Fault(place, text, is_word(key, value) and not scope.is_sound)]
     unmet = [need for need in key.needs if result != key.default and not _holds(need, scope.root)]
-    of_need = f"{place} = {show(value)}: needs {' and '.join(unmet)} ({plain(key.text)})"
+    of_need = f"{place} = {show(value)}: needs {' and '.join(unmet)} ({without_backticks(key.text)})"
     return (None, [Fault(place, of_need, not scope.is_sound)]) if unmet else (result, [])
 
 

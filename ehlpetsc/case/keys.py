@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 
-from ehlpetsc.base.declarations import Key, KeyTable, plain
+from ehlpetsc.base.declarations import Key, KeyTable, without_backticks
 from ehlpetsc.base.errors import UsageError
 from ehlpetsc.case.tables import CASE
 from ehlpetsc.case.values import nearest, value_text
@@ -86,13 +86,13 @@ def _lines(indent: str, chosen: dict[str, Key]) -> list[str]:
     for name, key in chosen.items():
         default = default_of(key)
         parts = [
-            plain(key.text),
+            without_backticks(key.text),
             value_of(key),
             default if key.required or not default else f"default {default}",
         ]
         lines.append(f"{indent}{name}: {'; '.join(filter(None, parts))}")
         if key.equation:
-            lines.append(f"{indent}    {plain(key.equation)}")
+            lines.append(f"{indent}    {without_backticks(key.equation)}")
     return lines
 
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from operator import ge, gt, le, lt
 from typing import Any, TypeGuard
 
-from ehlpetsc.base.declarations import Key, plain
+from ehlpetsc.base.declarations import Key, without_backticks
 from ehlpetsc.base.toml_file import is_plain
 
 MAX_FLOAT = 1e308
@@ -124,7 +124,7 @@ def _kind(key: Key) -> str:
 
 def allowed(key: Key) -> str:
     """Allowed values of a key with its meaning, for messages."""
-    return f"{value_text(key)} ({plain(key.text)})"
+    return f"{value_text(key)} ({without_backticks(key.text)})"
 
 
 def celsius(key: Key, value: object) -> str:

@@ -38,7 +38,7 @@ class Evaluation:
 
     `residual`: local rows, interleaved; shape of the local part of the vector.
     `reynolds_derivatives`: derivatives of the local Reynolds rows by q and h of the nodes i-2 .. i+1, shape
-        (local nodes, 8).
+        (local nodes, 8); in a plane also of the nodes below and above, (local nodes, 12).
     """
 
     model: ContactModel

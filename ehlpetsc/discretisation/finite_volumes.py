@@ -29,7 +29,7 @@ from ehlpetsc.physics.oil.tabulated_flow import tabulated_mobilities
 ONE = unsigned(1)
 # Coefficients of a row, of q and h of each node: i-2, i-1, i, i+1 along x; in the plane i below and above.
 ALONG, STENCIL = 4, 6  # nodes
-OWN, BELOW, ABOVE = 4, 8, 10  # index of q of the node i and of the neighbours across, followed by h
+Q_OWN, Q_BELOW, Q_ABOVE = 4, 8, 10  # index of q of the node i and of the neighbours across, followed by h
 # Nodal properties, rows of one array (a tuple of arrays costs ten times the loop):
 P, DP = 0, 1  # pressure in p0, dp/dq
 H = 2  # film [m]
@@ -329,8 +329,8 @@ def reynolds_product(by: np.ndarray, v: np.ndarray, n_x: int, first: int, out: n
         total = total + by[row, 2] * v[left, 0] + by[row, 3] * v[left, 1]
         total = total + by[row, 4] * v[here, 0] + by[row, 5] * v[here, 1]
         total = total + by[row, 6] * v[right, 0] + by[row, 7] * v[right, 1]
-        if by.shape[1] > BELOW:
+        if by.shape[1] > Q_BELOW:
             below, above = max(here, stride) - stride, min(here + stride, last)
-            total += by[row, BELOW] * v[below, 0] + by[row, BELOW + 1] * v[below, 1]
-            total += by[row, ABOVE] * v[above, 0] + by[row, ABOVE + 1] * v[above, 1]
+            total += by[row, Q_BELOW] * v[below, 0] + by[row, Q_BELOW + 1] * v[below, 1]
+            total += by[row, Q_ABOVE] * v[above, 0] + by[row, Q_ABOVE + 1] * v[above, 1]
         out[row] = total

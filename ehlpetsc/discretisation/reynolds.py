@@ -26,13 +26,13 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact.node_state import OPEN_GAP, FaceGap
 from ehlpetsc.discretisation.finite_volumes import (
-    ABOVE,
     ALONG,
-    BELOW,
     DP,
     FLUIDITY,
     LN_ETA_P,
-    OWN,
+    Q_ABOVE,
+    Q_BELOW,
+    Q_OWN,
     RHO,
     RHO_P,
     STENCIL,
@@ -83,7 +83,7 @@ class NoOil:
         in the plane (local nodes, 12).
         """
         derivatives = np.zeros((self.size, self.width))
-        derivatives[:, OWN] = 1.0
+        derivatives[:, Q_OWN] = 1.0
         return q[self.owned], derivatives
 
     def product(self, derivatives: np.ndarray, v: np.ndarray, first: int) -> np.ndarray:
@@ -205,7 +205,7 @@ class Reynolds(NoOil):
         self._beyond_edges(derivatives.reshape(*self.shape, -1))
         if self.has_inlet:
             of_inlet = inlet(q[self.owned][first], h[self.owned][first], inputs.inlet_film)
-            residual[first], derivatives[first, OWN], derivatives[first, OWN + 1] = of_inlet
+            residual[first], derivatives[first, Q_OWN], derivatives[first, Q_OWN + 1] = of_inlet
         return residual, derivatives
 
     def _beyond_edges(self, derivatives: np.ndarray) -> None:
@@ -213,10 +213,10 @@ class Reynolds(NoOil):
         has_lower, has_upper = self.has_sides or (False, False)
         below, above = self.given
         for is_edge, follows, edge, at in (
-            (self.has_outlet, True, derivatives[:, -1], OWN + 2),
-            (has_lower, below is None, derivatives[0], BELOW),
-            (has_upper, above is None, derivatives[-1], ABOVE),
+            (self.has_outlet, True, derivatives[:, -1], Q_OWN + 2),
+            (has_lower, below is None, derivatives[0], Q_BELOW),
+            (has_upper, above is None, derivatives[-1], Q_ABOVE),
         ):
             if is_edge:
-                edge[..., OWN + 1] += follows * edge[..., at + 1]
+                edge[..., Q_OWN + 1] += follows * edge[..., at + 1]
                 edge[..., at : at + 2] = 0.0

@@ -22,7 +22,7 @@ from ehlpetsc.base.case import changed_files
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.case.tables import Case
 from ehlpetsc.life.body import LifeBody
-from ehlpetsc.results.hdf5_file import GrowingFile, check_space, extend, open_for_reading, plain
+from ehlpetsc.results.hdf5_file import GrowingFile, attribute_value, check_space, extend, open_for_reading
 
 BODY_DATASETS = {"s": "m", "y": "m", "edges": "m", "height": "m", "smooth_rate": "1"}  # of a body
 ROW_DATASETS = {"wear": "m", "pit": "m", "damage": "1", "failed": "passes", "is_pitted": "1", "volume": "m^2"}
@@ -175,7 +175,7 @@ def read_life(path: str | Path) -> LifeHistory:
     """
     path = Path(path)
     with open_for_reading(path) as file:
-        if plain(file.attrs.get("kind")) != KIND:
+        if attribute_value(file.attrs.get("kind")) != KIND:
             raise OutputError(f"{path}: not a file of ehlpetsc.life")
         version = file.attrs.get("format_version")
         if version != FORMAT:
@@ -187,8 +187,9 @@ def read_life(path: str | Path) -> LifeHistory:
 
 
 def _read(file: h5py.File) -> LifeHistory:
-    digests = json.loads(plain(file.attrs.get("digests", "{}")))
-    life = LifeHistory(plain(file.attrs["case"]), plain(file.attrs["title"]), digests=digests)
+    digests = json.loads(attribute_value(file.attrs.get("digests", "{}")))
+    case, title = (attribute_value(file.attrs[name]) for name in ("case", "title"))
+    life = LifeHistory(case, title, digests=digests)
     count = len(file[f"figures/{COMMIT_DATASET}"])
     figures = {name: dataset[:count] for name, dataset in file["figures"].items()}
     groups = [file[f"surface/{k}"] for k in (1, 2)]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ehlpetsc.base.errors import ExitStatus, PostError, Stopped
 from ehlpetsc.case.tables.surface import SIDES
-from ehlpetsc.post.loads import Loads, Passage, Prepared, prepare
+from ehlpetsc.post.loads import Loads, PointPassage, Prepared, prepare
 from ehlpetsc.post.run import Job, smooth_contacts, solve
 from ehlpetsc.results.means import means
 from ehlpetsc.run.ranks import on_root
@@ -138,7 +138,7 @@ def _evaluated(file: Path, restart: Path) -> tuple[list[tuple], dict[str, float]
     return damages, figures
 
 
-def largest_pressures(loads: Loads, motion: Passage) -> np.ndarray:
+def largest_pressures(loads: Loads, motion: PointPassage) -> np.ndarray:
     """Largest pressure on each point of a body over its passage, of all rows [Pa]; 0: it met no node."""
     largest = np.zeros(motion.enter.size)
     for frame, pressure in enumerate(loads.frames("pressure", 0, loads.time.size)):

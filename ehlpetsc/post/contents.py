@@ -19,7 +19,7 @@ from ehlpetsc.post.fatigue.statistics import (
     weibull_fit,
     weibull_likelihood,
 )
-from ehlpetsc.post.loads import Loads, Passage, Prepared
+from ehlpetsc.post.loads import Loads, PointPassage, Prepared
 from ehlpetsc.post.smooth_contact import worst_instant
 from ehlpetsc.results.output_guard import atomic_write
 from ehlpetsc.results.post_result import UPPER_FIRST, PointTemperatures, WeibullFit, stored_names
@@ -79,7 +79,7 @@ def datasets_of(
     return found
 
 
-def point_temperatures(loads: Loads, surface: str, motion: Passage) -> PointTemperatures:
+def point_temperatures(loads: Loads, surface: str, motion: PointPassage) -> PointTemperatures:
     r"""Highest and mean surface temperature of body points and their flash temperature.
 
     The mean is over the time at which a point is inside the Hertz contact of the instant, by the trapezoidal

@@ -136,7 +136,7 @@ class Prepared(NamedTuple):
 
     loads: Loads
     s: np.ndarray
-    motions: dict[str, Passage]
+    motions: dict[str, PointPassage]
     materials: dict[str, Material]
     criteria: Criteria
     depths: np.ndarray
@@ -173,7 +173,7 @@ def prepare(loads: Loads, surfaces: Sequence[str], report: Callable[[str], None]
     return prepared
 
 
-def _motions(loads: Loads, surfaces: Sequence[str]) -> tuple[np.ndarray, dict[str, Passage]]:
+def _motions(loads: Loads, surfaces: Sequence[str]) -> tuple[np.ndarray, dict[str, PointPassage]]:
     distances = [loads.travelled[surface] for surface in surfaces]
     moved = max(abs(distance[-1] - distance[0]) for distance in distances)
     s = body_points(loads.x, loads.dx, distances)
@@ -221,7 +221,7 @@ NO_FLANK = np.inf, -np.inf
 GRID_ROUNDING = 1e-9  # nodes: points nearer to a node are at it
 
 
-class Passage(NamedTuple):
+class PointPassage(NamedTuple):
     """Passage of body points through the nodes.
 
     Body point j is at node j + shift[k] + offset[k] at frame k, 0 <= offset < 1. `enter` and `leave` are
@@ -255,7 +255,7 @@ def body_points(x: np.ndarray, dx: float, travelled: Iterable[np.ndarray]) -> np
 
 def passage(
     s: np.ndarray, x: np.ndarray, dx: float, travelled: np.ndarray, flank: tuple[float, float] = NO_FLANK
-) -> Passage:
+) -> PointPassage:
     """Passage of the points s = s[0] + j dx of a body with x = s + travelled (nt,).
 
     `flank` are the points s at x = 0 at the end and at the beginning of the contact of two teeth; points
@@ -272,4 +272,4 @@ def passage(
         complete = (base[0] + j >= last) & (base[-1] + j <= 0)
     else:
         raise PostError("a surface turns back: its points would pass the contact several times")
-    return Passage(shift, base - shift, enter, leave, complete)
+    return PointPassage(shift, base - shift, enter, leave, complete)

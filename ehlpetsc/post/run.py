@@ -22,7 +22,7 @@ from ehlpetsc.case.loading import Case
 from ehlpetsc.post.contents import attributes_of, datasets_of, write_result
 from ehlpetsc.post.counting import count_of
 from ehlpetsc.post.criteria import CRITERIA
-from ehlpetsc.post.loads import Loads, Passage, Prepared, prepare
+from ehlpetsc.post.loads import Loads, PointPassage, Prepared, prepare
 from ehlpetsc.post.smooth_contact import smooth_contact
 from ehlpetsc.post.stresses.body_stress import QUANTA, BodyStress, offset_weights
 from ehlpetsc.results.post_result import UPPER_FIRST, PostResult, SmoothContact
@@ -203,7 +203,7 @@ def _collect(
                     history[frame - enter[j] + 1] = rounded
 
 
-def runs_of_points(motion: Passage, numbers: float, numbers_per_sample: int) -> list[np.ndarray]:
+def runs_of_points(motion: PointPassage, numbers: float, numbers_per_sample: int) -> list[np.ndarray]:
     """Split the complete points into ranges of consecutive ones with at most `numbers` in their histories."""
     points = np.flatnonzero(motion.complete)
     samples = (motion.leave - motion.enter + 3)[points].max(initial=1)
@@ -217,7 +217,7 @@ def runs_of_points(motion: Passage, numbers: float, numbers_per_sample: int) -> 
 def histories(
     loads: Loads,
     surface: str,
-    motion: Passage,
+    motion: PointPassage,
     stress: BodyStress,
     points: np.ndarray,
     quantum: float,

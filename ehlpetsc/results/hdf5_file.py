@@ -56,14 +56,14 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
 
-def plain(value: object) -> Any:
+def attribute_value(value: object) -> Any:
     """Value of an attribute, text as str."""
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
 def attributes(item: h5py.HLObject) -> dict[str, Any]:
     """Attributes of a file, group or dataset by name."""
-    return {name: plain(value) for name, value in item.attrs.items()}
+    return {name: attribute_value(value) for name, value in item.attrs.items()}
 
 
 def extend(dataset: h5py.Dataset, rows: Sequence | np.ndarray) -> None:

@@ -14,6 +14,7 @@ from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.contact.node_state import limit_cavitation, open_cavity
 from ehlpetsc.discretisation.film_history import FilmHistory
+from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.unknowns import Unknowns
 from ehlpetsc.elasticity.half_space import free_kernel
 from ehlpetsc.nonlinear.newton import NewtonSolver
@@ -23,7 +24,7 @@ from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
 from ehlpetsc.nonlinear.plane.reduction import BOUND
-from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, fill, neighbour
+from ehlpetsc.nonlinear.plane.screened_poisson import MIDDLE, fill, neighbour
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
@@ -260,7 +261,7 @@ def test_islands_of_cells_are_solved_as_by_a_sparse_solver(share):
     place[nodes] = np.arange(len(nodes))
     by, rows = rng.normal(size=(len(nodes), STENCIL)), rng.normal(size=len(nodes))
     mesh = n_x, n_y * n_x, False
-    by[:, OWN] += 12.0
+    by[:, MIDDLE] += 12.0
     matrix = np.zeros((len(nodes), len(nodes)))
     for row, node in enumerate(nodes):
         for k in range(STENCIL):

@@ -19,15 +19,15 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.finite_volumes import (
-    ABOVE,
-    BELOW,
     DP,
     LN_ETA_P,
     LN_THINNING_H,
     LN_THINNING_P,
     ONE,
-    OWN,
     PROPERTIES,
+    Q_ABOVE,
+    Q_BELOW,
+    Q_OWN,
     RHO,
     RHO_P,
     H,
@@ -134,12 +134,12 @@ def add_across(
             if row > 0:
                 node = (row - ONE) * unsigned(n_x) + i
                 residual[node] += breadth * flux[0]
-                by[node, OWN] += breadth * flux[1]
-                by[node, OWN + 1] += breadth * flux[2]
-                by[node, ABOVE], by[node, ABOVE + 1] = breadth * flux[3], breadth * flux[4]
+                by[node, Q_OWN] += breadth * flux[1]
+                by[node, Q_OWN + 1] += breadth * flux[2]
+                by[node, Q_ABOVE], by[node, Q_ABOVE + 1] = breadth * flux[3], breadth * flux[4]
             if row < n_y:
                 node = row * unsigned(n_x) + i
                 residual[node] -= breadth * flux[0]
-                by[node, OWN] -= breadth * flux[3]
-                by[node, OWN + 1] -= breadth * flux[4]
-                by[node, BELOW], by[node, BELOW + 1] = -breadth * flux[1], -breadth * flux[2]
+                by[node, Q_OWN] -= breadth * flux[3]
+                by[node, Q_OWN + 1] -= breadth * flux[4]
+                by[node, Q_BELOW], by[node, Q_BELOW + 1] = -breadth * flux[1], -breadth * flux[2]

@@ -15,7 +15,7 @@ import numpy as np
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.discretisation.finite_volumes import OWN
+from ehlpetsc.discretisation.finite_volumes import Q_OWN
 from ehlpetsc.discretisation.line.deflection import SECOND_DIFFERENCE
 from ehlpetsc.nonlinear.line.block_lu import FROM_LEFT, FROM_RIGHT, LEFT, ROW_WIDTH, SIZE, STRIDE
 from ehlpetsc.nonlinear.line.jacobian import pivot_regularisation
@@ -227,7 +227,9 @@ class BandedJacobian:
         Returns as :class:`.block_lu.BlockLU` takes them, shape (groups, WIDTH, STRIDE).
         """
         self._fill_deflection(entries)
-        place_entries(entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, OWN + 1, self.values)
+        place_entries(
+            entries.reynolds_derivatives, self.reynolds_place, inactive_nodes, Q_OWN + 1, self.values
+        )
         return self.columns
 
     def _fill_deflection(self, entries: BandEntries) -> None:

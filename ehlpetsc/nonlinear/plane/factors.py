@@ -13,7 +13,8 @@ from petsc4py import PETSc
 
 from ehlpetsc.base.compiled import compiled, unsigned
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, UNKNOWNS, pattern
+from ehlpetsc.discretisation.finite_volumes import STENCIL
+from ehlpetsc.nonlinear.plane.screened_poisson import MIDDLE, UNKNOWNS, pattern
 from ehlpetsc.nonlinear.two_fields import owned
 
 # blocks of a row of the incomplete LU, of the nodes i-n_x, i-n_x+1, i-2, i-1, i, i+1, i+n_x-2, i+n_x-1, i+n_x
@@ -40,7 +41,10 @@ class IncompleteLU:
         self.places = np.tile(np.array(OF_STENCIL, dtype=np.int8), (nodes, 1))
         i, n_y = np.arange(nodes), nodes // n_x
         for k in range(STENCIL):
-            x, y = i % n_x + (k - OWN if k < OWN + 2 else 0), i // n_x + (2 * k - 9 if k > OWN + 1 else 0)
+            x, y = (
+                i % n_x + (k - MIDDLE if k < MIDDLE + 2 else 0),
+                i // n_x + (2 * k - 9 if k > MIDDLE + 1 else 0),
+            )
             self.places[(x < 0) | (x >= n_x) | (y < 0) | (y >= n_y), k] = -1
         self.unknowns = np.zeros((nodes + 2 * n_x, UNKNOWNS), dtype=precision)
         self.b = self.unknowns[n_x:-n_x]

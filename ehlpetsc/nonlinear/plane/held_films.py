@@ -26,6 +26,7 @@ from ehlpetsc.discretisation.contact.node_state import AMBIENT_TOLERANCE, limit_
 from ehlpetsc.discretisation.finite_volumes import (
     M_Q,
     ONE,
+    STENCIL,
     M,
     flux_through,
     law_of_row,
@@ -34,7 +35,7 @@ from ehlpetsc.discretisation.finite_volumes import (
 from ehlpetsc.discretisation.plane.cross_flow import flux_across
 from ehlpetsc.discretisation.reynolds import Reynolds
 from ehlpetsc.discretisation.step_inputs import StepInputs
-from ehlpetsc.nonlinear.plane.screened_poisson import OWN, STENCIL, neighbour
+from ehlpetsc.nonlinear.plane.screened_poisson import MIDDLE, neighbour
 from ehlpetsc.physics.oil.rheology import FlowLaw
 
 HIGHEST = 0.1  # p0: pressures above it follow from the film; settled ones to .15 cost half an iteration more
@@ -202,7 +203,7 @@ def dependences(
     for cell in range(len(nodes)):
         for k in range(STENCIL):
             node = neighbour(nodes[cell], k, mesh)
-            if node < 0 or place[node] < 0 or (by[cell, k] == 0.0 and k != OWN):
+            if node < 0 or place[node] < 0 or (by[cell, k] == 0.0 and k != MIDDLE):
                 continue
             other = near[cell, k] = place[node]
             if other != cell:

@@ -24,6 +24,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.options import BACK_SOLVE, FACTOR
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
@@ -31,7 +32,7 @@ from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.plane.factors import OVERLAP, CompleteLU, IncompleteLU
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, reduction_of, unknowns_of
-from ehlpetsc.nonlinear.plane.screened_poisson import STENCIL, fill, fill_right_side, fitted_term, taken
+from ehlpetsc.nonlinear.plane.screened_poisson import fill, fill_right_side, fitted_term, taken
 from ehlpetsc.nonlinear.ranks import global_sum
 
 # relative tolerance of GMRES from which on its deflections and factors are of single precision, 1e-7; a stiff
@@ -256,7 +257,7 @@ class Elimination:
         return changes[p.owned, 0], changes[p.owned, 1], left
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
-        """Unknowns for a local right-hand side, both of the whole system: the three steps of the module."""
+        """Local unknowns for a local right-hand side, with those of the border: films, pressures, border."""
         p, exchange = self.problem, operator.exchange
         self.applications += 1
         of_deflection, of_reynolds = full[: n_dofs(p.local)].reshape(-1, 2).T

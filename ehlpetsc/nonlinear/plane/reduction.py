@@ -65,7 +65,7 @@ def reduce_nodes(
     for i in range(len(kind)):
         (p_q, p_w), (r_q, r_w) = (by[0, 0, i], by[0, 1, i]), (by[1, 0, i], by[1, 1, i])
         h_w, s_q, s_w = by[2, 1, i], by[3, 0, i], by[3, 1, i]
-        kind[i] = kind_of(p_q, p_w, s_q, s_w, inactive[i])
+        kind[i] = kind_of_node(p_q, p_w, s_q, s_w, inactive[i])
         if kind[i] == BOUND:
             changes[0, i], back[0, i] = r_q, 1.0
             continue
@@ -90,7 +90,7 @@ def reduce_nodes(
 
 
 @compiled
-def kind_of(p_q: float, p_w: float, s_q: float, s_w: float, is_inactive: bool) -> int:
+def kind_of_node(p_q: float, p_w: float, s_q: float, s_w: float, is_inactive: bool) -> int:
     """Kind of a node by the derivatives of pressure and separation by q and w."""
     if is_inactive:
         return BOUND

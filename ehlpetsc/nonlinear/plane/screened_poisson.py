@@ -19,13 +19,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from ehlpetsc.base.compiled import compiled, unsigned
+from ehlpetsc.discretisation.finite_volumes import STENCIL
 from ehlpetsc.elasticity.kernel import Kernel
 from ehlpetsc.nonlinear.plane.reduction import BOUND, CONTACT, PRESSURE, STIFF, VOID
 
 SCREENED, SHORTEST_COARSE = 0.2, 0.15  # s and the smallest fitted k, in the largest wave number of the mesh
 UNKNOWNS, V = 2, 1  # of a node; place of v among them, behind u
 ONE = unsigned(1)
-STENCIL, OWN = 6, 2  # nodes i-2 .. i+1, below, above of a row; index of i
+MIDDLE = 2  # index of i in the nodes of a Reynolds row, i-2 .. i+1, below, above
 
 
 def fitted_term(stiffness: float, spacings: Sequence[float], kernel: Kernel) -> tuple[float, float]:
@@ -90,18 +91,18 @@ def taken(
 @compiled
 def poisson(k: int, dy: float, dx: float, s_2: float) -> float:
     """Coefficient of node k of the stencil in the screened Poisson equation, times dx dy."""
-    if k == OWN:
+    if k == MIDDLE:
         return 2.0 * dy / dx + 2.0 * dx / dy + s_2 * dx * dy
-    return 0.0 if k == 0 else -dx / dy if k > OWN + 1 else -dy / dx
+    return 0.0 if k == 0 else -dx / dy if k > MIDDLE + 1 else -dy / dx
 
 
 @compiled
 def neighbour(i: int, k: int, mesh: tuple) -> int:
     """Node k of the stencil of node i; -1: beyond the mesh. `mesh`: n_x, nodes, whether periodic."""
     n_x, n, periodic = mesh
-    if k < OWN + 2:
-        x = i % n_x + k - OWN
-        return i + k - OWN if 0 <= x < n_x else -1
+    if k < MIDDLE + 2:
+        x = i % n_x + k - MIDDLE
+        return i + k - MIDDLE if 0 <= x < n_x else -1
     near = i + (2 * k - 9) * n_x
     return near % n if periodic or 0 <= near < n else -1
 
@@ -180,7 +181,7 @@ def fill(
                 blocks[b, 0, V] += gamma * c
                 blocks[b, 0, 0] += has_poisson * laplacian[k]
             by[row, 2 * k], by[row, 2 * k + 1] = by_v, gamma
-        b = first + unsigned(places[row, OWN])
+        b = first + unsigned(places[row, MIDDLE])
         if kind[i] == PRESSURE:
             blocks[b, V, 0] -= dx * dy
         elif kind[i] == CONTACT:  # its row of the deflection is that of u

@@ -1,7 +1,8 @@
 """Measured oils by name: values of the keys of `[fluid]` and `[heat]`, for ``fluid.oil``.
 
 Pressure and temperature of the film change the viscosity by the modulus law. The limiting shear stress is
-Hoeglund's (1999), as Arana et al. (2019) print it, the Eyring stress Bair and Winer's, see :meth:`Oil.at`.
+Hoeglund's (1999), as Arana et al. (2019) print it, the Eyring stress Bair and Winer's, see
+:meth:`MeasuredOil.at`.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ OIL_SHEAR = "eyring"  # shear law of all oils, whose stress grows with pressure
 
 
 @dataclass(frozen=True)
-class Oil:
+class MeasuredOil:
     """A measured oil; `viscosity` of `fluid` holds at 40 degrees C."""
 
     source: str
@@ -52,11 +53,11 @@ class Oil:
 
 def _of_modulus(
     source: str, limit: float, density: float, law: tuple[float, ...], zero: float = 0.0, **others: float
-) -> Oil:
+) -> MeasuredOil:
     """Oil of the modulus law by K [Pa s], C, D, a1, a2, b1, b2 of temperatures above `zero` [K]."""
     k, c, d, a1, a2, b1, b2 = law
     ambient, rise, saturation = CONDUCTIVITY[limit]
-    return Oil(
+    return MeasuredOil(
         source,
         {
             "viscosity": k * math.exp(c / (d + STANDARD_TEMPERATURE - zero)),
