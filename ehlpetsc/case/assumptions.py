@@ -2,9 +2,10 @@
 
 The discrete equations hold for any kernel, shape and motion. Features that compute with more - stresses below
 the surface, heat in the bodies, asperities by the modulus of their body - assume more. A feature states here
-what, and a key that departs from it states what it breaks; neither knows the other, so that a new kind of
-body is refused by all features that do not know it from the first day on. Refused is the whole feature: this
-gives up cases in which the departure hardly matters, as of heat below a coating of 10 nm.
+what it assumes; a key that departs from it says so in its declaration (`departs`), with what it assumes
+itself (`assumes`). Neither knows the other, so that a new kind of body is refused by all features that do not
+know it from the first day on. Refused is the whole feature: this gives up cases in which the departure hardly
+matters, as of heat below a coating of 10 nm.
 
 What a kind of contact does not have at all is in `contacts` of its keys; what keys need is in `needs`. Scales
 and formulas (`a`, `p0`, expected films, Moes' groups) are not refused: they are those of the case without the
@@ -18,10 +19,9 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
 
 from ehlpetsc.base.case import KINDS, Case
-
-
-def _coated(case: Case) -> str:
-    return "contact.coating" if case.contact.coating else ""
+from ehlpetsc.base.declarations import Key
+from ehlpetsc.case.checking import attribute
+from ehlpetsc.case.tables import CASE
 
 
 def _free_ends(case: Case) -> str:
@@ -42,8 +42,20 @@ def _window(case: Case) -> str:
     return "mesh.window, a part of it" if case.mesh.window else ""
 
 
-def _profile_along(case: Case) -> str:
-    return "contact.profile_along" if case.contact.profile_along else ""
+def given_keys(case: Case) -> Iterator[tuple[str, Key]]:
+    """Keys of the tables of a case with another value than their default, by their place."""
+    for name, of_case in CASE.keys.items():
+        values = getattr(case, name, None) if of_case.table else None
+        for key_name, key in of_case.table.keys.items() if values is not None else ():
+            value = getattr(values, attribute(key_name), None)
+            if value is not None and value != key.default:
+                yield f"{name}.{key_name}", key
+
+
+def departing_keys(case: Case, assumed: str = "") -> list[str]:
+    """Places of the keys that break an assumption, or any."""
+    found = given_keys(case)
+    return [place for place, key in found if key.departs and assumed in ("", key.departs)]
 
 
 def _speeds_across(case: Case) -> str:
@@ -59,19 +71,19 @@ def _groove(case: Case) -> str:
 
 
 class Departure(NamedTuple):
-    """What in a case departs from an assumption.
+    """What besides keys that say so departs from an assumption.
 
     `of`: text of a case, "": nothing. `cure`: advice.
     """
 
-    of: Callable[[Case], str]
+    of: Callable[[Case], str] = lambda case: ""
     cure: str = "leave out one of both"
 
 
 DEPARTURES = {
-    "homogeneous bodies": Departure(_coated),
+    "homogeneous bodies": Departure(),
     "half-spaces": Departure(_free_ends, "contact.free_ends = false"),
-    "a parabola along the motion": Departure(_profile_along),
+    "a parabola along the motion": Departure(),
     "a contact in the plane": Departure(
         _line, "take a strip of few rows, mesh.width = 0.5 and mesh.points_per_half_width = [50, 8]"
     ),
@@ -90,7 +102,6 @@ class Feature(NamedTuple):
 
 
 FEATURES = {
-    "contact.coating": Feature(_coated, ("a contact in the plane", "half-spaces")),
     "contact.yield_pressure": Feature(
         lambda case: case.contact.yield_pressure,
         ("homogeneous bodies", "a whole contact", "one speed across"),
@@ -121,8 +132,9 @@ COMMANDS = {
 
 def faults(case: Case) -> Iterator[tuple[str, str]]:
     """Features of a case that assume what it does not have, with a sentence."""
-    for name, feature in FEATURES.items():
-        if feature.is_in(case) and (text := refusal(case, name, feature.assumes)):
+    in_case = [(name, feature.assumes) for name, feature in FEATURES.items() if feature.is_in(case)]
+    for name, assumes in [*in_case, *((place, key.assumes) for place, key in given_keys(case))]:
+        if text := refusal(case, name, assumes):
             yield name, text
 
 
@@ -130,6 +142,6 @@ def refusal(case: Case, name: str, assumes: Iterable[str]) -> str:
     """Sentence on the first assumption of a feature that a case does not meet; "": it meets all."""
     for assumed in assumes:
         departure = DEPARTURES[assumed]
-        if text := departure.of(case):
+        if text := departure.of(case) or next(iter(departing_keys(case, assumed)), ""):
             return f"{name}: assumes {assumed}, and this case has {text}; {departure.cure}"
     return ""

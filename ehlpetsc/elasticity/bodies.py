@@ -24,7 +24,7 @@ class Bodies(NamedTuple):
 
     `modulus`: E' of both, homogeneous [Pa].
     `shares`: of the compliance :math:`2/E'`, :math:`\frac{E'}2(1-\nu_i^2)/E_i`, of each body.
-    `contact`: the table [contact], for the terms of :mod:`.kernels`.
+    `contact`: the table [contact], for the terms of :mod:`.terms`.
     """
 
     modulus: float

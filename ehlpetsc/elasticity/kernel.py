@@ -1,4 +1,18 @@
-"""Records of a kernel: the mesh on which it deflects the nodes, and its parts."""
+r"""Deflection of both bodies by the pressure of one cell: the kernel of a contact in the plane.
+
+Both bodies together are a homogeneous half-space of the modulus E' and a sum of terms, the modules of
+:mod:`.terms`. Discretisation and preconditioner know the sum alone:
+
+- `direct`: the deflection of a row by the pressures of all rows, a convolution. A coating is such a term.
+- `mirrored`: the same by the pressures in reversed order of the rows. The images of the pressures beyond both
+  end planes of a finite body are such a term (:mod:`.terms.free_ends`).
+- `softening`: the compliance of waves of pressure over :math:`2\pi C/|k|`, that of homogeneous half-spaces.
+  The sparse form of the preconditioner is fitted to it at the shortest waves; the long ones it takes from
+  `direct`.
+
+This gives up deflections that depend on the place itself, as those of a quarter space do near its edge;
+images approximate them. Held by `tests/unit/test_kernels.py`.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +20,10 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+
+from ehlpetsc.elasticity.bodies import Bodies
+from ehlpetsc.elasticity.half_space import free_kernel, periodic_kernel
+from ehlpetsc.elasticity.terms import terms
 
 
 class Mesh(NamedTuple):
@@ -47,3 +65,13 @@ class Kernel(NamedTuple):
             lambda k: self.softening(k) + term.softening(k),
             self.is_homogeneous and term.is_homogeneous,
         )
+
+
+def kernel_of(bodies: Bodies, mesh: Mesh) -> Kernel:
+    """Kernel K of both bodies in half-widths; the deflection in a^2/R is C K by pressures in p0."""
+    (n_y, n_x), (dy, dx) = mesh.shape, mesh.spacings
+    kernel = Kernel((periodic_kernel if mesh.periodic else free_kernel)(n_x, n_y, dx, dy))
+    for term in terms():
+        if added := term(bodies, mesh):
+            kernel = kernel.plus(added)
+    return kernel

@@ -9,6 +9,7 @@ import ehlpetsc
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.case.assumptions import COMMANDS, DEPARTURES, FEATURES, STRESSES, refusal
 from ehlpetsc.case.loading import load
+from ehlpetsc.case.tables import TABLES
 from ehlpetsc.effects import EFFECTS
 
 LAYER = {"thickness": 2e-6, "youngs_modulus": 1e11, "poisson_ratio": 0.2}
@@ -137,6 +138,9 @@ def test_every_effect_and_assumption_has_its_line():
     tables = {f"[{effect.table.name}]" for effect in EFFECTS if effect.table}
     assert tables <= FEATURES.keys()
     used = {assumed for feature in FEATURES.values() for assumed in feature.assumes}
+    keys = [key for table in TABLES for key in table.keys.values()]
+    used |= {assumed for key in keys for assumed in key.assumes}
+    assert {key.departs for key in keys} - {""} < DEPARTURES.keys()
     assert used | set(itertools.chain(*COMMANDS.values())) == DEPARTURES.keys()
     assert SHAPES.keys() == KINDS.keys()
 

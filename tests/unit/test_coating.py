@@ -6,8 +6,8 @@ import pytest
 from ehlpetsc.case.loading import load
 from ehlpetsc.elasticity.half_space import free_kernel, periodic_kernel
 from ehlpetsc.elasticity.kernel import Mesh
-from ehlpetsc.elasticity.layered import Layer, layer_term, over_cells, short_waves, softening
-from ehlpetsc.elasticity.layered import by_a_force as force
+from ehlpetsc.elasticity.terms.coatings import Layer, layer_term, over_cells, short_waves, softening
+from ehlpetsc.elasticity.terms.coatings import by_a_force as force
 
 STIFF, SOFT = Layer(0.1, 3.0, 0.25, 0.3), Layer(0.1, 0.1, 0.45, 0.3)
 FREE, STRIP = Mesh((24, 33), (0.05, 0.03), False, 1.0), Mesh((24, 33), (0.05, 0.03), True, 1.0)

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
-from ehlpetsc.elasticity import kernels
+from ehlpetsc.elasticity import kernel
 from ehlpetsc.elasticity.bodies import Bodies
 from ehlpetsc.elasticity.half_plane import curvature_kernel, deflection_kernel
 from ehlpetsc.elasticity.half_space import free_kernel
-from ehlpetsc.elasticity.images import images
-from ehlpetsc.elasticity.kernel import Kernel, Mesh
-from ehlpetsc.elasticity.kernels import kernel_of
+from ehlpetsc.elasticity.kernel import Kernel, Mesh, kernel_of
+from ehlpetsc.elasticity.terms.free_ends import images
 from ehlpetsc.nonlinear.plane.screened_poisson import fitted_term
 
 MESH = Mesh((6, 9), (0.05, 0.03), False, 1e-4)
@@ -55,7 +54,7 @@ def test_a_term_is_added_to_the_half_spaces(monkeypatch):
 
     alone = kernel_of(BODIES, MESH)
     assert alone.mirrored is None and alone.softening(np.array([1.0, 7.0])) == pytest.approx(1.0, rel=0)
-    monkeypatch.setattr(kernels, "TERMS", (of_first_body, lambda bodies, mesh: None, of_first_body))
+    monkeypatch.setattr(kernel, "terms", lambda: [of_first_body, lambda bodies, mesh: None, of_first_body])
     both = kernel_of(BODIES, MESH)
     np.testing.assert_allclose(both.direct, alone.direct + 2.0 * BODIES.shares[0], rtol=1e-15)
     np.testing.assert_allclose(both.mirrored, 2.0 * BODIES.shares[0] * images(MESH), rtol=1e-15)

@@ -11,7 +11,7 @@ from support.dry_half_space import HalfSpaces, dry_pressure
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
-from ehlpetsc.elasticity.images import image_factor
+from ehlpetsc.elasticity.terms.free_ends import image_factor
 from ehlpetsc.physics.contact.profiles import Design, drop_of
 from ehlpetsc.physics.contact.roller import gap_across
 from ehlpetsc.physics.scales import Scales

@@ -10,8 +10,8 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
 from ehlpetsc.elasticity.half_space import free_kernel
-from ehlpetsc.elasticity.images import images
 from ehlpetsc.elasticity.kernel import Mesh
+from ehlpetsc.elasticity.terms.free_ends import images
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation

@@ -6,7 +6,7 @@ from support.dry_half_space import HalfSpaces, dry_pressure
 from support.quarter_space import FreeEnds, compliance, half_space
 
 from ehlpetsc.case.loading import load
-from ehlpetsc.elasticity.images import image_factor
+from ehlpetsc.elasticity.terms.free_ends import image_factor
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
 

@@ -131,6 +131,7 @@ KEYS = {
         "heights under varying radii; `a`, `p0` and film formulas are those without it",
         kind=dict,
         variants=ALONG_TABLES,
+        departs="a parabola along the motion",
         equation="`g = x^2/(2 R) + z(x)`",
     ),
     "end_radius": Key(
@@ -170,7 +171,12 @@ KEYS = {
         replaced_by=("material",),
     ),
     "poisson_ratio": Required("Poisson's ratio `nu`", "", 0, 0.5, many="both", replaced_by=("material",)),
-    "coating": replace(COATING.key, many="both"),
+    "coating": replace(
+        COATING.key,
+        many="both",
+        departs="homogeneous bodies",
+        assumes=("a contact in the plane", "half-spaces"),
+    ),
     "boundary_friction": Key("friction coefficient of the solids, `|q|/p_c`", "", 0, 2, default=0.1),
     "model": Key(
         "direct: where `h = 0` the Reynolds equation is dropped; mixed: oil and solids share the load",

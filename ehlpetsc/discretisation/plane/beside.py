@@ -11,8 +11,7 @@ import numpy as np
 from ehlpetsc.base.case import Contact
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
 from ehlpetsc.elasticity.bodies import Bodies
-from ehlpetsc.elasticity.kernel import Mesh
-from ehlpetsc.elasticity.kernels import kernel_of
+from ehlpetsc.elasticity.kernel import Mesh, kernel_of
 from ehlpetsc.physics.contact.window import WindowGrid
 from ehlpetsc.physics.scales import Scales
 

@@ -10,7 +10,7 @@ point contact, over twice the nodes, because the domain is free; across a strip 
 Points of a rank are whole rows along x. The transform along x is local; before the one across, a
 :class:`Transposition` hands each rank all rows of some wave numbers.
 
-Kernel K: :mod:`ehlpetsc.elasticity.kernels`. Its part by the pressures in reversed order of the rows costs no
+Kernel K: :mod:`ehlpetsc.elasticity.kernel`. Its part by the pressures in reversed order of the rows costs no
 further transform: with :math:`\hat p_k` the transform across over a length L, that of the reversed rows is
 :math:`e^{-2\pi ik(n_y-1)/L}\,\hat p_{-k}`.
 """

@@ -12,8 +12,7 @@ from ehlpetsc.discretisation.contact import film_scale_of
 from ehlpetsc.discretisation.ehl_problem import problem_of
 from ehlpetsc.discretisation.plane.deflection import Deflection
 from ehlpetsc.elasticity.bodies import Bodies
-from ehlpetsc.elasticity.kernel import Mesh
-from ehlpetsc.elasticity.kernels import kernel_of
+from ehlpetsc.elasticity.kernel import Mesh, kernel_of
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange, RankTransposition, first_rows, share_of
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination

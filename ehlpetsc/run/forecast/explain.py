@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Iterator
 
 import numpy as np
 
 from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import duration
 from ehlpetsc.base.toml_file import combinations, keys_of
+from ehlpetsc.case.assumptions import departing_keys
 from ehlpetsc.case.loading import members
 from ehlpetsc.case.tables import Case
 from ehlpetsc.case.tables.contact import Contact
@@ -71,16 +71,13 @@ def _dry(case: Case, s: Scales) -> list[str]:
     load, pressure = f"{load}, reduced modulus {s.E / 1e9:.4f} GPa", f"p0 = {s.p0 / 1e9:.6f} GPa"
     shape, widths, more = KINDS[case.kind].part("forecast").shape(s)
     lines = [f"Contact: {shape}, {load}", f"Hertz: {widths}, maximum pressure {pressure}", *more]
-    along = ["Profile along the motion beside the parabola, which Hertz and film formulas do not know"]
-    return [*lines, *along * (case.contact.profile_along is not None), *_coatings(case.contact)]
+    return [*lines, *_departures(case)]
 
 
-def _coatings(contact: Contact) -> Iterator[str]:
-    """Coating of each body, and what does not know it."""
-    for number, coating in enumerate(contact.coating or (), 1):
-        if coating is not None:
-            layer = f"{1e6 * coating.thickness:.4g} um, {1e-9 * coating.youngs_modulus:.4g} GPa"
-            yield f"Coating of body {number}: {layer}; Hertz and film formulas are of the bodies without it"
+def _departures(case: Case) -> list[str]:
+    """Keys of which `a`, p0 and film formulas know nothing."""
+    places = ", ".join(departing_keys(case))
+    return [f"Hertz and film formulas are those without {places}"] if places else []
 
 
 def _layer(contact: Contact, s: Scales) -> list[str]:

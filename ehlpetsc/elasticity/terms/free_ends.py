@@ -29,7 +29,7 @@ def image_factor(poisson_ratio: float) -> float:
     return 1.29 - (0.08 - 0.5 * poisson_ratio) / (1.0 - poisson_ratio)
 
 
-def free_ends(bodies: Bodies, mesh: Mesh) -> Kernel | None:
+def term(bodies: Bodies, mesh: Mesh) -> Kernel | None:
     """Images of the pressures by a roller with free end faces."""
     contact = bodies.contact
     if contact.length is None or not contact.free_ends:

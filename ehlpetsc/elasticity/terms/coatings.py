@@ -63,7 +63,7 @@ class Layer(NamedTuple):
     body_ratio: float
 
 
-def layers(bodies: Bodies, mesh: Mesh) -> Kernel | None:
+def term(bodies: Bodies, mesh: Mesh) -> Kernel | None:
     """Term of the coatings of both bodies, `contact.coating`."""
     contact, terms = bodies.contact, []
     if contact.coating is None:
