@@ -92,7 +92,7 @@ KINDS["window"] = KINDS["roller"]._replace(
     geometry="physics.contact.window:WINDOW",
     forecast="run.forecast.kinds:WINDOW",
     linear_solver=KINDS["point"].linear_solver,
-    picture="plane",
+    picture="window",
     surroundings="run.surroundings:of_roller",
 )
 """Kinds of contact by name, :attr:`Case.kind`."""

@@ -56,6 +56,8 @@ SHORT = {
     "resolved_mixed": (*QUICK, "fluid.viscosity=0.001"),
     "ridge": (*QUICK, "surface.2.synthetic.position=0.0"),
     "roller": ("mesh.points_per_half_width=[10, 40]",),
+    "roller_end": ("mesh.points_per_half_width=[10, 160]", "time.travel=0.2", "time.start='smooth'"),
+    "tapered_roller": ("mesh.points_per_half_width=[10, 40]",),
     "running_in": (*QUICK, "time.travel=1.2", "time.passes=2", "contact.yield_pressure=1.1e9"),
     "stribeck": (
         *(*QUICK, "series.values=[5.0, 0.05]", "contact.asperity_height=10e-9"),

@@ -294,7 +294,7 @@ def test_control_characters_in_a_title_are_refused(write, sign):
 def test_every_case_has_a_description_and_is_the_same_written_and_stored(path):
     tables, head = tomllib.loads(path.read_text()), path.read_text().splitlines()[:2]
     assert tables["title"] and all(line.startswith("# ") for line in head)
-    own = "ball cam coated fzg groove mixed roller life micropitting wear traction cmod discs optical"
+    own = "ball cam coated fzg groove mixed roller tapered life micropitting wear traction cmod discs optical"
     is_own = path.stem.partition("_")[0] in (*own.split(), "superfinished")
     assert is_own or "Holmes" in head[1] and "2005" in head[1]
     tables["petsc"] = {'a "b"': "tab\t, \\, \u00e9", "": [[1, 2.5e-17], [True]], "c": {"d": {"e": -0.0}}}

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from support import roelands_oil
 
+import ehlpetsc
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
@@ -13,6 +14,7 @@ from ehlpetsc.elasticity.half_space import free_kernel
 from ehlpetsc.elasticity.kernel import Mesh
 from ehlpetsc.elasticity.terms.free_ends import images
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.pictures.frames.choice import Choice
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation
 
@@ -121,3 +123,16 @@ def test_window_is_said_before_the_run():
     assert "a roller, radius 0.006 m, length 4 mm" in text
     assert "Window: y = -2 to -1 mm; the smooth roller beside it on 45 x 80 nodes" in text
     assert Scales.of(load(tables(OIL, END))).moes_m == Scales.of(load(tables(OIL))).moes_m
+
+
+def test_picture_of_a_window_has_maps_and_sections_over_its_rows(tmp_path):
+    result = ehlpetsc.solve(tables({}, END), output=tmp_path / "window.h5", options={})
+    figure = Choice([result], [0], (-1.6, 1.4)).draw()
+    pressure, film, along, films = figure.axes[:4]
+    assert pressure.get_ylabel() == "y [mm]" and pressure.get_ylim() == pytest.approx((-2.0, -1.0))
+    np.testing.assert_allclose(along.lines[0].get_xdata(), 1e3 * result.y)
+    assert along.lines[1].get_ydata().max() == pytest.approx(1e-9 * result.pressure.max())
+    w = result.load_per_length() * L / W
+    edge = pressure.lines[1].get_xdata()
+    np.testing.assert_allclose(edge[w > 0.0], np.sqrt(w[w > 0.0]), rtol=1e-12)
+    assert "edge_factor" not in result.scalars and result.attrs["kind"] == "window"

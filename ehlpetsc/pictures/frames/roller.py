@@ -31,7 +31,8 @@ def draw_frame(figure: Figure, choice: Choice) -> None:
     figure.set_size_inches(SIZE)
     axes = figure.subplots(3, 2, height_ratios=(1.5, 1.0, 1.0))
     limits = limits_of(frame)
-    draw_maps(figure, axes[0], choice, limits, loads)
+    edge = frame.half_widths[0] * np.sqrt(loads.lamina * loads.length / loads.load)  # by the lamina model
+    draw_maps(figure, axes[0], choice, limits, loads, edge)
     draw_loads(axes[1, 0], loads)
     draw_gap(axes[1, 1], loads, result.frame("film_thickness", index), int(np.argmin(np.abs(result.x))))
     draw_sections(axes[2], frame, loads, limits)
@@ -50,16 +51,20 @@ def limits_of(frame: Frame) -> Limits:
 
 
 def draw_maps(
-    figure: Figure, panels: Sequence[Axes], choice: Choice, limits: Limits, loads: RollerLoads
+    figure: Figure,
+    panels: Sequence[Axes],
+    choice: Choice,
+    limits: Limits,
+    loads: RollerLoads,
+    half_width: np.ndarray,
 ) -> None:
-    """Draw maps of pressure and values over x/a and y with bars; a line: contact by the lamina model."""
+    """Draw maps of pressure and values over x/a and y with bars; a line: half-width of the contact in a."""
     [frame] = choice.frames
     colours = PRESSURE_COLOURS, FILM_COLOURS if frame.is_film else OTHER_COLOURS
     ends, labels = ((0.0, limits.brightest), limits[2:]), (PRESSURE_LABEL, frame.label)
     dx, y = 0.5 * (frame.x[1] - frame.x[0]), 1e3 * loads.y
     extent = (frame.x[0] - dx, frame.x[-1] + dx, y[0] - 0.5 * 1e3 * loads.dy, y[-1] + 0.5 * 1e3 * loads.dy)
-    edge = frame.half_widths[0] * np.sqrt(loads.lamina * loads.length / loads.load)
-    edge[edge == 0.0] = np.nan  # beside the contact
+    edge = np.where(half_width > 0.0, half_width, np.nan)  # nan: beside the contact
     for panel, values, name, (low, high), label, colour in zip(
         panels, (frame.pressure, frame.values), colours, ends, labels, ("w", "k"), strict=True
     ):

@@ -191,9 +191,9 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     spacing = " x ".join(f"{1e6 * length:.3f}" for length in s.grid.spacings[::-1])
     extent = f"from {s.x[0]:g} to {s.x[-1]:g} a"
     if KINDS[case.kind].is_areal:
-        strip, point = (0.5 * s.grid.breadth, "a"), (s.grid.axes[0][-1] * s.a / s.b, "b")
-        edge, unit = strip if s.grid.periodic else point
-        extent += f" along, {-edge:g} to {edge:g} {unit} across"
+        strip, y = 0.5 * s.grid.breadth, s.grid.axes[0] * s.a / s.b
+        low, high, unit = (-strip, strip, "a") if s.grid.periodic else (y[0], y[-1], "b")
+        extent += f" along, {low:g} to {high:g} {unit} across"
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
         f"Run time on one rank: {_time(case.kind, expected_work(case, s, rough))}; "
