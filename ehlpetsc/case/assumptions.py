@@ -58,18 +58,6 @@ def departing_keys(case: Case, assumed: str = "") -> list[str]:
     return [place for place, key in found if key.departs and assumed in ("", key.departs)]
 
 
-def _speeds_across(case: Case) -> str:
-    return _spin(case) or _groove(case)
-
-
-def _spin(case: Case) -> str:
-    return "motion.spin" if case.motion and case.motion.spin else ""
-
-
-def _groove(case: Case) -> str:
-    return "contact.groove_radius" if case.contact.groove_radius is not None else ""
-
-
 class Departure(NamedTuple):
     """What besides keys that say so departs from an assumption.
 
@@ -89,7 +77,7 @@ DEPARTURES = {
     ),
     "one direction of entrainment": Departure(_reversal),
     "a whole contact": Departure(_window),
-    "one speed across": Departure(_speeds_across),
+    "one speed across": Departure(),
 }
 """By the assumption."""
 
@@ -118,8 +106,6 @@ FEATURES = {
         lambda case: case.surface.body_1 or case.surface.body_2, ("one speed across",)
     ),  # which a map that moves with its rows would leave
     "[wear]": Feature(lambda case: case.wear, ("one speed across",)),
-    "motion.spin": Feature(_spin, ("one direction of entrainment", "a whole contact")),
-    "contact.groove_radius": Feature(_groove, ("one direction of entrainment",)),
 }
 STRESSES = "stresses below the surface"
 SMOOTH = "damage of the smooth contact"

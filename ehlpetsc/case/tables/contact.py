@@ -108,6 +108,8 @@ KEYS = {
         "radius of the ball follows from it and the reduced one across; left out: one speed of each body",
         *("m", 1e-5, 10),
         contacts=("point",),
+        departs="one speed across",
+        assumes=("one direction of entrainment",),
         equation="`u_1(y) = u_1 (1 - y^2/(2 Rc r))`, `u_2(y) = u_2 (1 + y^2/(2 Rc R2))`, `1/r = 1/Ry + "
         "1/groove_radius`, `1/R2 = 1/Rx - 1/r`, `1/Rc = 1/r - k1/Ry`, `k1` the share of body 1 in `2/E'`",
     ),

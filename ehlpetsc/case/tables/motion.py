@@ -36,6 +36,8 @@ MOTION_KEYS = {
         *("rad/s", -1e5, 1e5),
         many="axes",
         contacts=("point", "roller"),
+        departs="one speed across",
+        assumes=("one direction of entrainment", "a whole contact"),
         equation="`u_i(y) = u_i + w_i y` along x, `v_i(x) = -w_i x` across",
     ),
 }
