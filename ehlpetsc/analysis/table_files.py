@@ -136,6 +136,6 @@ def fits_text(table: Table, speed: float | None) -> str:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["law", "at", "constants"])
     for at, fit in fits(table, speed):
-        pairs = ("; ".join(f"{k} = {v:.4g}" for k, v in of.items()) for of in (at, fit._asdict()))
+        pairs = ("; ".join(f"{k} = {v:.6g}" for k, v in of.items()) for of in (at, fit._asdict()))
         writer.writerow([type(fit).__name__.lower(), *pairs])
     return text.getvalue()

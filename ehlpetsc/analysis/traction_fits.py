@@ -6,7 +6,9 @@ Traction in the dynamics of rolling bearings (Gupta 1984), over the sliding spee
 
 has four constants with a meaning: traction without slip :math:`\kappa_0=A+D`, at infinite slip
 :math:`\kappa_\infty=D`, and the maximum :math:`\kappa_m` at the slip :math:`u_m`, with
-:math:`\kappa_m-D=(B/C)e^{-Cu_m}` and :math:`u_m=1/C-A/B`.
+:math:`\kappa_m-D=(B/C)e^{-Cu_m}` and :math:`u_m=1/C-A/B`. A program that reads them finds :math:`y=Cu_m` from
+:math:`e^{-y}/(y-1)=(\kappa_m-D)/(D-\kappa_0)`. Traction that rises all over gets a low maximum, as its
+curve could not be found otherwise.
 
 The Stribeck curve over the entrainment speed u, of friction models in machines (Bo & Pavelescu 1982), is
 
@@ -20,6 +22,8 @@ from typing import NamedTuple
 import numpy as np
 
 EXPONENTS = (0.2, 4.0)  # bounds of delta
+# bounds of C u_m: beyond them kappa_m differs too little from kappa_inf for C to be found from both
+AT_MAXIMUM = (1.02, 5.0)
 
 
 class Traction(NamedTuple):
@@ -86,11 +90,11 @@ def fitted_traction(slip: np.ndarray, friction: np.ndarray) -> Traction:
     largest, fastest = friction.max(), slip.max()
 
     def curve(values: np.ndarray) -> np.ndarray:
-        d, b, c = values * (largest, largest / fastest, 1.0 / fastest)
-        return np.array([-d, b, c, d])
+        d, c, at_maximum = values * (largest, 1.0 / fastest, 1.0)
+        return np.array([-d, d * c / (at_maximum - 1.0), c, d])
 
-    starts = [(1.0, b, c) for c in (0.5, 5.0, 50.0) for b in (0.0, c)]
-    bounds = (0.0, -1e3, 1e-3), (10.0, 1e4, 1e4)
+    starts = [(1.0, c, at_maximum) for c in (0.5, 5.0, 50.0) for at_maximum in (2.0, 4.0)]
+    bounds = (0.0, 1e-3, AT_MAXIMUM[0]), (10.0, 1e4, AT_MAXIMUM[1])
     found = min(
         (
             least_squares(lambda v: (traction(slip, curve(v)) - friction) / largest, start, bounds=bounds)
@@ -98,10 +102,10 @@ def fitted_traction(slip: np.ndarray, friction: np.ndarray) -> Traction:
         ),
         key=lambda one: one.cost,
     )
-    constants = a, b, c, d = curve(found.x)
-    u_m = 1.0 / c - a / b if b > 0.0 else np.inf
-    kappa_m = float(traction(np.array([u_m]), constants)[0]) if np.isfinite(u_m) else d
-    return Traction(0.0, float(d), kappa_m, float(u_m), float(np.sqrt(np.mean(found.fun**2))))
+    constants = curve(found.x)
+    u_m = found.x[2] / constants[2]
+    kappa_m = float(traction(np.array([u_m]), constants)[0])
+    return Traction(0.0, float(constants[3]), kappa_m, float(u_m), float(np.sqrt(np.mean(found.fun**2))))
 
 
 def fitted_stribeck(speed: np.ndarray, friction: np.ndarray) -> Stribeck:

@@ -99,9 +99,8 @@ def row(name: str, side: int, found: dict | str, limit: float) -> str:
     """Row of the table."""
     if isinstance(found, str):
         return f"| {name} | {side} | {found} | |"
-    error = f"{100.0 * (found['film'] / limit - 1.0):+.2g}"
-    words = "" if found["converged"] else ", not converged"
-    return f"| {name} | {side} | {found['seconds']:.2g} | {error}{words} |"
+    error = f"{100.0 * (found['film'] / limit - 1.0):+.2g}" if found["converged"] else "not converged"
+    return f"| {name} | {side} | {found['seconds']:.2g} | {error} |"
 
 
 def main() -> None:

@@ -65,6 +65,21 @@ def test_traction_curve_gives_back_its_constants():
     assert found.misfit < 1e-5
 
 
+def test_traction_that_rises_all_over_is_read_back_from_its_printed_constants():
+    slip = np.geomspace(0.01, 3.0, 12)
+    friction = 0.012 * np.arcsinh(slip / 0.02)  # Eyring's oil
+    found = fitted_traction(slip, friction)
+    kappa_0, kappa_inf, kappa_m, u_m = (float(f"{value:.6g}") for value in found[:4])
+    ratio = (kappa_m - kappa_inf) / (kappa_inf - kappa_0)
+    y = brentq(lambda y: np.exp(-y) / (y - 1.0) - ratio, 1.0001, 20.0)
+    c = y / u_m
+    read = traction(
+        slip, np.array([kappa_0 - kappa_inf, (kappa_inf - kappa_0) * c / (y - 1.0), c, kappa_inf])
+    )
+    assert np.sqrt(np.mean((read - friction) ** 2)) / friction.max() == pytest.approx(found.misfit, rel=0.01)
+    assert 0.01 < found.misfit < 0.12
+
+
 def test_stribeck_curve_gives_back_its_constants():
     speed = np.geomspace(0.01, 10.0, 30)
     found = fitted_stribeck(speed, stribeck(speed, np.array([0.12, 0.02, 0.3, 1.4, 0.001])))
