@@ -208,60 +208,113 @@ def _are_numbers(axis: np.ndarray) -> bool:
     return bool(axis.min() in (0.0, 1.0) and (np.abs(np.diff(axis)) == 1.0).all())
 
 
+class Axis(NamedTuple):
+    """Axis of a map.
+
+    `positions`: of its columns or rows; None: none in the file. `are_numbers`: whether they only count.
+    `stated`, `in_header`: spacing by the case and by the header [m], None without.
+    `key`: of the case, of the spacing. `place`: text of where the positions are.
+    """
+
+    positions: np.ndarray | None
+    are_numbers: bool
+    stated: float | None
+    in_header: float | None
+    key: str
+    place: str
+
+    @property
+    def has_positions(self) -> bool:
+        """Whether the file has positions that tell the spacing."""
+        return self.positions is not None and not self.are_numbers
+
+    @property
+    def step(self) -> float:
+        """Spacing of the positions in their unit."""
+        return float(np.abs(self.positions[-1] - self.positions[0])) / (len(self.positions) - 1)
+
+    @property
+    def known(self) -> list[tuple[str, float]]:
+        """Spacings [m] that need no unit of positions, by their source."""
+        both = (f"{self.key} =", self.stated), ("by its header", self.in_header)
+        return [(source, distance) for source, distance in both if distance]
+
+
 def in_metres(
     found: TextMap, header: str, layout: Layout
 ) -> tuple[np.ndarray, float, float, tuple[str, ...]]:
-    """Heights [m], distances of columns and rows [m], and notes, of a map in a text file."""
-    z, x, y, is_list, note = found
-    if not is_list:
-        _check_borders(z)
+    """Heights [m], distances of columns and rows [m], and notes, of a map in a text file.
+
+    Positions without a unit are in the one in which they agree with another spacing of their axis, or nearly
+    with that of the other axis; else in the unit of the heights.
+    """
+    if not found.is_list:
+        _check_borders(found.z)
     unit, x_unit = (
         stated or next(iter(units_by(pattern, header)), None)
         for stated, pattern in ((layout.unit, UNIT_OF_HEIGHTS), (layout.x_unit, UNIT_OF_X))
     )
-    named = dict.fromkeys(units_in(header))
-    words = spacings_in(header, z.shape, layout.x_unit)
-    spacing = layout.spacing or words.get("x")
-    numbered = [
-        axis is not None and x_unit is None and not (is_list and spacing is None) and _are_numbers(axis)
-        for axis in (x, y)
-    ]
-    are_used = any(axis is not None and not number for axis, number in zip((x, y), numbered, strict=True))
-    if layout.x_unit and not (are_used or words):
+    words = spacings_in(header, found.z.shape, layout.x_unit)
+    axes = _axes(found, layout, words, x_unit)
+    _check_units(header, (unit, x_unit), any(axis.has_positions for axis in axes), layout, words)
+    metres, notes = UNITS[x_unit] if x_unit else None, [found.note] if found.note else []
+    distances: list[float | None] = []
+    for axis, count in zip(axes, found.z.shape[::-1], strict=True):
+        known = axis.known
+        if axis.has_positions:
+            others = [distance for _, distance in known] or distances
+            metres = metres or (_unit_by(axis.step, others[0]) if others else None) or UNITS[unit or "m"]
+            known = [*known, ("by its positions", axis.step * metres)]
+        if axis.has_positions and not found.is_list:
+            notes.append(f"{axis.place.format('positions')}, {1e6 * axis.step * metres:.4g} um apart")
+        elif axis.are_numbers:
+            notes.append(f"{axis.place.format('numbers')}, left out")
+        distances.append(_agreed(known, axis.key, count))
+    if distances[0] is None:
+        raise ProfileError("a matrix of heights needs spacing = distance of its columns in m")
+    return UNITS[unit or "m"] * _rising(found), distances[0], distances[1] or distances[0], tuple(notes)
+
+
+def _axes(found: TextMap, layout: Layout, words: dict[str, float], x_unit: str | None) -> list[Axis]:
+    """Axes along and across; `words`: spacings by the header [m]."""
+    has_spacing = bool(layout.spacing or words.get("x"))
+    axes = []
+    for name, positions, stated, key, place in (
+        ("x", found.x, layout.spacing, "spacing", "first line: {} of the columns"),
+        ("y", found.y, layout.spacing_across, "spacing_across", "first column: {} of the rows"),
+    ):
+        may_count = positions is not None and x_unit is None and (has_spacing or not found.is_list)
+        are_numbers = may_count and _are_numbers(positions)
+        axes.append(Axis(positions, are_numbers, stated, words.get(name), key, place))
+    return axes
+
+
+def _check_units(
+    header: str,
+    units: tuple[str | None, str | None],
+    has_positions: bool,
+    layout: Layout,
+    words: dict[str, float],
+) -> None:
+    """Refuse a unit of positions that there are not, and units in a header that belong to nothing known."""
+    unit, x_unit = units
+    if layout.x_unit and not (has_positions or words):
         raise ProfileError("x_unit: of x, not of spacing, which is in m; leave it out")
-    missing = ["unit"] if unit is None else ["x_unit"] if x_unit is None and are_used else []
-    others = [name for name in named if name not in ("m", unit)]
+    missing = ["unit"] if unit is None else ["x_unit"] if x_unit is None and has_positions else []
+    others = [name for name in dict.fromkeys(units_in(header)) if name not in ("m", unit)]
     if missing and others:
         raise ProfileError(
             f"its header names {' and '.join(others)}; write {missing[0]} (unit for the heights, x_unit for "
             "positions; spacing is in m)"
         )
-    metres = UNITS[x_unit] if x_unit else None
-    distances: list[float | None] = []
-    notes = [note] if note else []
-    for axis, is_number, stated, key, place in (
-        (x, numbered[0], layout.spacing, "spacing", "first line: {} of the columns"),
-        (y, numbered[1], layout.spacing_across, "spacing_across", "first column: {} of the rows"),
-    ):
-        known = [(f"{key} =", stated), ("by its header", words.get("xy"[key != "spacing"]))]
-        known = [(source, distance) for source, distance in known if distance]
-        if axis is not None and is_number:
-            notes.append(f"{place.format('numbers')}, left out")
-        elif axis is not None:
-            step = float(np.abs(axis[-1] - axis[0])) / (len(axis) - 1)
-            if metres is None and (known or distances):
-                metres = _unit_by(step, known[0][1] if known else distances[0])
-            metres = metres or UNITS[unit or "m"]
-            known.append(("by its positions", step * metres))
-            notes += [] if is_list else [f"{place.format('positions')}, {1e6 * step * metres:.4g} um apart"]
-        distances.append(_agreed(known, key, z.shape[key == "spacing"]))
-    if distances[0] is None:
-        raise ProfileError("a matrix of heights needs spacing = distance of its columns in m")
+
+
+def _rising(found: TextMap) -> np.ndarray:
+    """Heights in the order of rising positions."""
+    z, x, y = found.z, found.x, found.y
     if x is not None and x[0] > x[-1]:
         z = z[:, ::-1]
-    if y is not None and y[0] > y[-1]:
-        z = z[::-1]
-    return UNITS[unit or "m"] * z, distances[0], distances[1] or distances[0], tuple(notes)
+    return z[::-1] if y is not None and y[0] > y[-1] else z
 
 
 def _agreed(known: list[tuple[str, float]], key: str, count: int) -> float | None:
