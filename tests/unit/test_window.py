@@ -15,6 +15,7 @@ from ehlpetsc.elasticity.kernel import Mesh
 from ehlpetsc.elasticity.terms.free_ends import images
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.frames.choice import Choice
+from ehlpetsc.run import checkpoint
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation
 
@@ -136,3 +137,21 @@ def test_picture_of_a_window_has_maps_and_sections_over_its_rows(tmp_path):
     edge = pressure.lines[1].get_xdata()
     np.testing.assert_allclose(edge[w > 0.0], np.sqrt(w[w > 0.0]), rtol=1e-12)
     assert "edge_factor" not in result.scalars and result.attrs["kind"] == "window"
+
+
+@pytest.mark.parametrize("window", [None, END], ids=["roller", "window"])
+def test_rough_roller_continues_from_a_restart_file_as_if_it_had_not_stopped(window, tmp_path):
+    wave = {"kind": "sine", "amplitude": 5e-8, "wavelength": 1e-4, "wavelength_across": 4e-4}
+    rough = {"surface": {"1": {"synthetic": wave}}, "time": {"travel": 0.4}}
+    case = load(tables(OIL, window, (10, 20), **rough))
+    whole = Simulation(case)
+    for state in whole:
+        if state.step == 2:
+            checkpoint.save(tmp_path / "roller.restart.h5", whole, whole.state.in_contact, {"newton": 1})
+    again = Simulation(case)
+    found, notes = checkpoint.load(tmp_path / "roller.restart.h5", case, again.scales)
+    again.resume(found.state, found.baseline)
+    *_, last = again
+    assert notes == [] and last.step == whole.state.step == 4
+    np.testing.assert_array_equal(last.pressure, whole.state.pressure)
+    np.testing.assert_array_equal(last.film_thickness, whole.state.film_thickness)

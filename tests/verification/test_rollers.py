@@ -68,6 +68,16 @@ def test_ends_close_as_the_radius_of_the_arcs_falls():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("radius", "highest", "thinnest"), [(0.32, 4.185, 4.425), (0.08, 5.115, 5.115)])
+def test_pressure_and_film_have_their_extremes_where_the_profile_starts(radius, highest, thinnest):
+    """As published for finite lines with heat in 2002; the profile starts 4 and 5 mm from the middle."""
+    state, scales = solved(arcs(radius), 200)
+    y = 1e3 * scales.a * np.abs(scales.grid.axes[0])
+    found = y[state.pressure.max(axis=1).argmax()], y[state.film_thickness.min(axis=1).argmin()]
+    assert found == pytest.approx((highest, thinnest), abs=0.035)  # a row
+
+
+@pytest.mark.slow
 def test_film_of_the_ends_converges_with_the_rows():
     films = [1e6 * solved(arcs(0.02), rows)[0].h_min for rows in (100, 800)]
     assert films[0] == pytest.approx(0.109, rel=2e-2)  # 60 um

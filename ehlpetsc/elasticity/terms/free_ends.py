@@ -9,10 +9,12 @@ of Guilbault (2011), J. Tribol. 133, 031402, 1.39 for steel. It is of the roller
 longer and stays a half-space. The end faces are half a cell beyond the outer rows; of round ends at the edge
 of the mesh.
 
-This gives up the exact deflection of a quarter space. Beside finite elements of one, of steel under waves
-along the edge, the images deflect at most 4.7 % too little, at any distance from it. The maximum pressure of
-dry rollers that unload their ends is then right within 1 %, and the load of the last rows of one that does
-not within 3 % of the largest; `tests/verification/test_free_ends.py` holds all three.
+This gives up the exact deflection of a quarter space. The formula is quoted second-hand, and held by finite
+elements of one. Of steel under waves along the edge the images deflect at most 4.7 % too little, at any
+distance from it. Of dry rollers the maximum pressure and the load of a row over the largest are within .2 and
+2 % where the profile unloads the ends, and 4.4 and 4.8 % too high at the sharp end of a straight one;
+`tests/verification/test_free_ends.py` holds all. There 1.5 would be right, and wrong for the others: exact
+images depend on both distances from the plane and on the wave along it.
 """
 
 from __future__ import annotations
