@@ -4,11 +4,13 @@ import copy
 import re
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
 from support import roelands_oil
 from support.dry_half_space import HalfSpaces, dry_pressure
 
+import ehlpetsc
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
 from ehlpetsc.elasticity.terms.free_ends import image_factor
@@ -16,6 +18,7 @@ from ehlpetsc.physics.contact.profiles import Design, drop_of
 from ehlpetsc.physics.contact.roller import gap_across
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.post.loads import _warnings
+from ehlpetsc.post.run import Job, run
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation
 
@@ -267,3 +270,24 @@ def test_post_says_that_stresses_near_free_ends_are_those_of_half_spaces():
     [text] = warnings_of()
     assert text.startswith("stresses near the ends: assumes half-spaces, and this case has free end faces")
     assert warnings_of(free_ends=False) == []
+
+
+@pytest.mark.slow
+def test_damage_is_computed_along_a_roller_with_a_rough_surface(tmp_path):
+    wave = {"kind": "sine", "amplitude": 5e-8, "wavelength": 1e-4}
+    contact = {"length": 4e-3, "load": 800.0, "material": "100Cr6", "profile": ISO, "tilt": 5e-4}
+    case = DRY | OIL | {"fluid": OIL["fluid"] | {"eyring_stress": 5e6}, "time": {"travel": 4.5}}
+    case |= {"contact": {"radius": R} | contact, "surface": {"1": {"synthetic": wave}}}
+    case |= {"motion": {"entrainment_speed": 3.0, "slide_roll_ratio": 0.1}}
+    case |= {"mesh": {"inlet": -2.0, "outlet": 1.8, "points_per_half_width": [8, 12]}}
+    with ehlpetsc.solve(case, output=tmp_path / "roller.h5", options={}) as result:
+        w = result.load_per_length(frame=-1)
+    warned: list[str] = []
+    paths = [str(tmp_path / name) for name in ("roller.h5", "roller.post.h5")]
+    run(Job(*paths, ("1",), settings=("post.depths=[0.3]",)), warned.append)
+    with h5py.File(tmp_path / "roller.post.h5") as file:
+        ranges = np.nanmax(file["damage/1_peak_range"][0], axis=1)
+    assert ranges.shape == (24,) and any("free end faces" in line for line in warned)
+    middle, lower, upper = ranges[11], ranges[3], ranges[20]
+    assert middle > 1.1 * max(lower, upper) and lower > upper  # as the load of a tilted roller
+    assert w[11] > w[3] > w[20] > 0.0
