@@ -78,7 +78,7 @@ def test_pressure_and_film_have_their_extremes_where_the_profile_starts(radius, 
 
 
 def test_film_of_the_ends_converges_with_the_rows():
-    """Rows of 60 um; of 7.5 um on a quarter of the roller under its load per length, which has the same ends."""
+    """Rows of 60 um; of 7.5 um on a quarter of the roller with its load per length: the same ends."""
     assert 1e6 * solved(arcs(0.02))[0].h_min == pytest.approx(0.109, rel=2e-2)
     shorter = OIL["contact"] | {"length": 0.25 * L, "load": 0.25 * W, "profile": arcs(0.02, 0.25 * L)}
     mesh = OIL["mesh"] | {"points_per_half_width": [20, 200]}
