@@ -193,6 +193,14 @@ def test_flow_of_a_users_law_is_that_of_the_same_law_built_in(own, sigma, zeta):
     )
 
 
+@pytest.mark.parametrize("zeta", [1e-30, 1e-6, 1e-4])
+def test_stress_of_a_hardly_sliding_film_in_a_steep_pressure_gradient_keeps_its_digits(own, zeta):
+    """Rates of 1e7 of both signs across the film have a mean of `zeta`: 6 % off by their sum."""
+    tables = tabulated_flow.flow_table(own, 1.0, 2.0), tabulated_flow.flow_table(rheology.EYRING, 1, 2)
+    found, exact = (tabulated_flow.stress_spread(20.0, np.log(zeta), table) for table in tables)
+    assert found == pytest.approx(exact, abs=1e-6)
+
+
 @pytest.mark.parametrize("gradient", [1e10, -8e12, 6e13])
 @pytest.mark.parametrize("law", ["carreau", "own"])
 def test_derivatives_of_a_tabulated_flow(gradient, law, own):

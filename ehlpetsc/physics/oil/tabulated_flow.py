@@ -20,6 +20,10 @@ TABLE_STEPS = 0.25, 0.1  # of ln(Gamma) and ln(s), over the width of the bend in
 CROSS_STEPS = 0.5, 0.1  # the same of the flow across
 RANGE = 14.0  # of both: exp(-14) is the error of the asymptotes beyond
 NEWTONIAN = 1e-8  # accuracy to which it is below some Gamma and s
+FLAT = (
+    1e-5,
+    1e-4,
+)  # mean stress over the stress difference, and over the law's, below which the flow is linear
 SHALLOW = 1e-4  # stress difference across the film over the law's stress, below which there is none
 _Z, _WEIGHTS = (0.5 * half for half in np.polynomial.legendre.leggauss(20))
 _Z += 0.5  # on either side of the lowest stress, squared: dense there
@@ -81,6 +85,8 @@ def flow_across(gamma: float, drop: float, law: FlowLaw) -> tuple[float, float]:
                 mean += weight * rate
                 slope += weight * by_t
                 moment += weight * z * rate
+        if t < min(FLAT[0] * steep, FLAT[1]):  # odd in t; of rates of both signs the sum has lost its digits
+            mean = slope * t
         low, high = (t, high) if mean < gamma else (low, t)
         new = t + (gamma - mean) / slope
         if not low <= new <= high:
