@@ -6,6 +6,13 @@ use.
 """
 
 import importlib
+import sys
+
+if sys.argv[:1] == ["-m"] and "ehlpetsc" in sys.orig_argv or "".join(sys.argv[:1]).endswith("/ehlpetsc"):
+    import signal  # of the program alone: until `main` handles Ctrl-C it ends the process without a traceback
+
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 from ehlpetsc.base.environment import need_solver
 from ehlpetsc.base.version import __version__ as __version__

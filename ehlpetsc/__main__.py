@@ -49,6 +49,8 @@ COMMANDS = {
 def main(words: list[str] | None = None) -> int:
     """Run the program; returns its exit status. An unexpected error on one rank ends all ranks."""
     words = sys.argv[1:] if words is None else words
+    if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:  # set by the package while it was imported
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if not sys.warnoptions:  # warnings of numpy are for developers: python3 -W default shows them
         warnings.simplefilter("ignore")
     try:

@@ -4,6 +4,8 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
+import textwrap
 import time
 
 import pytest
@@ -88,3 +90,23 @@ def test_folder_removed_during_a_run_is_a_lost_output(tmp_path):
     assert process.returncode == 5
     assert f"{folder}/r.h5: deleted" in errors and "No such file or directory" in errors
     assert not os.path.exists(folder)
+
+
+@pytest.mark.parametrize("module", ["ehlpetsc.base.environment", "difflib"])
+def test_ctrl_c_during_the_first_imports_ends_without_a_traceback(tmp_path, module):
+    """Of the package, and of its program."""
+    hook = f"""
+        import os, signal, sys
+
+        class Interrupting:
+            def find_spec(name, *_):
+                if name == {module!r}:
+                    os.kill(os.getpid(), signal.SIGINT)
+
+        sys.meta_path.insert(0, Interrupting)
+    """
+    (tmp_path / "sitecustomize.py").write_text(textwrap.dedent(hook))
+    path = os.pathsep.join([str(tmp_path), str(ROOT)])
+    words = [sys.executable, "-m", "ehlpetsc", "--version"]
+    done = subprocess.run(words, env=os.environ | {"PYTHONPATH": path}, capture_output=True, text=True)
+    assert done.returncode == -signal.SIGINT and done.stdout == done.stderr == ""
