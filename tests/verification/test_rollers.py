@@ -83,6 +83,4 @@ def test_film_of_the_ends_converges_with_the_rows():
     shorter = OIL["contact"] | {"length": 0.25 * L, "load": 0.25 * W, "profile": arcs(0.02, 0.25 * L)}
     mesh = OIL["mesh"] | {"points_per_half_width": [20, 200]}
     state = Simulation(load(OIL | {"contact": shorter, "mesh": mesh})).advance()
-    assert 1e6 * state.h_min == pytest.approx(
-        0.186, rel=1e-2
-    )  # the whole roller: 0.1856, in the limit 0.1860
+    assert 1e6 * state.h_min == pytest.approx(0.186, rel=1e-2)  # the whole roller: 0.1856; limit 0.1860
