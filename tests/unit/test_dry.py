@@ -7,6 +7,7 @@ from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.elasticity.dry import dry_pressure
 from ehlpetsc.elasticity.half_plane import deflection_kernel
+from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.first_guess import dry_contact
 
@@ -97,3 +98,18 @@ def test_profiles_along_the_motion_are_checked():
     ):
         with pytest.raises(CaseError, match=fault):
             simulation("line", profile_along=given)
+
+
+def test_explain_names_the_keys_that_hertz_does_not_know():
+    layer = {"thickness": 2e-6, "youngs_modulus": 1e11, "poisson_ratio": 0.2}
+    power = {"kind": "power", "exponent": 4, "distance": 1e-4, "height": 1e-7}
+    for given, expected in (
+        ({}, []),
+        ({"coating": layer}, ["contact.coating"]),
+        ({"coating": layer, "profile_along": power}, ["contact.coating", "contact.profile_along"]),
+    ):
+        (of_kind, mesh) = CONTACTS["point"]
+        case = load({"title": "dry", "contact": BODIES | of_kind | given, "mesh": MESH | mesh})
+        lines = [line for line in explain(case).splitlines() if "those without" in line]
+        named = [name.strip() for line in lines for name in line.partition("without")[2].split(",")]
+        assert sorted(named) == expected

@@ -1,5 +1,7 @@
 """Kernels of both bodies: terms, images beyond plane ends, compliance of waves."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,14 @@ def test_images_are_the_pressures_mirrored_about_both_end_planes():
     single = product(pressure.ravel().astype(np.float32))
     assert single.dtype == np.float32
     np.testing.assert_allclose(single, expected.ravel(), rtol=1e-6)
+
+
+def test_every_module_of_the_folder_is_a_term():
+    folder = Path(kernel.__file__).with_name("terms")
+    names = {path.stem for path in folder.glob("*.py")} - {"__init__"}
+    assert (
+        {term.__module__.rpartition(".")[2] for term in kernel.terms()} == names >= {"coatings", "free_ends"}
+    )
 
 
 def test_a_term_is_added_to_the_half_spaces(monkeypatch):
