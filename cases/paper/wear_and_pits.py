@@ -45,6 +45,7 @@ OF_STRIP = {  # a life that serves every rate of wear
 SHORT = {"mesh.points_per_half_width": 10, "life.max_solved": 4, "life.partners": 2}
 SEEDS = (1, 2, 3)
 BODIES = "rough surface 1", "smooth surface 2", "smooth surface 2, mean of its columns"
+RISES = 0.2  # change of D in the last round, over D, from which on a limiting rate is a lower bound
 RATES = 1e-18, 1e-17, 1e-16  # of the printed passes [m^2/N]
 Lives = dict[str, list[LifeHistory]]
 
@@ -140,6 +141,11 @@ def lines(lives: Lives) -> list[str]:
     return [*found, f"smooth contact: {row['smooth_life_2']:.3g} passes at {row['smooth_pressure']:.3g} Pa"]
 
 
+def smooth_life(lives: Lives) -> float:
+    """Passes after which the smooth contact fails."""
+    return next(iter(lives.values()))[0].rows[-1]["smooth_life_2"]
+
+
 def over_rate(axes: Axes, lives: Lives, body: int) -> None:
     """Passes to the first failed cell of one of the `BODIES` over the rate of wear, a curve for each life."""
     curves = {film: [Curve.of(life) for life in of_seeds] for film, of_seeds in lives.items()}
@@ -151,10 +157,11 @@ def over_rate(axes: Axes, lives: Lives, body: int) -> None:
             fails = np.isfinite(passes)
             label = None if number else f"lambda {film}"
             axes.loglog(rates[fails], passes[fails], color=colour, label=label)
-            axes.plot(rates[fails][-1:], passes[fails][-1:], "o", ms=4, color=colour)
-    end = next(iter(lives.values()))[0].rows[-1]["smooth_life_2"]
-    axes.axhline(end, ls="--", color=style.DARK, label="smooth contact")
-    axes.set(xlabel="rate of wear k [m²/N]", ylim=(None, 10 * end))
+            still_rises = curve.rise[body] > RISES
+            marker = {"mfc": "w"} if still_rises else {}
+            axes.plot(rates[fails][-1:], passes[fails][-1:], "o", ms=5, color=colour, **marker)
+    axes.axhline(smooth_life(lives), ls="--", color=style.DARK, label="smooth contact")
+    axes.set_xlabel("rate of wear k [m²/N]")
     axes.set_title(BODIES[body], fontsize="medium", loc="left")
 
 
@@ -164,8 +171,11 @@ def draw(lives: Lives) -> Figure:
     for body, axes in enumerate(np.ravel(panels)):
         over_rate(axes, lives, body)
     np.ravel(panels)[0].set_ylabel("passes to the first failed cell")
+    np.ravel(panels)[0].set_ylim(top=30.0 * smooth_life(lives))
     np.ravel(panels)[-1].legend(**style.SMALL)
-    style.set_title(figure, "Wear against micropits: beyond the dot no cell fails")
+    style.set_title(
+        figure, "Wear against micropits: beyond a dot no cell fails; at an open one the life ends"
+    )
     return figure
 
 
