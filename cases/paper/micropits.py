@@ -22,7 +22,7 @@ from micropit_scenes import COMMON, PASSES, RING_PASSES, SCENES, SEEDS, Scene
 from ehlpetsc.life.body import LifeBody
 from ehlpetsc.life.ensemble import read_lives
 from ehlpetsc.life.history import LifeHistory
-from ehlpetsc.life.laws import regions
+from ehlpetsc.life.laws import below, regions
 from ehlpetsc.pictures import style
 from ehlpetsc.results.means import bootstrap_bounds
 from ehlpetsc.results.post_result import DAMAGED, is_damaged
@@ -34,11 +34,11 @@ COLUMNS = ("scene", "seeds", *SHARES, "life_1", "life_2", "smooth_life", "smooth
 SCENE = "scene"  # the first seeds of the scene, of as many as are compared with them
 SHORT = {"mesh.points_per_half_width": 10, "time.travel": 6.0}  # in which points of all scenes pass
 SIGNS = {  # title of a panel, with the published sign: its scenes; sign 6 is drawn over depth
-    "1. the smooth body (2) is damaged more, the more the contact slides": (SCENE, "reversed"),
+    "1. the smooth body (2) is damaged more, the more the contact slides": ("mirror", SCENE, "reversed"),
     "2. slide/roll ratio": ("rolling", SCENE),
     "3. lambda: worst near 1, nothing at 3": ("thin", SCENE, "thick"),
-    "4. Rq of rings NU 209: 0.05 on 1.0 µm alone pits": ("pair_1", "pair_2", "pair_3", "pair_4"),
-    "5. temperature of NU 211: worst at 73 °C": ("cold", "warm", "hot"),
+    "4. Rq of rings NU 209: 0.05 on 1.0 µm alone pits": tuple(f"pair_{k}_line" for k in (1, 2, 3, 4)),
+    "5. temperature of NU 211: worst at 73 °C": ("cold_line", "warm_line", "hot_line"),
     "7. lay: changes the area": ("transverse", SCENE, "along"),
 }
 SCENE_LABELS = {"1": "0.25", "2": "0.25", "3": "0.97", "7": "isotropic"}  # of a sign's number
@@ -71,7 +71,7 @@ def compute(name: str, folder: Path, is_short: bool = False) -> list[LifeHistory
 def share(body: LifeBody, passes: float, deepest: float = np.inf) -> float:
     """Share of the columns that asperities damage in cells down to a depth [m], after passes without wear."""
     cells = body.edges[1:] <= deepest
-    damage, smooth = passes * body.damage_rate[cells], passes * body.smooth_rate[cells, None, None]
+    damage, smooth = passes * body.damage_rate[cells], passes * below(body.smooth_rate[cells], body.height)
     return float(is_damaged(damage, smooth).any(axis=0).mean())
 
 
@@ -150,7 +150,8 @@ def even_damage(lives: list[LifeHistory], passes: float) -> list[float]:
 
     Its columns are alike. If partners drift through all positions, each of them gets the mean.
     """
-    return [passes * life.bodies[-1][1].damage_rate.mean(axis=(1, 2)).max() for life in lives]
+    rates = [life.bodies[-1][1].damage_rate for life in lives]
+    return [passes * rate.reshape(len(rate), -1).mean(axis=1).max() for rate in rates]
 
 
 def rows_of(ensembles: Ensembles) -> dict[str, tuple[str, ...]]:
@@ -167,7 +168,7 @@ def rows_of(ensembles: Ensembles) -> dict[str, tuple[str, ...]]:
 
 
 def _text(value: str | float) -> str:
-    return value if isinstance(value, str) else f"{value:.6g}"
+    return value if isinstance(value, str) else f"{value:.3g}"
 
 
 def store(ensembles: Ensembles) -> None:
