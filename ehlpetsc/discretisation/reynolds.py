@@ -117,6 +117,7 @@ class Reynolds(NoOil):
         grid = scales.grid
         super().__init__(grid, share)
         self.scales, self.film_scale, self.gap, self.has_sides = scales, film_scale, gap, has_sides
+        self._speeds: tuple[tuple, tuple[np.ndarray, np.ndarray]] | None = None
         self.given = grid.surroundings.sides
         self.dx, self.dy, self.cell = grid.dx, 1.0 if has_sides is None else grid.increments[0], grid.cell
         rows = max(self.size // self.n_x, 1)
@@ -177,8 +178,12 @@ class Reynolds(NoOil):
 
     def speeds(self, inputs: StepInputs) -> tuple[np.ndarray, np.ndarray]:
         """Speeds of the local rows and of the faces below, between and above them, see `row_speeds`."""
-        rows, first, count = row_speeds(inputs, self.scales), self.first_row, self.shape[0]
-        return rows[first : first + count], face_speeds(rows)[first : first + count + 1]
+        now = inputs.conditions, inputs.film_is_carried
+        if self._speeds is None or self._speeds[0] != now:  # all evaluations of a step have the same
+            rows, first, count = row_speeds(inputs, self.scales), self.first_row, self.shape[0]
+            of_both = rows[first : first + count], face_speeds(rows)[first : first + count + 1]
+            self._speeds = now, of_both
+        return self._speeds[1]
 
     def storage(self, inputs: StepInputs) -> tuple:
         """Storage of the local nodes for :func:`.finite_volumes.balance`."""

@@ -154,6 +154,11 @@ class StepInputs:
         """Whether the oil is at rest, at ambient pressure: steady, without entrainment."""
         return self.oil is not None and self.history is None and self.conditions.entrainment == 0.0
 
+    @property
+    def film_is_carried(self) -> bool:
+        """Whether the history follows the film's path and holds what the mean speed moves."""
+        return self.history is not None and self.history.follows_path
+
     @cached_property
     def flow(self) -> FlowLaw:
         """Shear law of the oil."""
@@ -181,7 +186,7 @@ def shear_constants(inputs: StepInputs, scales: Scales) -> tuple[float, float, f
     flow, now = inputs.flow, inputs.conditions
     stress = np.inf if flow.kind == NEWTON else flow.stress
     rise = scales.p0 * stress_pressure(inputs.fluid)
-    moved = 0.0 if _is_carried(inputs) else now.entrainment / scales.u
+    moved = 0.0 if inputs.film_is_carried else now.entrainment / scales.u
     return stress, stress * rise if rise else 0.0, abs(now.sliding), moved
 
 
@@ -191,7 +196,7 @@ def row_speeds(inputs: StepInputs, scales: Scales) -> np.ndarray:
     |u1 - u2| along x [m/s], entrainment speed over that of the scales.
     """
     across, now = scales.across, inputs.conditions
-    moved = np.zeros(len(across.y)) if _is_carried(inputs) else across.entrainment(now) / scales.u
+    moved = np.zeros(len(across.y)) if inputs.film_is_carried else across.entrainment(now) / scales.u
     return np.column_stack((np.abs(across.sliding(now)), moved))
 
 
@@ -199,11 +204,6 @@ def face_speeds(rows: np.ndarray) -> np.ndarray:
     """Speeds of the faces between rows, the mean of both; at a side those of the row, shape (rows + 1, 2)."""
     beyond = np.concatenate((rows[:1], rows, rows[-1:]))
     return 0.5 * (beyond[:-1] + beyond[1:])
-
-
-def _is_carried(inputs: StepInputs) -> bool:
-    """Whether the history follows the film's path and holds what the mean speed moves."""
-    return inputs.history is not None and inputs.history.follows_path
 
 
 def inlet(q: np.ndarray, h: np.ndarray, oil_film: float | None) -> tuple[np.ndarray, ...]:
