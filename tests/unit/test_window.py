@@ -123,6 +123,9 @@ def test_window_is_said_before_the_run():
     text = explain(load(tables(OIL, END, (20, 160), (2, 4))))
     assert "a roller, radius 0.006 m, length 4 mm" in text
     assert "Window: y = -2 to -1 mm; the smooth roller beside it on 45 x 80 nodes" in text
+    assert "rows of the smooth roller" not in text
+    text = explain(load(tables(OIL, MIDDLE, (20, 160), (2, 10))))
+    assert "rows of the smooth roller beside the window are 125 um apart" in text
     assert Scales.of(load(tables(OIL, END))).moes_m == Scales.of(load(tables(OIL))).moes_m
 
 

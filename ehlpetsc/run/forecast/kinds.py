@@ -153,6 +153,23 @@ def _roller_faults(case: Case, scales: Scales) -> list[str]:
     return faults
 
 
+def _window_ends(case: Case, scales: Scales) -> list[str]:
+    """As :func:`_roller_ends` of the rows of a window, and of the smooth roller where those have no film."""
+    notes = _roller_ends(case, scales)
+    if case.fluid is None:
+        return notes
+    whole = cast("WindowGrid", scales.grid).whole
+    opening = max(whole.openings, default=0.0) * scales.h
+    film = smooth_films(scales, case.fluid, scales.conditions)[0]
+    if opening > MAX_END_OPENING * film:
+        notes.append(
+            f"rows of the smooth roller beside the window are {1e6 * scales.a * whole.increments[0]:.3g} um "
+            f"apart, and at its ends the gap opens by {opening / film:.2g} films from one to the next, which "
+            "leaves no film there; try a smaller mesh.window.coarsening across"
+        )
+    return notes
+
+
 def _window_faults(case: Case, scales: Scales) -> list[str]:
     """A window beyond its roller, or of too few rows."""
     window, half = case.mesh.window, 0.5 * case.contact.length
@@ -288,4 +305,4 @@ POINT = Forecast(
 ROLLER = LINE._replace(
     shape=_roller_shape, near=_roller_near, ends=_roller_ends, faults=_roller_faults, found=_along_roller
 )
-WINDOW = ROLLER._replace(shape=_window_shape, faults=_window_faults, found=_nothing)
+WINDOW = ROLLER._replace(shape=_window_shape, ends=_window_ends, faults=_window_faults, found=_nothing)
