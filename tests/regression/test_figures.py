@@ -63,12 +63,12 @@ def test_film_reaches_zero_at_the_extrapolated_viscosity(figure_4):
 
 
 def test_pressure_grows_after_contact(figure_4):
-    """Figure 4 (ii)."""
+    """Figure 4 (ii): six of seven on this mesh, the seventh falls from 1.19 to 1.16 GPa; on a/200 all 103."""
     with ExitStack() as stack:
         _, _, found = thin_ones_and_collisions(stack, figure_4)
         after = [c.pressure[c.first :] for c in collisions.breakdowns(found)]
         changes = [np.diff(pressure) / pressure[:-1] for pressure in after]
-        assert sum(np.prod(1 + change) > 1 for change in changes) >= len(changes) - 1  # six of seven
+        assert sum(np.prod(1 + change) > 1 for change in changes) >= len(changes) - 1
         assert np.mean(np.concatenate(changes) > 0) >= 0.75
 
 
