@@ -20,6 +20,7 @@ class Inputs:
 
     inlet_film: float | None
     rests: bool = True
+    contact: str | None = None
 
 
 def test_attempts_that_fail_and_succeed_count_their_iterations(monkeypatch):
@@ -40,6 +41,23 @@ def test_attempts_that_fail_and_succeed_count_their_iterations(monkeypatch):
         attempts(None, None)
 
 
+def test_step_of_yielding_solids_counts_the_iterations_of_all_its_solves(monkeypatch):
+    """It fails, elastic solids are solved for, and it is solved from there."""
+    outcomes, seen = iter([SolveFailed("SNES", "DIVERGED", 5), ("elastic", 3), ("solved", 4)]), []
+
+    def solved(solver, guess, inputs, max_it, watch):
+        seen.append((guess, inputs.contact))
+        if isinstance(found := next(outcomes), SolveFailed):
+            raise found
+        return found
+
+    monkeypatch.setattr(convergence_check, "solve_checked", solved)
+    model = SimpleNamespace(elastic=lambda: "no yield")
+    solver = SimpleNamespace(problem=SimpleNamespace(model=model))
+    assert convergence_check.solve_step(solver, "guess", Inputs(None)) == ("solved", 12)
+    assert seen == [("guess", None), ("guess", "no yield"), ("elastic", None)]
+
+
 def test_gap_beyond_the_oil_at_rest_is_void(monkeypatch):
     """The oil of an inlet film of 2 fills half of a gap of 4; the solve itself is of a flooded contact."""
     seen, given = [], Unknowns(np.array([0.3, 0.1, -0.2]), np.array([1.0, 2.0, 4.0]), np.zeros(1))
@@ -48,7 +66,7 @@ def test_gap_beyond_the_oil_at_rest_is_void(monkeypatch):
         seen.append((guess.q.min(), inputs.inlet_film))
         return given._replace(q=np.array([0.5, 0.0, 0.0])), 4
 
-    model = SimpleNamespace(state=lambda q, w: SimpleNamespace(film=w))
+    model = SimpleNamespace(film=lambda q, w: w)
     solver = SimpleNamespace(problem=SimpleNamespace(model=model), solve=solve, residual=None, tolerance=1.0)
     solver.residual = lambda: None
     monkeypatch.setattr(convergence_check, "find_fault", lambda *_: None)

@@ -5,7 +5,7 @@ import pytest
 
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
-from ehlpetsc.elasticity.dry import dry_pressure
+from ehlpetsc.elasticity.dry import dry_pressure, project
 from ehlpetsc.elasticity.half_plane import deflection_kernel
 from ehlpetsc.run.forecast.explain import explain
 from ehlpetsc.run.simulation import Simulation
@@ -20,6 +20,13 @@ CONTACTS = {
     "roller": ({"radius": 0.01, "load": 200.0, "length": 1e-3, "free_ends": False}, {}),
 }
 RELIEF = 0.5  # gap of x^4 at the half-width of Hertz in a^2/R
+
+
+def test_projection_shifts_and_clips_to_the_sum():
+    p = np.array([5.0, 1.0, 0.0])
+    for limit, total, expected in ((np.inf, 2.0, [2.0, 0.0, 0.0]), (1.5, 2.0, [1.5, 0.5, 0.0])):
+        np.testing.assert_allclose(project(p, limit, total), expected, atol=1e-12)
+    np.testing.assert_allclose(project(-p, np.inf, 2.0), [0.0, 0.5, 1.5], atol=1e-12)
 
 
 def simulation(kind, **contact):

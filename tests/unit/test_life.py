@@ -18,7 +18,7 @@ from ehlpetsc.life.driver import _Life, check_case, line_of
 from ehlpetsc.life.history import LifeHistory, stored_or_new
 from ehlpetsc.life.jumps import Jumps
 from ehlpetsc.life.one_pass import NO_DEPTH, OfBody, deepest
-from ehlpetsc.life.positions import GOLDEN, Positions, number_of_positions, with_shift
+from ehlpetsc.life.positions import Positions, number_of_positions, with_shift
 from ehlpetsc.life.remarks import wear_lines
 from ehlpetsc.life.rounds import Round
 from ehlpetsc.physics.scales import Scales
@@ -473,7 +473,9 @@ def test_partners_drift_by_default_and_meet_in_no_former_position():
     assert case.time.pass_shift is None
     case = with_shift(case)
     scales = Scales.of(case)
-    assert case.time.pass_shift == pytest.approx((1.0 - GOLDEN) * scales.a)
+    assert case.time.pass_shift == pytest.approx(
+        0.5 * (3.0 - 5.0**0.5) * scales.a
+    )  # one less the golden fraction
     positions = Positions(case, scales)
     places = np.array([positions.places(number) for number in range(30)])
     gaps = np.diff(np.sort(places.ravel()))

@@ -8,6 +8,7 @@ from support import COARSE_LIFE
 from support.made_loads import Scene, write
 from support.made_results import save_life
 
+from ehlpetsc.base.errors import Stopped
 from ehlpetsc.case.loading import load
 from ehlpetsc.commands.life import main
 from ehlpetsc.life.body import LifeBody
@@ -48,6 +49,14 @@ def test_mean_and_bounds_over_lives_with_rows_at_different_passes():
     assert mean == pytest.approx([(0.1 + 0.2 + 0.2) / 3, (0.2 + 0.4 + 0.4) / 3, (0.3 + 0.6 + 0.6) / 3])
     assert (low <= mean).all() and (mean <= high).all() and high[1] == pytest.approx(0.4)
     assert band(lives, "friction")[1][0] == pytest.approx(0.05)
+
+
+def test_lives_that_are_stopped_before_they_begin_raise(tmp_path):
+    from mpi4py import MPI
+
+    speeds = {"series": {"key": "motion.entrainment_speed", "values": [1.0, 2.0]}}
+    with pytest.raises(Stopped):
+        run_lives(load(COARSE_LIFE, speeds), tmp_path / "l.life.h5", MPI.COMM_SELF, stop=lambda comm: True)
 
 
 def test_lives_of_an_index_are_printed_and_drawn_by_their_other_settings(tmp_path, capsys):

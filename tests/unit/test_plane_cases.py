@@ -4,6 +4,7 @@ import copy
 import math
 import re
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -225,6 +226,15 @@ def test_dry_load_grows_as_the_power_three_halves_of_the_approach():
     for radii in ((0.01, 0.01), (0.01, 0.08), (0.03, 0.004)):
         approach = hertz_ellipse(25.0, *radii, 2.2e11).approach
         assert hertz_load(approach, *radii, 2.2e11) == pytest.approx(25.0, rel=1e-12)
+
+
+def test_approach_of_a_part_of_the_load_is_that_of_hertz():
+    """Of an eighth a quarter, in the border's equation."""
+    problem = Simulation(load(DRY, {"mesh.points_per_half_width": 4})).stepper.problem
+    inputs = replace(problem.inputs(), load_share=0.125)
+    approach = APPROACH / problem.scales.h
+    residual = problem.balance.residual(np.array([-0.25 * approach]), np.zeros(1), inputs)
+    assert abs(residual[0]) < 1e-12 * approach
 
 
 def test_approach_that_balances_a_load_gives_this_load():
