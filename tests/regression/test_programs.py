@@ -12,6 +12,8 @@ import re
 import shutil
 import subprocess
 import sys
+import time
+from types import SimpleNamespace
 
 import numpy as np
 import petsc4py
@@ -35,6 +37,7 @@ from benchmarks import (
 from support import CASES, ROOT
 from support.made_results import make_result
 
+from ehlpetsc.__main__ import main as ehlpetsc_main
 from ehlpetsc.case.loading import members
 from ehlpetsc.life import ensemble
 from ehlpetsc.life.positions import Positions, with_shift
@@ -210,8 +213,8 @@ def test_fit_of_an_oil(capsys, monkeypatch, tmp_path):
     text = (CASES / "traction.toml").read_text().partition("[series]")[0]
     isothermal = re.sub(r"\[heat\].*\n.*\n", "", text).replace("[fluid]", '[fluid]\ntemperature = "60 degC"')
     (case := tmp_path / "discs.toml").write_text(isothermal)
-    rows = {"entrainment_speed": np.repeat([1.0, 4.0], 3), "slide_roll_ratio": np.tile([0.003, 0.03, 0.3], 2)}
-    made = fit_oil.Fit(case, rows | {"friction": np.zeros(6)}, 0.001, None)
+    rows = {"entrainment_speed": np.repeat([1.0, 4.0], 2), "slide_roll_ratio": np.tile([0.003, 0.1], 2)}
+    made = fit_oil.Fit(case, rows | {"friction": np.zeros(4)}, 0.001, None)
     rows["friction"] = made.friction(made.first * [1.2, 1.0, 1.0])
     (tmp_path / "data.csv").write_text(
         "# reading error: 0.001\nentrainment_speed,slide_roll_ratio,friction\n"
@@ -366,12 +369,33 @@ def test_speed_of_post_processing(capsys):
     assert histories == 2 * points > 0 and sought > 0
 
 
+def within(words, **_):
+    """A run of the program in this process, and its end as that of a process."""
+    words = [str(word) for word in words]
+    with contextlib.redirect_stdout(io.StringIO()):
+        status = ehlpetsc_main(words[words.index("ehlpetsc") + 1 :])
+    return SimpleNamespace(pid=os.getpid(), returncode=status, poll=lambda: status)
+
+
 @pytest.mark.slow
-def test_processes_and_endurance(capsys):
-    coarse = ["--set", "mesh.points_per_half_width=16", "--set", "time.travel=0.5"]
-    process_speed.main(coarse, repeats=1)
+def test_processes_and_endurance(capsys, monkeypatch):
+    """One process for the imports; the runs themselves begin with them done."""
+    usage, coarse = process_speed.usage, ["--set", "mesh.points_per_half_width=16"]
+
+    def used(words, output):
+        if words is process_speed.IMPORTS:
+            return usage(words, output)
+        begun = time.process_time()
+        assert within([*words, "--overwrite", "-o", output]).returncode == 0
+        return time.process_time() - begun, 1.0
+
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(process_speed, "usage", used)
+    process_speed.main([*coarse, "--set", "time.travel=0.5"], repeats=1)
     assert re.search(r"smooth steady, .* s of imports, \d+ MB\nrough, fields", capsys.readouterr().out)
+    monkeypatch.setattr(endurance.subprocess, "Popen", within)
     endurance.main(200)
+    assert 10.0 < endurance.memory(SimpleNamespace(pid=os.getpid())) < 1e5
     printed = capsys.readouterr().out
     assert printed.startswith("exit 0; ") and "200 steps of" in printed
     drift = float(re.search(r"oil content at equal phases: within (\S+),", printed)[1])
