@@ -1,8 +1,8 @@
 """Order of accuracy in time and space of film and temperatures: a ridge passes through a full film at 25 m/s.
 
 The scene of test_order.py with a slide/roll ratio of 0.5 and heat; norm: root mean square within
--1 <= x/a <= 0.5. In time successive steps are halved on a/128, of four nodes, two and one, in space
-successive meshes with 40 steps.
+-1 <= x/a <= 0.5. In time successive steps are halved, on a/32 of one node, a half and a quarter, on a/128 of
+eight, four and two, in space successive meshes with 40 steps.
 """
 
 import numpy as np
@@ -35,20 +35,32 @@ def solution(points, steps):
     return [v[inside] for v in (1e6 * scene.film, record.film, record.wall_1, record.wall_2)]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "setups",
-    [[(MESHES[-1], 2 * steps) for steps in STEPS], [(points, STEPS[0]) for points in MESHES]],
-    ids=["time", "space"],
-)
-def test_second_order(setups):
+def orders(setups):
+    """Changes of film and temperatures between successive solutions, their orders, and the mean film."""
     solutions = [solution(*setup) for setup in setups]
     pairs = list(zip(solutions, solutions[1:], strict=False))
     norms = [[np.sqrt(np.mean((a[k] - b[k]) ** 2)) for a, b in pairs] for k in range(4)]
-    assert norms[1][0] > 0.002  # K: there is something to converge
-    orders = [observed_order(differences) for differences in norms]
+    return np.array(norms), [observed_order(differences) for differences in norms], solutions[0][0].mean()
+
+
+@pytest.mark.slow
+def test_second_order_in_time():
+    """In steps of one node and less that of the film, in steps above one that of the temperatures.
+
+    Both have other differences of the steady film. Of the other quantities the orders are lower: of surface
+    temperatures in short steps 0.8, of the film in long ones, where it hardly changes, 1.4.
+    """
+    _, (of_film, *_), _ = orders([(MESHES[0], 2 * steps) for steps in STEPS])
+    norms, (_, *of_temperatures), film = orders([(MESHES[-1], steps) for steps in STEPS])
+    assert of_film >= 1.8
+    assert norms[1][0] > 0.004  # K: there is something to converge
     # where a temperature has an extreme along the path of the film its limiter is of first order
-    assert min(orders) >= 1.55, orders
-    in_time = len({points for points, _ in setups}) == 1
-    # in time the film changes by less than 1e-4 of itself, in the order of the temperatures
-    assert norms[0][0] < 1e-4 * solutions[0][0].mean() if in_time else orders[0] >= 1.8
+    assert min(of_temperatures) >= 1.55, of_temperatures
+    assert norms[0][1] < 1e-4 * film
+
+
+@pytest.mark.slow
+def test_second_order_in_space():
+    norms, (of_film, *of_temperatures), _ = orders([(points, STEPS[0]) for points in MESHES])
+    assert norms[1][0] > 0.004
+    assert of_film >= 1.8 and min(of_temperatures) >= 1.55
