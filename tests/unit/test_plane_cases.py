@@ -105,7 +105,7 @@ def test_explanation_of_points_strips_and_ridges():
     text = explain(load(copy.deepcopy(POINT)))
     assert "a point, radii 0.0095 m along, 0.0095 m across, load 20 N, reduced" in text
     assert "half-widths a = 0.107805 mm along, b = 0.107805 mm across" in text
-    assert "Expected smooth film (fit of computed points," in text
+    assert "Expected smooth film (fit of computed points to 10 %, of another oil to 13 %," in text
     assert "Mesh: 97 x 85 nodes from -2.5 to 1.5 a along, -1.75 to 1.75 b across" in text
     assert "Waves of surface 1: short_cutoff of 25 um: 5.6; " in text
     assert "Sa 0.02" in text and "memory: about" in text

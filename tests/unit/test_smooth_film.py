@@ -38,6 +38,8 @@ def test_films_of_points_are_within_a_tenth_of_computed_ones():
     for name, (low, high) in {"M": (20, 8000), "L": (2, 15), "ratio": (0.2, 10)}.items():
         assert stored[name].min() == low and stored[name].max() == high
     assert len(stored["M"]) > 80
+    for ratio, highest in ((0.2, 2500), (0.5, 8000), (1.0, 8000)):
+        assert stored["M"][stored["ratio"] == ratio].max() == highest
 
 
 def test_films_of_points_continue_beyond_their_range():

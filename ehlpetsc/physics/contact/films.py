@@ -137,11 +137,13 @@ def fitted_point_films(M: float, L: float, ratio: float) -> tuple[float, float]:
 
     with :math:`H_N` of :func:`nijenbanning_central_film` with the rigid limit :math:`H_{RI}` of
     :func:`brewe_rigid_film`. A fit of this program's own films (`cases/paper/data/point_films.csv`; M from 20
-    to 8,000, L from 2 to 15, :math:`R_y/R_x` from 0.2 to 10, at 0.2 and 0.5 M up to 700 and 2,500; Roelands'
-    law, Dowson and Higginson's density), within 8 and 10 % of each; 97 films of an oil of 18e-9/Pa and
-    z = 0.61 in place of 22e-9/Pa and 0.68 within 11 and 13 %, in the mean 5 and 4 %. Beyond, x, y and z keep
-    the values of the nearest M, L and ratio of this range. The minimum lies beside the contact, or behind
-    that of a wide ellipse, and falls to a tenth of the central film, where that of
+    to 8,000, L from 2 to 15, :math:`R_y/R_x` from 0.2 to 10, up to 4 GPa; at 0.2 M up to 700, for L = 2 up to
+    2,500, at 0.5 up to 2,500 and 8,000; Roelands' law, Dowson and Higginson's density), within 8 and 10 % of
+    each; 97 films of an oil of 18e-9/Pa and z = 0.61 in place of 22e-9/Pa and 0.68 within 11 and 13 %, in the
+    mean 5 and 4 %. Two films between, M = 2,500 at 0.2 and 8,000 at 0.5 with L = 5, are known to some 5 % and
+    met within 9 %; at 0.2 and M = 8,000 no mesh of a million nodes resolves the minimum film. Beyond, x, y
+    and z keep the values of the nearest M, L and ratio of this range. The minimum lies beside the contact, or
+    behind that of a wide ellipse, and falls to a tenth of the central film, where that of
     :func:`hamrock_dowson_films` is half of it.
 
     `ratio`: :math:`R_y/R_x`.

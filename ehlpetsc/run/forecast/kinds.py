@@ -295,7 +295,7 @@ LINE = Forecast(_line_shape, "Moes", _near_inlet, _line_rolling, _no_ends, _no_f
 STRIP = LINE._replace(shape=_strip_shape)
 POINT = Forecast(
     _point_shape,
-    "fit of computed points",
+    "fit of computed points to 10 %, of another oil to 13 %",
     _near_edges,
     _point_rolling,
     _no_ends,
