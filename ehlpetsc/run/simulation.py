@@ -325,9 +325,12 @@ class Simulation:
             yield None, {}
 
     def _solved(self, case: Case) -> Simulation:
-        """Simulation of another steady case on these ranks, solved."""
+        """Simulation of the steady case around this one, solved; a CaseError without a solution."""
         simulation = Simulation(case, self.comm, self._options)
-        simulation.advance()
+        try:
+            simulation.advance()
+        except NotConverged as error:
+            raise CaseError([f"{case.path}: the smooth {case.kind} beside the mesh: {error}"]) from error
         return simulation
 
     def _coarse_guess(self, watch: Watch) -> tuple[Unknowns, dict] | None:

@@ -158,3 +158,8 @@ def test_rough_roller_continues_from_a_restart_file_as_if_it_had_not_stopped(win
     assert notes == [] and last.step == whole.state.step == 4
     np.testing.assert_array_equal(last.pressure, whole.state.pressure)
     np.testing.assert_array_equal(last.film_thickness, whole.state.film_thickness)
+
+
+def test_window_of_a_roller_without_a_solution_is_refused_in_a_sentence():
+    with pytest.raises(CaseError, match="case: the smooth roller beside the mesh: steady start: .*MAX_IT"):
+        Simulation(load(tables(OIL, END, (8, 20))), options={"snes_max_it": 1})
