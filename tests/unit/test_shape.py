@@ -1,4 +1,4 @@
-"""Shapes of the undeformed solids: parabolas follow the radius over time, profiles do not."""
+"""Shapes of the undeformed solids under varying radii; rows advected along x; films in the middle."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -14,6 +14,8 @@ from ehlpetsc.physics.contact.shape import CYLINDER, STRAIGHT, Shape
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.first_guess import undeformed_gap
+from ehlpetsc.stepping.observables import mean_film
+from ehlpetsc.stepping.state import advected
 
 X, Y = np.linspace(-2.0, 1.5, 8), np.array([-3.0, 1.0, 4.0])
 
@@ -58,3 +60,21 @@ def test_profile_along_a_line_contact_deforms_like_the_radius_that_it_amounts_to
     away = np.abs(np.abs(scales.x) - 1.0 / 1.2) > 0.05  # two nodes from the edge, which is between nodes
     np.testing.assert_allclose((state.pressure / scales.p0)[away], hertz[away], atol=0.01)
     assert state.p_max / scales.p0 == pytest.approx(1.2, rel=1e-3)
+
+
+@pytest.mark.parametrize("nodes", (0.3, 2.7, -1.6, 4.0))
+def test_advected_rows_follow_a_cubic_exactly(nodes):
+    """That rises, so that no value is limited; the ends of the row are held."""
+    i, inside = np.arange(40.0), slice(8, 32)
+    moved = advected(np.stack([i**3, i**3 + 20.0 * i]), nodes)
+    at = i[inside] - nodes
+    np.testing.assert_allclose(moved[:, inside], [at**3, at**3 + 20.0 * at], rtol=1e-12)
+    assert moved[0].min() >= 0.0 and moved[0].max() <= 39.0**3
+
+
+def test_mean_film_is_that_of_the_middle_half_of_the_contact_of_the_instant():
+    x = np.linspace(-2.0, 2.0, 401)
+    grid = Grid((x,), (1e-6,), (1.0,), (CYLINDER,), 1.0)
+    for size in (1.0, 0.5):
+        film = mean_film(SimpleNamespace(grid=grid, h=2.0), np.abs(x), size, np.ones(401))
+        assert film == pytest.approx(2.0 * 0.25 * size, rel=0.03)
