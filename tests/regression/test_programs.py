@@ -241,7 +241,7 @@ def test_optical_films(capsys, monkeypatch, few, stored, tmp_path):
 def test_films_of_points(capsys, monkeypatch):
     monkeypatch.setattr(point_films, "GROUPS", ((20.0, 10.0),))
     monkeypatch.setattr(point_films, "MESHES", (8, 12))
-    point_films.main()
+    point_films.main([])
     coarse, fine, limit, formula, *_ = lines_of(capsys, "20, 10")[0]
     assert coarse < fine < limit and limit == pytest.approx(formula, rel=0.1)
 
