@@ -10,9 +10,8 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Refused, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Count
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.effect import Effect, Step
 from ehlpetsc.effects.scene import Scene
-from ehlpetsc.effects.step import Step
 from ehlpetsc.surfaces.motion.body_field import BodyField, BodyFields
 
 if TYPE_CHECKING:

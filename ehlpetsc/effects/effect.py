@@ -18,8 +18,22 @@ if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs
     from ehlpetsc.effects.scene import Scene
-    from ehlpetsc.effects.step import Step
+    from ehlpetsc.physics.operation import Conditions
     from ehlpetsc.physics.scales import Scales
+
+
+class Step(NamedTuple):
+    """End of a time step.
+
+    `time`: [s]
+    `dt`: length of the step [s]; None: the steady start.
+    `travelled`: distances travelled by surfaces 1 and 2 since time 0 [m].
+    """
+
+    time: float
+    dt: float | None
+    travelled: tuple
+    conditions: Conditions
 
 
 class NoRecord(NamedTuple):

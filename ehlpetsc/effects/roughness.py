@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ehlpetsc.effects.effect import Effect, NoRecord
-from ehlpetsc.effects.step import Step
+from ehlpetsc.effects.effect import Effect, NoRecord, Step
 
 if TYPE_CHECKING:
     from ehlpetsc.base.case import Case

@@ -11,9 +11,8 @@ import numpy as np
 
 from ehlpetsc.discretisation.contact.node_state import SurfaceLoads
 from ehlpetsc.discretisation.ehl_problem import EHLProblem
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.effect import Effect, Step
 from ehlpetsc.effects.scene import Scene
-from ehlpetsc.effects.step import Step
 from ehlpetsc.physics.film_formulas import smooth_films
 from ehlpetsc.physics.oil.laws import viscosity
 from ehlpetsc.physics.operation import Conditions

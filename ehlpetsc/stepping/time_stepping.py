@@ -18,9 +18,8 @@ from ehlpetsc.discretisation.ehl_problem import Solution
 from ehlpetsc.discretisation.film_history import FilmHistory, FilmLevels, film_history
 from ehlpetsc.discretisation.step_inputs import StepInputs, mirrored
 from ehlpetsc.discretisation.unknowns import Unknowns
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.effect import Effect, Step
 from ehlpetsc.effects.scene import Scene
-from ehlpetsc.effects.step import Step
 from ehlpetsc.nonlinear.options import ROUGHNESS
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.stepping.convergence_check import Solver, Watch, solve_step

@@ -9,8 +9,8 @@ from support import CASES
 
 from ehlpetsc.case.loading import load
 from ehlpetsc.effects.depths import PlasticDeformation, PlasticRecord, Wear, WearRecord
+from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.scene import Scene
-from ehlpetsc.effects.step import Step
 from ehlpetsc.physics import operation_of
 from ehlpetsc.physics.contact.grid import Grid
 from ehlpetsc.physics.contact.shape import CYLINDER, STRAIGHT, Shape

@@ -20,9 +20,8 @@ import numpy as np
 
 from ehlpetsc.base.declarations import Field, Key, KeyTable, Required, StepScalar, Values
 from ehlpetsc.base.quantities import AtEnd, Error
-from ehlpetsc.effects.effect import Effect
+from ehlpetsc.effects.effect import Effect, Step
 from ehlpetsc.effects.heat.record import MIN_TEMPERATURE_RISE, HeatRecord, interpolated, mixed_record
-from ehlpetsc.effects.step import Step
 
 if TYPE_CHECKING:
     from ehlpetsc.discretisation.ehl_problem import Solution, StepInputs

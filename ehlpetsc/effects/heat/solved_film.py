@@ -17,11 +17,11 @@ from ehlpetsc.discretisation.step_inputs import (
     shear_constants,
 )
 from ehlpetsc.discretisation.transport import carried, carried_with
+from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.heat.film import FilmHeat, cross_flow_heat, faces_in_rows
 from ehlpetsc.effects.heat.record import HeatRecord
 from ehlpetsc.effects.heat.transport import Film
 from ehlpetsc.effects.scene import Scene
-from ehlpetsc.effects.step import Step
 
 NO_EXCHANGE = 1.0  # m: gap of dry surfaces apart, which exchange no heat
 MAX_FLOW_RATIO = 2.0  # pressure flow next to direct contact, over that of the mean speed

@@ -13,6 +13,7 @@ from ehlpetsc.discretisation.step_inputs import (
     IsothermalOil,
     StepInputs,
 )
+from ehlpetsc.effects.effect import Step
 from ehlpetsc.effects.heat.film import FilmHeat, last_profile
 from ehlpetsc.effects.heat.film_law import R1, R2, SPREAD, T_MEAN, W1, W2, G
 from ehlpetsc.effects.heat.film_oil import film_law
@@ -27,7 +28,6 @@ from ehlpetsc.effects.heat.transport import (
     transport_in_rows,
 )
 from ehlpetsc.effects.scene import Scene
-from ehlpetsc.effects.step import Step
 from ehlpetsc.physics.flash_temperature import Solid
 
 MOLECULES = 1e-9  # m: films of one or two molecules of oil
