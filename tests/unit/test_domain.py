@@ -40,7 +40,10 @@ def test_cases_and_templates_have_no_domain_warning(tmp_path):
     for path in CASES.glob("*.toml"):
         case = load(path)
         found = domain_warnings(case, Scales.of(case)) + domain_faults(case, Scales.of(case))
-        assert found == [], path
+        if path.stem == "roller_end":  # its subject
+            assert len(found) == 1 and "contact reaches the end of the roller, y = -6 mm:" in found[0]
+        else:
+            assert found == [], path
     (tmp_path / "strip.toml").write_text(template("strip"))
     for path in [*CASES.glob("*.toml"), tmp_path / "strip.toml"]:
         assert of({}, path, strip_warnings) == []

@@ -53,7 +53,7 @@ def test_load_of_a_point_is_converted_and_xdmf_is_not_of_a_line():
     assert load(copy.deepcopy(POINT), {"contact.load": "2 kN"}).contact.load == 2000.0
     assert load(copy.deepcopy(STRIP), {"contact.load": "50 N/mm"}).contact.load == 5e4
     text = fault(tomllib.loads(template("line")), output__xdmf=True)
-    assert "output.xdmf: of strip, point and roller contacts, and this is a line" in text
+    assert "output.xdmf: of strip, point, roller and window contacts, and this is a line" in text
 
 
 WAVE = {"kind": "sine", "amplitude": 1e-8, "wavelength": 5e-5}
