@@ -21,6 +21,8 @@ class Inputs:
     inlet_film: float | None
     rests: bool = True
     contact: str | None = None
+    load_share: float = 1.0
+    leaks: bool = False
 
 
 def test_attempts_that_fail_and_succeed_count_their_iterations(monkeypatch):
@@ -39,6 +41,50 @@ def test_attempts_that_fail_and_succeed_count_their_iterations(monkeypatch):
     assert attempts.spent == 2 + 7 + 5 + 11
     with pytest.raises(NoSteadyStart, match="3 attempts and 25 Newton iterations; the last .* after 11"):
         attempts(None, None)
+
+
+def test_roughness_is_added_in_shares_to_the_smooth_solution(monkeypatch):
+    """Of the half, less where that fails and more where it does not, up to the whole of both."""
+    found = iter([None, "smooth", None, "first", "second", "third", "rough"])
+
+    class Attempt:
+        spent, seen = 9, []
+
+        def __call__(self, begin, inputs):
+            self.seen.append((begin, *inputs))
+            return next(found)
+
+    monkeypatch.setattr(steady_start, "easier", lambda inputs, *shares: shares)
+    monkeypatch.setattr(steady_start, "SolveAttempts", lambda *_: Attempt())
+    continuation = steady_start.Continuation(None, SimpleNamespace(phi=np.ones(1)))
+    assert continuation.solve("guess") == ("rough", 9)
+    begun, viscosity, roughness = zip(*Attempt.seen, strict=True)
+    assert begun == ("guess", "guess", "smooth", "smooth", "first", "second", "third")
+    assert roughness == pytest.approx((1.0, 0.0, 0.5, 0.2, 0.5, 0.95, 1.0))
+    assert viscosity == (1.0,) * 7
+
+
+def test_load_of_yielding_solids_increases_from_the_onset_to_the_whole(monkeypatch):
+    """By a fifth, and by half of that where it fails, once guesses of the whole load have failed."""
+    failed = (SolveFailed("SNES", "DIVERGED", 5),)
+    seen, outcomes = [], iter([*failed * 3, "first", "second", *failed, "third", "whole"])
+
+    def solved(solver, guess, inputs, max_it, watch):
+        seen.append((guess, inputs.load_share, inputs.leaks))
+        if isinstance(found := next(outcomes), SolveFailed):
+            raise found
+        return found, 4
+
+    monkeypatch.setattr(steady_start, "solve_checked", solved)
+    monkeypatch.setattr(steady_start, "bounded_start", lambda problem, film, inputs, width: width)
+    monkeypatch.setattr(steady_start, "hertz_start", lambda problem, film, inputs: "onset")
+    problem = SimpleNamespace(model=SimpleNamespace(yield_pressure=0.9))
+    solver = SimpleNamespace(problem=problem, start_iterations=lambda most: most)
+    assert steady_start.yielding_start(solver, 0.1, Inputs(None)) == ("whole", 4 * 5 + 4 * 4)
+    guesses, loads, leaks = zip(*seen, strict=True)
+    assert guesses == (0.2, 0.0, 0.2, "onset", "first", "second", "second", "third")
+    assert loads == pytest.approx((1, 1, 1, 0.648, 0.7776, 0.93312, 0.85536, 1))
+    assert leaks == (False, False, True) + (False,) * 5
 
 
 def test_step_of_yielding_solids_counts_the_iterations_of_all_its_solves(monkeypatch):

@@ -17,6 +17,7 @@ from ehlpetsc.physics.film_formulas import expected_film
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.run.simulation import Simulation
 from ehlpetsc.stepping.state import TimeLevel, advected, predict
+from ehlpetsc.stepping.steady_start import coarser
 from ehlpetsc.stepping.time_stepping import TimeStepping
 
 
@@ -46,6 +47,12 @@ def test_film_of_a_coarse_ramp_ends_as_that_of_a_fine_one_and_takes_a_few_of_its
     )
     assert at_begin > 0.05  # it falls by ten in each 1.3 half-widths
     assert at_end < 1e-3
+
+
+def test_coarser_mesh_has_half_of_the_nodes_along_and_across():
+    for given, halved in ((12, (6, None)), ([12, 10], (6, 5)), ([20, 7], (10, 3))):
+        mesh = coarser(load(tables("fine"), {"mesh.points_per_half_width": given})).mesh
+        assert (mesh.points_per_half_width, mesh.points_across) == halved
 
 
 def test_mesh_does_the_ramp_itself_where_the_coarser_one_has_no_solution(monkeypatch):

@@ -13,6 +13,7 @@ from ehlpetsc.physics.contact.geometry import Dry
 from ehlpetsc.physics.contact.roller import rows_across
 from ehlpetsc.physics.operation import Conditions, ConstantOperation
 from ehlpetsc.physics.scales import Scales
+from ehlpetsc.stepping.step_control import StepControl
 from ehlpetsc.stepping.time_stepping import next_step, ramp_time
 
 
@@ -59,3 +60,15 @@ def test_nodes_of_a_mesh_of_half_a_spacing_more_do_not_depend_on_where_it_begins
         CASES / "moes.toml", [f"mesh.inlet={inlet}", f"mesh.outlet={outlet}", "mesh.points_per_half_width=10"]
     )
     assert case.mesh.nodes == 42
+
+
+def test_levels_of_a_step_follow_the_error_of_the_one_before_within_bounds():
+    """By a factor of 0.9 times the cube root of what the tolerance allows, 0.2 to 2, to the longest step."""
+    control = StepControl(SimpleNamespace(tolerance=1e-3, courant=40.0, shortest=1.0), None)
+    for factor, levels in ((1.5, 15), (10.0, 20), (0.5, 5), (0.05, 2)):
+        error = control.tolerance * (0.9 / factor) ** 3
+        assert control.levels(10.0, error, 1.0) == levels
+        assert control.levels(10.0, error, 1.0, may_grow=False) == min(levels, 10)
+        assert control.levels(30.0, error, 1.0) == min(3 * levels, 40)
+        assert control.levels(1.0, error, 1.0) == max(levels // 10, 1)
+    assert control.levels(None, None, 1.0) == 1

@@ -71,6 +71,11 @@ def test_a_term_is_added_to_the_half_spaces(monkeypatch):
     assert both.softening(np.array([1.0, 4.0])) == pytest.approx(
         [1.0 + 2.0 * BODIES.shares[0], 1.0 + 0.5 * BODIES.shares[0]], rel=1e-15
     )
+    layered = alone._replace(is_homogeneous=False)
+    assert [one.plus(other).is_homogeneous for one, other in ((both, alone), (alone, layered))] == [
+        True,
+        False,
+    ]
 
 
 def test_free_ends_are_images_on_the_share_of_the_roller():

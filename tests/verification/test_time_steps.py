@@ -11,6 +11,7 @@ from ehlpetsc.run.checkpoint import load as load_checkpoint
 from ehlpetsc.run.checkpoint import save
 from ehlpetsc.run.forecast.validity import warnings
 from ehlpetsc.run.simulation import Simulation
+from ehlpetsc.stepping import time_stepping
 from ehlpetsc.stepping.step_control import film_error
 
 LINE = {
@@ -156,6 +157,38 @@ def test_the_history_of_a_rough_film_keeps_mass_and_is_positive(moved):
     # inside nothing is made or lost: the sum is that of what passes the ends
     assert change.sum() == pytest.approx(change_of_smooth.sum(), rel=1e-12)
     assert np.abs(change).sum() > 10.0 * abs(change.sum())
+
+
+@pytest.mark.parametrize("moved", [8.0, -8.0])
+def test_history_of_a_film_thin_at_every_other_node_is_positive(moved):
+    """By a thousand: no more leaves a node than it has, whatever its neighbours have."""
+    x = np.linspace(-3.0, 3.0, 301)
+    smooth = 0.2 + np.maximum(np.abs(x) - 1.0, 0.0) ** 1.5
+    m = (smooth * np.where((np.arange(301) % 2 > 0) & (np.abs(x) < 2.0), 1e-3, 1.0))[None]
+    levels = FilmLevels(m, m, 0.1, 0.1, moved, moved)
+    assert film_history(levels, True, smooth[None]).extrapolated.min() > 0.0
+
+
+@pytest.mark.parametrize("varies", [False, True])
+def test_rough_films_deviate_from_a_smooth_one_under_constant_conditions_alone(monkeypatch, varies):
+    """In steps of two nodes; the smooth film of the start is not that of later conditions."""
+    has_smooth = []
+
+    def history(levels, is_rough, smooth, has_one_speed):
+        has_smooth.append(smooth is not None)
+        return film_history(levels, is_rough, smooth, has_one_speed)
+
+    monkeypatch.setattr(time_stepping, "film_history", history)
+    wave = {"synthetic": {"kind": "sine", "amplitude": 5e-9, "wavelength": 43.7e-6}}
+    case = LINE | {"mesh": NEAR | {"points_per_half_width": 32}, "surface": {"1": wave}}
+    case |= {"time": {"courant": 2.0, "travel": 1.0, "start": "rough"}}
+    if varies:
+        del case["motion"]
+        case["operation"] = {"time": [0.0, 1e-3], "speed_1": [1.5, 1.2], "speed_2": [1.0, 1.0]}
+    simulation = Simulation(load(case))
+    for _ in range(3):
+        simulation.advance()
+    assert has_smooth[-2:] == [not varies] * 2
 
 
 def step_notes(courant: float, **changes: dict) -> list[str]:
