@@ -179,6 +179,9 @@ def test_steps_of_changing_conditions_and_the_travel_that_post_processing_needs(
     steady = case.load(CASES / "table1_smooth.toml", ())
     assert " unknowns, steady; 1 rank" in forecast.banner(steady, Scales.of(steady), None, 1)[1]
     assert starting(lines("fzg.toml"), "Time: ")[0].endswith("; 3170 steps")
+    cam = lines("cam.toml")  # steps by the error of the film, 382 in the run
+    assert starting(cam, "Time: ")[0].endswith("; at most 11308 steps")
+    assert "; result file: at most " in starting(cam, "Run time ")[0]
     short = {"time.travel": 3.0, "mesh.inlet": -2.5, "mesh.outlet": 1.5, "motion.slide_roll_ratio": 0.5}
     (line,) = starting(lines("table1_rough.toml", *of(short)), "Post-processing")
     assert "no point of either surface passes the whole mesh, 4 a" in line and "time.travel = 7 is" in line

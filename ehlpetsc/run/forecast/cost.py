@@ -105,6 +105,11 @@ def steps(case: Case, s: Scales) -> int:
     return operation_of(case, s).step_count(s.dt)
 
 
+def step_text(case: Case, s: Scales) -> str:
+    """Number of time steps in words: a bound where their length follows from an error."""
+    return f"{'at most ' * bool(case.time.tolerance)}{steps(case, s)} steps"
+
+
 def file_size(case: Case, s: Scales) -> float:
     """Expected size of the result file of a pass [bytes], in whole chunks; contact flags take nothing."""
     value = 8 if case.output.precision == "float64" else 4
@@ -175,8 +180,7 @@ def _part_in_contact(case: Case, s: Scales, profile: RoughSurface, reaches: floa
 
 def banner(case: Case, scales: Scales, rough: Roughness | None, ranks: int) -> list[str]:
     """Heading of a run in a few lines: title, size, surfaces."""
-    at_most = "at most " * bool(case.time and case.time.tolerance)
-    length = f"{at_most}{steps(case, scales)} steps" if case.time else "steady"
+    length = step_text(case, scales) if case.time else "steady"
     length += f" of {1e9 * scales.dt:.2f} ns" if case.time and not case.conditions else ""
     nodes, size = " x ".join(map(str, scales.grid.shape[::-1])), f"a = {1e3 * scales.a:.4f} mm"
     size += f", b = {1e3 * scales.b:.4f} mm" * math.isfinite(scales.b)

@@ -25,6 +25,7 @@ from ehlpetsc.run.forecast.cost import (
     lambda_line,
     memory,
     solver_of,
+    step_text,
     steps,
     surface_lines,
 )
@@ -180,7 +181,7 @@ def _variable(case: Case, s: Scales) -> list[str]:
         f"Motion: mean {range_of(table.entrainment, 'm/s')}; surface 1 {range_of(table.u1, 'm/s')}, "
         f"surface 2 {range_of(table.u2, 'm/s')}",
         f"Time: {1e3 * operation.duration:.4f} ms, the faster surface moves {moved:.3f} mm; "
-        f"{steps(case, s)} steps",
+        + step_text(case, s),
     ]
 
 
@@ -190,24 +191,25 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     nodes = " x ".join(map(str, s.grid.shape[::-1]))
     spacing = " x ".join(f"{1e6 * length:.3f}" for length in s.grid.spacings[::-1])
     extent = f"from {s.x[0]:g} to {s.x[-1]:g} a"
+    about = "at most" if case.time and case.time.tolerance else "about"
     if KINDS[case.kind].is_areal:
         strip, y = 0.5 * s.grid.breadth, s.grid.axes[0] * s.a / s.b
         low, high, unit = (-strip, strip, "a") if s.grid.periodic else (y[0], y[-1], "b")
         extent += f" along, {low:g} to {high:g} {unit} across"
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
-        f"Run time on one rank: {_time(case.kind, expected_work(case, s, rough))}; "
-        f"result file: about {1e-6 * file_size(case, s):.1f} MB{each}; "
+        f"Run time on one rank: {_time(case.kind, expected_work(case, s, rough), about)}; "
+        f"result file: {about} {1e-6 * file_size(case, s):.1f} MB{each}; "
         f"memory: about {1e-6 * memory(s, rough):.0f} MB",
     ]
 
 
-def _time(kind: str, amount: float) -> str:
+def _time(kind: str, amount: float, about: str = "about") -> str:
     """Expected time of an amount of work."""
     seconds = expected_seconds(solver_of(kind), amount)
     if seconds is None:
         return f"no estimate yet, the first run of a {solver_of(kind)} measures this machine"
-    return f"about {duration(seconds)}, as fast as the last runs here"
+    return f"{about} {duration(seconds)}, as fast as the last runs here"
 
 
 def _series(case: Case) -> list[str]:
