@@ -207,3 +207,20 @@ def test_exchanged_surfaces_with_exchanged_speeds_exchange_wear_and_damage(name,
         assert body.damaged_share(lives[0].done) == other.damaged_share(lives[1].done)
     rough, smooth = lives[0].bodies[0]
     assert smooth.damage.max() > 1.2 * rough.damage.max()  # bodies that differ are exchanged
+
+
+def test_each_row_of_a_strip_under_ridges_has_the_life_of_the_line(tmp_path):
+    """By a stress that has one value a point: the search for the worst plane has other planes in a strip."""
+    keys = {"surface.1.synthetic": {"kind": "sine", "amplitude": 0.2e-6, "wavelength": 40e-6}}
+    keys |= {"mesh.points_per_half_width": 8, "time.travel": 6.0, "petsc.snes_atol": 1e-12}
+    keys |= {"life.max_solved": 1, "life.damage_jump": 1.0, "post.depths": [0.0, 0.02, 0.1]}
+    keys |= {"post.criterion": "von-mises", "time.start": "smooth"}
+    line, strip = (
+        run_life(load(CASES / "wear_and_pits.toml", keys | width), tmp_path / f"{k}.life.h5", unresolved=True)
+        for k, width in enumerate(({}, {"mesh.width": 0.3}))
+    )
+    for alone, rows in zip(line.bodies[0], strip.bodies[0], strict=True):
+        assert rows.damage.shape[1] > 1
+        np.testing.assert_allclose(rows.wear, np.broadcast_to(alone.wear, rows.wear.shape), rtol=1e-9)
+        np.testing.assert_allclose(rows.damage - alone.damage[:, None], 0.0, atol=1e-9 * alone.damage.max())
+        assert alone.damage.max() > 0.0 and alone.volume == pytest.approx(rows.volume, rel=1e-9)
