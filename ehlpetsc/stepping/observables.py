@@ -91,7 +91,7 @@ class Observation:
     @cached_property
     def mean_shear(self) -> np.ndarray:
         """Mean shear stress of the film across its thickness at the nodes [Pa], along the sliding."""
-        fluid, s = self.scene.case.fluid, self.scene.scales
+        fluid, s = self.state.solution.inputs.fluid, self.scene.scales
         if fluid is None or self.film_shear is not None:
             return np.zeros(s.grid.n) if fluid is None else self.film_shear
         film = np.where(self.sheared > 0.0, self.film, 1.0)
@@ -105,7 +105,7 @@ class Observation:
 
     def _shear_stresses(self, axis: int, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Shear stress on both surfaces in the direction of an axis, by that component of the sliding's."""
-        fluid, oil = self.scene.case.fluid, self.loads.oil_pressure * self.scene.scales.p0
+        fluid, oil = self.state.solution.inputs.fluid, self.loads.oil_pressure * self.scene.scales.p0
         walls = self.solid_friction, self.gradient(axis), direction
         return shear_stresses(fluid, *walls, oil, self.film, self.sheared, self.mean_shear)
 

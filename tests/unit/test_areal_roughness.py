@@ -255,5 +255,5 @@ def test_a_longer_period_of_a_surface_extends_a_shorter_one():
     ],
 )
 def test_keys_of_maps_are_refused_in_a_line_contact(keys):
-    with pytest.raises(case.CaseError, match=r"surface\.1\.\S*(_across|direction|z): of strip, point and "):
+    with pytest.raises(case.CaseError, match=r"surface\.1\.\S*(_across|direction|z): of strip, point, "):
         case.load(CASES / "table1_rough.toml", [keys])

@@ -50,7 +50,8 @@ def observed(changes):
         oil_pressure=zero, friction_pressure=zero, film=zero + FILM / s.h, sheared_oil=full
     )
     nodes = SimpleNamespace(reynolds_unknown=part - 1.0)
-    solution = SimpleNamespace(loads=loads, nodes=nodes, inputs=SimpleNamespace(boundary_friction=0.0))
+    inputs = SimpleNamespace(boundary_friction=0.0, fluid=case.fluid)
+    solution = SimpleNamespace(loads=loads, nodes=nodes, inputs=inputs)
     scene = Scene(case, s, None, (0.0, 0.0))
     return Observation(scene, None, SimpleNamespace(solution=solution), s.conditions, None, 0.0)
 

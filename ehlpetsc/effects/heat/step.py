@@ -111,11 +111,11 @@ class HeatStep:
         rows = *balance, record.source, record.spread
         law = film_law(inputs.fluid, self.heat, self.thinnest)
         rubbed, _ = _rubbed(walls, responses, record.rubbing)
-        between, middle = np.ones(n), record.base.copy()
+        between, middle, sliding = np.ones(n), record.base.copy(), np.zeros(n)  # dry: no film is sheared
         if inputs.fluid is not None:
+            sliding = self.scales.across.slip(step.conditions).speed
             walls_apart = np.abs(record.wall_1 - record.wall_2)
             last_profile(record.profile, record.pressure, walls_apart, tuple(law), between, middle)
-        sliding = self.scales.across.slip(step.conditions).speed
         of_nodes = np.array((*rows, *rubbed, *responses, between, middle, record.base, sliding))
         guess = np.array((record.base, record.profile, record.film))
         oil = None if inputs.oil is None else IsothermalOil(inputs.fluid, self.scales)
