@@ -13,8 +13,8 @@ This flux damps waves that pass with the film in few steps. Roughness causes suc
 conditions the smooth steady film is known: its deviation from that follows the path, while the smooth film
 has the steady differences. The difference of both balances of the smooth film is a sum of fluxes through the
 faces, so that no mass is lost. A flux is reduced where the film is thinner than the smooth one, in their
-ratio: next to solids it would otherwise take more than is there. Roughness under conditions that vary follows
-the path as a whole, and a warning states its error.
+ratio: next to solids it would otherwise take more than is there. Where it would do so even then, it leaves a
+tenth. Roughness under conditions that vary follows the path as a whole, and a warning states its error.
 
 Rows of different speeds (:mod:`ehlpetsc.physics.speeds_across`) have the history at the nodes in steps of any
 length, and each its own flux.
@@ -24,6 +24,7 @@ length, and each its own flux.
 
 from __future__ import annotations
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +33,9 @@ from ehlpetsc.discretisation.finite_volumes import extrapolated
 from ehlpetsc.discretisation.transport import carried
 
 ONE_NODE = 1.02  # nodes of a step of one node where speeds change in it
+ROUNDING = 1e-9  # of the mass, by which that of the smooth film itself may differ from its own
+LEFT = 0.1  # of the mass of a cell from which more would flow than is there
+SWEEPS = 20  # over the cells, before what enters them is left out
 
 
 class FilmHistory:
@@ -148,6 +152,31 @@ def _of_smooth_film(smooth: np.ndarray, levels: FilmLevels, history: FilmHistory
     behind = np.concatenate((m[:, :1], m[:, :-1]), axis=1)
     outflow = distance * extrapolated(m.ravel(), behind.ravel(), 0.5).reshape(rows)
     fluxes = outflow - outflow[:, :1] - np.cumsum(along_path.reshape(rows), axis=1)
+    of_smooth = from_history.reshape(rows)
+    left = of_smooth - np.diff(fluxes, axis=1, prepend=0.0) - ROUNDING * of_smooth
+    least = np.minimum(left, LEFT * extrapolated_film)
     share = np.minimum(extrapolated_film / from_history.reshape(rows), 1.0)
     fluxes *= np.minimum(share, np.concatenate((share[:, 1:], share[:, -1:]), axis=1))
+    fluxes = _limited(fluxes, extrapolated_film, least)
     return np.diff(fluxes, axis=1, prepend=0.0)[:, turned].ravel()
+
+
+def _limited(fluxes: np.ndarray, m: np.ndarray, least: np.ndarray) -> np.ndarray:
+    """Fluxes that leave in each cell at least `least` of its mass `m`.
+
+    `fluxes`: through the faces behind the cells in the direction of the motion, shape (rows, nx). Those out
+    of a cell are reduced together, so that what enters a cell can only fall: neighbours are checked again,
+    and after some sweeps as if nothing entered, which ends.
+    """
+    part, out = np.ones_like(m), np.maximum(fluxes, 0.0)
+    out[:, 1:] += np.maximum(-fluxes[:, :-1], 0.0)
+    for sweep in itertools.count():
+        of_next = np.concatenate((part[:, 1:], part[:, -1:]), axis=1)
+        reduced = fluxes * np.where(fluxes > 0.0, part, of_next)
+        into = np.maximum(-reduced, 0.0)
+        into[:, 1:] += np.maximum(reduced[:, :-1], 0.0)
+        short = m + into - part * out < least - ROUNDING * m
+        if not short.any():
+            return reduced
+        entering = into[short] if sweep < SWEEPS else 0.0
+        part[short] = np.maximum(m[short] + entering - least[short], 0.0) / out[short]
