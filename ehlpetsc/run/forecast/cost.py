@@ -106,7 +106,7 @@ def steps(case: Case, s: Scales) -> int:
 
 
 def step_text(case: Case, s: Scales) -> str:
-    """Number of time steps in words: a bound where their length follows from an error."""
+    """Text of the number of time steps: a bound where their length follows from an error."""
     return f"{'at most ' * bool(case.time.tolerance)}{steps(case, s)} steps"
 
 
