@@ -104,6 +104,9 @@ class SpeedsAcross(NamedTuple):
 
     def slip(self, conditions: Conditions) -> Slip:
         """Sliding velocity at the nodes."""
+        if not self.varies:
+            n, sliding = len(self.y) * len(self.x), conditions.sliding
+            return Slip(np.full(n, abs(sliding)), np.full(n, np.sign(sliding)), np.zeros(n))
         along, across = np.meshgrid(self.sliding(conditions), -self.spin * self.x, indexing="ij")
         speed = np.hypot(along, across)
         moves = np.where(speed > 0.0, speed, 1.0)

@@ -82,8 +82,12 @@ class Observation:
         s, inputs = self.scene.scales, self.state.solution.inputs
         return inputs.boundary_friction * (self.loads.friction_pressure * s.p0)
 
-    def gradient(self, axis: int) -> np.ndarray:
-        """Gradient of the oil's pressure along an axis of the grid at the nodes [Pa/m]."""
+    @cached_property
+    def gradient(self) -> np.ndarray:
+        """Gradient of the oil's pressure along x at the nodes [Pa/m]."""
+        return self._gradient(-1)
+
+    def _gradient(self, axis: int) -> np.ndarray:
         s = self.scene.scales
         oil = s.grid.rows(self.loads.oil_pressure * s.p0)
         return np.gradient(oil, s.grid.spacings[axis], axis=axis).ravel()
@@ -95,7 +99,7 @@ class Observation:
         if fluid is None or self.film_shear is not None:
             return np.zeros(s.grid.n) if fluid is None else self.film_shear
         film = np.where(self.sheared > 0.0, self.film, 1.0)
-        nodes = self.loads.oil_pressure * s.p0, film, self.gradient(-1), self.slip.speed
+        nodes = self.loads.oil_pressure * s.p0, film, self.gradient, self.slip.speed
 
         def at(columns: slice) -> np.ndarray:
             oil, film, slope, speed = (s.grid.at_columns(values, columns) for values in nodes)
@@ -103,21 +107,21 @@ class Observation:
 
         return self.scene.over_columns(at).ravel()
 
-    def _shear_stresses(self, axis: int, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Shear stress on both surfaces in the direction of an axis, by that component of the sliding's."""
+    def _shear_stresses(self, gradient: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shear stress on both surfaces in a direction: by the oil's gradient, the sliding's part in it."""
         fluid, oil = self.state.solution.inputs.fluid, self.loads.oil_pressure * self.scene.scales.p0
-        walls = self.solid_friction, self.gradient(axis), direction
+        walls = self.solid_friction, gradient, direction
         return shear_stresses(fluid, *walls, oil, self.film, self.sheared, self.mean_shear)
 
     @cached_property
     def shear_stresses(self) -> tuple[np.ndarray, np.ndarray]:
         """Shear stress on surfaces 1 and 2 at the nodes [Pa]."""
-        return self._shear_stresses(-1, self.slip.along)
+        return self._shear_stresses(self.gradient, self.slip.along)
 
     @cached_property
     def shear_stresses_across(self) -> tuple[np.ndarray, np.ndarray]:
         """Shear stress across, in +y, on surfaces 1 and 2 at the nodes [Pa]."""
-        return self._shear_stresses(0, self.slip.across)
+        return self._shear_stresses(self._gradient(0), self.slip.across)
 
     @property
     def spin_moment(self) -> float:

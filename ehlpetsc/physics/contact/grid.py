@@ -77,15 +77,15 @@ class Grid:
     to_ends: tuple[int, int] = (0, 0)
     surroundings: Surroundings = NOTHING
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """Nodes along each axis."""
         return tuple(map(len, self.axes))
 
-    @property
+    @cached_property
     def n(self) -> int:
         """Number of nodes."""
-        return int(np.prod(self.shape))
+        return math.prod(self.shape)
 
     @property
     def x(self) -> np.ndarray:
