@@ -23,6 +23,8 @@ from ehlpetsc.base.errors import (
 )
 from ehlpetsc.base.version import __version__
 
+OF_SET = "key of the case, left out if VALUE is empty; may be repeated"
+
 
 class CommandParser(argparse.ArgumentParser):
     """Parser of ``ehlpetsc NAME``; errors are one line, exit status 2.
@@ -43,8 +45,7 @@ class CommandParser(argparse.ArgumentParser):
         if "output" in options:
             self.add_argument("-o", "--output", type=Path, metavar="FILE", help="text file [standard output]")
         if "set" in options:
-            key = "key of the case; may be repeated"
-            self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=key)
+            self.add_argument("--set", action="append", default=[], metavar="TABLE.KEY=VALUE", help=OF_SET)
         overwrites = "replace an existing file" if "overwrite" in options else argparse.SUPPRESS
         self.add_argument("--overwrite", action="store_true", help=overwrites)
         self.add_argument("--version", action="version", version=f"ehlpetsc {__version__}")

@@ -140,6 +140,8 @@ def parsed(override: object) -> tuple[list[str], Any]:
 def with_key(tables: Tables, keys: Sequence[str], value: object) -> Tables:
     """Nested tables with a key set, without it for None; ValueError: the parent of the key is not a table."""
     key, *below = keys
+    if value is None and key not in tables:
+        return tables
     if below:
         inner = tables.get(key, {})
         if not isinstance(inner, dict):

@@ -55,7 +55,8 @@ def load(
         a surface may be arrays, ``{"surface": {"1": {"x": x, "z": z}}}`` [m].
     overrides
         ``{"fluid.viscosity": 0.003}``, None removes the key; or ``table.key=value``, the value in TOML
-        syntax, otherwise text. An empty table, ``time={}``, leaves out a table that must have keys.
+        syntax, otherwise text. ``table.key=`` leaves out a key, ``time=`` a table; so does an empty table,
+        ``time={}``, where the table must have keys.
     laws, density_laws, shear_laws, effects
         Viscosity, density and shear laws by name, and effects, of your own. With their keys and quantities
         they are known to the process from then on; names of built-in ones are refused.
@@ -138,7 +139,7 @@ def _overridden(data: Tables, overrides: Overrides) -> tuple[Tables, list[Fault]
     for override in [items] if isinstance(items, str | int | float) else list(items):
         try:
             keys, value = parsed(override)
-            data = with_key(data, keys, None if _leaves_out(keys, value) else value)
+            data = with_key(data, keys, None if _leaves_out(override, keys, value) else value)
         except ValueError:
             one_line = " ".join(override.split()) if isinstance(override, str) else show(override)
             text = shortened(one_line)
@@ -146,10 +147,12 @@ def _overridden(data: Tables, overrides: Overrides) -> tuple[Tables, list[Fault]
     return data, faults
 
 
-def _leaves_out(keys: list[str], value: object) -> bool:
-    """Whether a value is an empty table in place of one that must have keys."""
-    key = key_of(".".join(keys)) if value == {} else None
-    return bool(key and key.table and check(key.table, {})[1])
+def _leaves_out(override: object, keys: list[str], value: object) -> bool:
+    """Whether an override is ``key=``, of a key of the case, or an empty table in place of one with keys."""
+    key = key_of(".".join(keys))
+    if key and isinstance(override, str) and not override.partition("=")[2].strip():
+        return True
+    return bool(value == {} and key and key.table and check(key.table, {})[1])
 
 
 def _series_faults(path: str | PathLike, folder: Path, data: Tables) -> list[str]:

@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from ehlpetsc.base.command_line import OF_SET
 from ehlpetsc.base.environment import other_mpi
 from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
 
@@ -46,8 +47,7 @@ def run_parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     of_output = "result file, also -o; the restart file beside it [CASE.h5 in this folder]"
     add("--output", metavar="FILE", help=of_output)
-    of_set = "key of the case; may be repeated"
-    add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help=of_set)
+    add("--set", metavar="TABLE.KEY=VALUE", action="append", default=[], help=OF_SET)
     add("--overwrite", action="store_true", help="replace the file of another or of an edited case")
     add("--restart", metavar="FILE", type=Path, help="continue from FILE and append to the result")
     limit = "stop after this wall clock time [none]"

@@ -133,6 +133,25 @@ def test_an_empty_table_leaves_out_one_that_must_have_keys():
     assert "contact is missing" in fault(SMOOTH, "contact={}")
 
 
+def test_an_override_without_a_value_leaves_out_a_key_or_table():
+    left_out = [
+        "fluid.eyring_stress=",
+        "contact.boundary_friction = ",
+        "time=",
+        "heat.bulk_temperature=",
+        "life=",
+    ]
+    c = case.load(ROUGH, ["life={}", "contact.boundary_friction=0.2", *left_out])
+    assert (c.fluid.eyring_stress, c.contact.boundary_friction) == (None, 0.1)
+    assert (c.time, c.heat, c.life) == (None, None, None)
+    assert case.load(SMOOTH, {"heat.bulk_temperature": None}).heat is None  # of a table that is not there
+    instead = ["contact.material=16MnCr5", "contact.youngs_modulus=", "contact.poisson_ratio="]
+    assert case.load(SMOOTH, instead).contact.youngs_modulus == (206e9, 206e9)
+    assert "title is missing" in fault(SMOOTH, "title=")
+    assert 'fluid.eyring = "": unknown key' in fault(SMOOTH, "fluid.eyring=")
+    assert case.load(SMOOTH, ["petsc.snes_monitor="]).petsc == {"snes_monitor": ""}
+
+
 def test_all_faults_of_a_case_and_needs_that_are_not_met_are_reported():
     given = "contact.radius=-1 fluid.viscosity=nan mesh.inlett=4 surface.1.file='nowhere.csv'".split()
     given += "surface.2.file='missing.csv' motion.entrainment_speed=0 nonsense".split()

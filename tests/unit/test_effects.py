@@ -26,7 +26,8 @@ PAGE = CASES / "own_laws.md"
 def folder(tmp_path):
     """Folder with the code of the page and its case."""
     codes = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    for name, text in zip(("my_oil", "my_density", "my_shear", "my_supply", "script"), codes, strict=True):
+    names = ("my_oil", "my_density", "my_shear", "my_supply", "starve", "my_module")
+    for name, text in zip(names, codes, strict=True):
         (tmp_path / f"{name}.py").write_text(text)
     shutil.copy(CASES / "table1_smooth.toml", tmp_path)
     return tmp_path
@@ -40,15 +41,15 @@ def call(folder, *words, **names):
 
 def test_law_and_effect_of_the_page_work_as_they_are(folder):
     """The supply falls by the loss of the key, the film with it; commands read the result by the variable."""
-    printed = call(folder, "script.py").rpartition("supply ")[2]
+    line = call(folder, "starve.py").splitlines()[-1]
+    assert line in PAGE.read_text()
+    printed = line.rpartition("supply ")[2]
     supply, film = map(float, re.findall(r"\d\.\d+", printed))
     assert supply == pytest.approx(0.7**2, rel=0.05)  # the faster surface travels 1.125 as far
     assert film < 0.995
-    own = "from my_oil import LAWS\nfrom my_supply import EFFECTS\n"
-    (folder / "both.py").write_text(own)
     words = "summary starved.h5", "plot starved.h5 --field oil", "keys starving"
     code = f"from ehlpetsc.__main__ import main\nfor line in {words}: assert main(line.split()) == 0"
-    printed = call(folder, "-c", code, EHLPETSC_OWN="both")
+    printed = call(folder, "-c", code, EHLPETSC_OWN="my_module")
     assert (
         "starved.h5," in printed and "\nstarved.oil.png\n" in printed and "loss: in a half-width" in printed
     )
