@@ -6,6 +6,7 @@ import pickle
 import re
 import struct
 import sys
+import zipfile
 from dataclasses import replace
 from types import ModuleType
 
@@ -203,6 +204,52 @@ def test_a_file_of_no_format_is_refused_in_one_sentence_whatever_readers_print(t
     with pytest.raises(ProfileError, match="^of no format that the installed SurfaceTopography"):
         read_map(path)
     assert capsys.readouterr().out == ""
+
+
+def keyence(files):
+    """Keyence's archive: a mark, the size of a picture, which is empty here, and a ZIP archive."""
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return b"KPK0" + bytes(4) + content.getvalue()
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_container_of_one_measurement_is_read(tmp_path, count):
+    optional("SurfaceTopography")
+    heights = np.rint(Z / 1e-10).astype("<i4")
+    units = (
+        f"<C><XYCalibration><MeterPerPixel>{DX}</MeterPerPixel></XYCalibration>"
+        "<ZCalibration><MeterPerUnit>1e-10</MeterPerUnit></ZCalibration></C>"
+    )
+    map_file = keyence(
+        {
+            "686613b8-27b5-4a29-8ffc-438c2780873e": units,
+            "4cdb0c75-5706-48cc-a9a1-adf395d609ae": np.array([60, 40, 4, 240], "<i4").tobytes()
+            + heights.tobytes(),
+        }
+    )
+    data = "<MeasurementData><Path>map</Path></MeasurementData>"
+    path = tmp_path / "lot.zag"
+    path.write_bytes(
+        keyence(
+            {
+                "f1724dc6-686c-4502-9227-2a594bc8ed33": (
+                    "<DeserializeDataMap><Item><Path>d/list</Path></Item></DeserializeDataMap>"
+                ),
+                "d/list": f"<MeasurementDataMap>{count * data}</MeasurementDataMap>",
+                "d/map/84b648d7-e44f-4909-ac11-0476720a67ff": map_file,
+            }
+        )
+    )
+    if count > 1:
+        with pytest.raises(ProfileError, match="^2 measurements in it; allowed: one; "):
+            read_map(path)
+        return
+    z, dx, dy, _ = read_map(path)
+    np.testing.assert_allclose(z, Z, rtol=0, atol=0.51e-10)
+    assert dx == pytest.approx(DX) and dy == pytest.approx(DX)
 
 
 def test_a_damaged_file_is_refused(tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ import functools
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -83,6 +83,22 @@ def _by_surface_topography(path: Path) -> Map | Trace:
         raise ProfileError(
             f"of no format that the installed SurfaceTopography reads; allowed: {allowed}"
         ) from None
+    return _in_metres(topography)
+
+
+def _by_container(path: Path) -> Map | Trace:
+    """The one measurement of a file that may have several."""
+    import SurfaceTopography
+
+    reader = SurfaceTopography.open_container(str(path))  # it closes the file when it is forgotten
+    measurements = reader.container()
+    if len(measurements) != 1:
+        raise ProfileError(f"{len(measurements)} measurements in it; allowed: one; export it by itself")
+    return _in_metres(measurements[0])
+
+
+def _in_metres(topography: Any) -> Map | Trace:
+    """Content of a SurfaceTopography's topography."""
     if topography.unit is None:
         raise ProfileError(f"no unit of length in it; allowed: {OTHERWISE}")
     topography = topography.to_unit("m")
@@ -108,6 +124,7 @@ class Format(NamedTuple):
 FORMATS = (
     Format((".smd", ".sdf", ".gsf"), _unknown),  # those of `read_softgauge`, by their first lines, are read
     Format(tuple(".npz .mat .xls .h5 .json .png .jpg .jpeg .bmp .vti".split()), None),
+    Format((".zag",), _by_container, "SurfaceTopography"),
     Format((), _by_surface_topography, "SurfaceTopography"),
 )
 
