@@ -47,7 +47,7 @@ def differences_of_primitive(n_x: int, n_y: int, dx: float, dy: float) -> np.nda
 
 
 def primitive(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """G of the module, odd in y."""
+    r"""Primitive G of the deflection, :math:`\partial_x^2\partial_yG=1/r`, odd in y."""
     x, side, y = np.abs(x), np.sign(y), np.abs(y)
     r = np.sqrt(x * x + y * y)
     safe_x, safe_y = np.where(x > 0.0, x, 1.0), np.where(y > 0.0, y, 1.0)

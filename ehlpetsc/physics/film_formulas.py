@@ -48,7 +48,7 @@ def film_on_mesh(case: Case, scales: Scales, inlet: float, half_width: float) ->
     """Share of the load that a flooded point contact carries outside a mesh; film on it over the flooded one.
 
     On the mesh the contact carries that load too: its film is that of a flooded contact under the load and
-    that outside, by :func:`load_outside`, parameters as there.
+    that outside, by :func:`load_outside`, which takes the same distances.
     """
     fluid, groups = case.fluid, (scales.R, scales.E, scales.extent)
 

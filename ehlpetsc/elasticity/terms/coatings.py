@@ -96,7 +96,7 @@ def short_waves(layer: Layer) -> float:
 
 
 def long_waves(layer: Layer) -> float:
-    """D(0) of the module: the compliance of long waves is that of the body."""
+    r"""What long waves, of the compliance of the body, have beyond short ones, :math:`1-\Phi_\infty`."""
     return 1.0 - short_waves(layer)
 
 
@@ -128,7 +128,7 @@ def interpolated(s: np.ndarray, values: np.ndarray) -> Function:
 
 
 def by_a_force(layer: Layer) -> Function:
-    """Deflection g of the module by the distance, without the part of :func:`short_waves`."""
+    r"""Deflection :math:`g(r)=\frac1t\int_0^\infty D(z)J_0(zr/t)\,dz` by a unit force at the distance r."""
     far, thickness = long_waves(layer), layer.thickness
 
     def rest(z: np.ndarray) -> np.ndarray:
@@ -139,7 +139,10 @@ def by_a_force(layer: Layer) -> Function:
 
 
 def by_a_line(layer: Layer) -> Function:
-    """Deflection g_1 of the module by the distance along x."""
+    r"""Deflection by a unit line force at the distance x.
+
+    :math:`g_1(x)=-D(0)\ln(x^2+t^2)+2\int_0^\infty[D(z)-D(0)e^{-z}]\cos(zx/t)\,dz/z`.
+    """
     far, thickness = long_waves(layer), layer.thickness
 
     def rest(z: np.ndarray) -> np.ndarray:

@@ -68,7 +68,10 @@ def beyond_middle(y: np.ndarray, length: float, straight: float) -> np.ndarray:
 def logarithmic(
     y: np.ndarray, length: float, height: float, drop: float = np.inf, straight: float = 0.0
 ) -> np.ndarray:
-    """Logarithmic profile of the module [m]; at most `MAX_GAP` without a drop."""
+    r"""Logarithmic profile :math:`A\ln[1/(1-k\,t^2)]` [m]; at most `MAX_GAP` without a drop.
+
+    `height`, `drop`, `straight`: A, the drop at the ends, the length of the straight middle [m].
+    """
     t = beyond_middle(y, length, straight)
     with np.errstate(divide="ignore"):
         return np.minimum(-height * np.log1p(np.expm1(-drop / height) * t * t), MAX_GAP)
