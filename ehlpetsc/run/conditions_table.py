@@ -43,10 +43,11 @@ class ConditionsTable:
         self.case, self.names, self.comm = case, names, comm
         rough = case.surface.body_1 or case.surface.body_2
         if case.fluid is None or rough or case.series or case.conditions is not None:
-            allowed = (
-                "smooth surfaces with oil under constant conditions; a layer of asperities may carry load"
-            )
-            raise CaseError([f"{case.path}: a table: allowed: {allowed}"])
+            needless = {"surface": rough, "series": case.series}
+            cures = [f"--set {name}=" for name, given in needless.items() if given]
+            allowed = "smooth surfaces with oil under constant conditions, also with contact.asperity_height"
+            cure = f"; to leave out the rest, add {' '.join(cures)}" if cures else ""
+            raise CaseError([f"{case.path}: a table: allowed: {allowed}{cure}"])
         self.scales = Scales.of(case)
         present = of_case(STEP_SCALARS, case)
         self.quantities = [name for name in QUANTITIES if name in present]

@@ -72,6 +72,12 @@ def test_ranges_without_sense_end_in_a_sentence(words, message, capsys):
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(("case", "cure"), [("traction", "--set series="), ("ball", "--set surface=")])
+def test_a_case_that_varies_or_is_rough_is_refused_with_what_to_leave_out(case, cure, capsys):
+    assert main(["table", str(CASES / f"{case}.toml"), "--speed", "1", "2"]) == 2
+    assert f"; to leave out the rest, add {cure}" in capsys.readouterr().err
+
+
 def test_files_that_are_no_table_are_kept(tmp_path, capsys):
     (tmp_path / "t.csv").write_text("x,z\n0,0\n")
     words = ["table", str(CASES / "traction.toml"), *ISOTHERMAL, *RANGES, "-o", str(tmp_path / "t.csv")]

@@ -31,6 +31,7 @@ PLAUSIBLE = {
     "1/min": {text: 2250.0 for text in ("2250 rpm", "37.5 rps", "37.5 Hz", "2250 1/min", "2250 /min")}
     | {"37.5 turn/s": 2250.0, "37.5 rev/s": 2250.0, "13500 deg/s": 2250.0, "10 rad/s": 300.0 / math.pi},
     "rad/s": {"300 rpm": 10.0 * math.pi, "20 rad/s": 20.0, "360 deg/s": 2.0 * math.pi},
+    "rad": {"0.5 mrad": 5e-4, "0.1 deg": math.pi / 1800.0},
     "degrees": {"20 deg": 20.0, "20\u00b0": 20.0, "0.5 rad": 90.0 / math.pi},
     "N m": {"302 Nm": 302.0, "302 N m": 302.0, "302e3 N mm": 302.0, "0.302 kNm": 302.0, "302e3 Nmm": 302.0},
     "m^2/N": {"1e-9 mm^3/Nm": 1e-18, "1e-9 mm^3/(N m)": 1e-18, "1e-12 mm2/N": 1e-18, "1 1/Pa": 1.0},

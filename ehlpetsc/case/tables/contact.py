@@ -151,7 +151,7 @@ KEYS = {
     ),
     "tilt": Key(
         "misalignment of a roller or point contact: slope of the gap across; it moves a point `-tilt Ry`",
-        *("", -0.1, 0.1),
+        *("rad", -0.1, 0.1),
         contacts=("point", *ROLLERS),
         needs=("contact.approach left out",),
         equation="`h = h00 + tilt y + g`, `g` the shapes and the elastic deflection",
