@@ -88,7 +88,7 @@ class Result(reader.Result):
         return figure
 
     def section(self, y: float = 0.0) -> Result:
-        """As of :class:`ehlpetsc.results.reader.Result`, with :meth:`plot`."""
+        """Section as that of :class:`ehlpetsc.results.reader.Result`, with :meth:`plot`."""
         return DrawnSection(self, y)
 
 

@@ -37,7 +37,7 @@ CHANGES: dict[str, dict[str, Any]] = {
     "46 W/(m K) of soft steel": {"heat.conductivity": 46.0},
     "isothermal": {"heat": None},
 }
-"""What moves the torque, with the changed keys."""
+"""Changed keys of the assumptions that the torque depends on, by their label."""
 
 
 class Raceway(NamedTuple):

@@ -90,7 +90,7 @@ CHANGES_OF_STRIPS: dict[str, dict[str, Any]] = {
     "8 nodes a wave": {"mesh.points_per_half_width": 10},
     "layer as stiff as by the border": {"contact.asperity_stiffness": None},
 }
-"""What moves friction, with the changed keys, on the coarser mesh."""
+"""Changed keys of the assumptions that friction depends on, by their label; on the coarser mesh."""
 
 
 class Point(NamedTuple):

@@ -57,7 +57,7 @@ class Line(NamedTuple):
 
 
 DIMPLES = (Dimple(7e-6, 15e-6), Dimple(1.3e-6, 26e-6), Dimple(0.175e-6, 20e-6))
-"""Of radius 15.5, 21.5 and 15.5 um: of the width at which measured lines leave the range of the optics."""
+"""Dimples of radius 15.5, 21.5 and 15.5 um, as wide as where measured lines leave the range of the optics."""
 
 
 def measured_line(dimple: Dimple, ratio: float) -> Line | None:

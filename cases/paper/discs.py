@@ -35,7 +35,7 @@ CHANGES: dict[str, dict[str, Any]] = {
     "Eyring stress constant over pressure": {"fluid.eyring_stress_pressure": 0.0},
     AS_SECOND_OIL: {"fluid.oil": SECOND_OIL},
 }
-"""What moves friction, with the changed keys."""
+"""Changed keys of the assumptions that friction depends on, by their label."""
 
 
 class Curve(NamedTuple):

@@ -29,11 +29,11 @@ class Scene(NamedTuple):
     passes: float = PASSES
 
     def limited(self) -> Scene:
-        """With an oil whose shear stress grows with the pressure, also at the asperities."""
+        """The scene with an oil whose shear stress is limited in proportion to the pressure."""
         return self._replace(label=f"{self.label}, limiting shear", settings=self.settings | LIMITED)
 
     def line(self) -> Scene:
-        """As ridges across the motion on a line contact, for a tenth of the cost."""
+        """The scene with ridges across the motion on a line contact, for a tenth of the cost."""
         settings = self.settings | {"mesh.width": None, "time.travel": 8.0}
         return self._replace(label=f"{self.label}, ridges", settings=settings)
 

@@ -28,7 +28,7 @@ RANGE = (0.06, 1.1)  # m/s, of the mean ratio: slower films scatter, faster ones
 
 SPEED_OF_CHANGES = 0.2122  # m/s
 CHANGES = {"26 degrees C": {"temperature": 26.0}, "oil m100": {"name": "m100"}}
-"""What moves a film of FVA 3, with the changed fields of :class:`Oil`."""
+"""Changed fields of :class:`Oil` that a film of FVA 3 depends on, by their label."""
 
 
 class Oil(NamedTuple):

@@ -44,7 +44,7 @@ CHANGES: dict[str, Callable[[Computed], list[str]]] = {
     "seeds 6, 7": lambda of: ["--seed", "3"],
     "border 79.9 um": lambda of: ["--border", "79.9e-6"],
 }
-"""What moves the share, with the changed arguments of :mod:`anisotropy`."""
+"""Changed arguments of :mod:`anisotropy` that the share depends on, by their label."""
 
 
 def exponential(b: float, c: float) -> Callable[[np.ndarray], np.ndarray]:

@@ -54,7 +54,7 @@ def settings(file: Path, nodes: int) -> dict[str, Any]:
 
 
 def figures(life: LifeHistory) -> Figures:
-    """Of the first pass of a life."""
+    """Maximum pressure, passes to failure and its depths in the first pass of a life."""
     bodies, worst = life.bodies[0], []
     for body in bodies:
         of_depth = body.damage_rate.max(axis=1)

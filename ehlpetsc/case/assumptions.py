@@ -1,4 +1,4 @@
-"""What each feature assumes of bodies, shape and motion; a case beyond it is refused in one sentence.
+"""Assumptions of each feature on bodies, shape and motion; a case beyond them is refused in one sentence.
 
 The discrete equations hold for any kernel, shape and motion. Features that compute with more - stresses below
 the surface, heat in the bodies, asperities by the modulus of their body - assume more. A feature states here
@@ -59,7 +59,7 @@ def departing_keys(case: Case, assumed: str = "") -> list[str]:
 
 
 class Departure(NamedTuple):
-    """What besides keys that say so departs from an assumption.
+    """Departure from an assumption that no single key declares.
 
     `of`: text of a case, "": nothing. `cure`: advice.
     """

@@ -37,7 +37,7 @@ class Fault(NamedTuple):
 
 
 class _Scope(NamedTuple):
-    """Of the check of a whole case: its tables, places of known faults, whether all tables are sound."""
+    """Scope of a check: tables of the whole case, places of known faults, whether all tables are sound."""
 
     root: Tables
     known: Collection[str]

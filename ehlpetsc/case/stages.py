@@ -134,7 +134,7 @@ def _with_load_file(case: Case, given: Tables) -> Case:
 
 
 def _checked_with_losses(folder: Path, given: Tables, kind: str, known: Collection[str]) -> Checked:
-    """As :func:`checked`, with bulk temperatures from the losses of the gears.
+    """Case checked as by :func:`checked`, with bulk temperatures from the losses of the gears.
 
     They are stored with the case, which then does not depend on how losses are computed.
     """

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def checked_with_surfaces(folder: Path, data: Tables, kind: str, known: Collection[str] = ()) -> Checked:
-    """As :func:`.stages.checked`, with the faults of the files or heights of both surfaces.
+    """Case checked as by :func:`.stages.checked`, with the faults of files or heights of both surfaces.
 
     Without a case, as other tables have faults, they are read alone, as profiles or maps.
     """

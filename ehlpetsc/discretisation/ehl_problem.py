@@ -72,7 +72,7 @@ class Sums(Protocol):
 
     @property
     def forces(self) -> np.ndarray:
-        """Of the border, see :mod:`.balance`."""
+        """Sums in the rows of the border, see :mod:`.balance`."""
 
 
 S = TypeVar("S", bound=Sums, contravariant=True)

@@ -80,7 +80,7 @@ class IsothermalOil:
         return self
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`Oil.fill`."""
+        """Fill the arrays as :meth:`Oil.fill` does."""
         nodal(q, h, self.viscosity, self.density, (*self.units, 1.0 / self.fluid.viscosity), at)
 
 

@@ -1,4 +1,4 @@
-"""What makes a gear pair impossible, and what its user should know."""
+"""Faults that make a gear pair impossible, and warnings to its user."""
 
 from __future__ import annotations
 

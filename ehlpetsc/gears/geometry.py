@@ -83,7 +83,7 @@ class GearPair:
 
     @property
     def play_free_centre_distance(self) -> float:
-        r"""Of the profile shift [m]: :math:`inv\,\alpha_w=inv\,\alpha_t+2\tan\alpha_n(x_1+x_2)/(z_1+z_2)`."""
+        r"""Centre distance by :math:`inv\,\alpha_w=inv\,\alpha_t+2\tan\alpha_n(x_1+x_2)/(z_1+z_2)` [m]."""
         tangent = math.tan(math.radians(self.pressure_angle))
         if sum(self.teeth) == 0:  # a ring with the teeth of its pinion
             return math.nan

@@ -180,7 +180,7 @@ class LifeBody(NamedTuple):
 
     @property
     def largest_damage(self) -> float:
-        """Of the cells that are not gone."""
+        """Largest damage of the cells that have not broken out."""
         return float(np.max(self.damage, initial=0.0, where=self.is_there))
 
     def columns_within(self, stretch: tuple[float, float]) -> np.ndarray:

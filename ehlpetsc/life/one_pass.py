@@ -169,7 +169,7 @@ def _job(prepared: Prepared, settings: tuple[str, ...] = ()) -> Job:
 
 
 def _of_criterion(found: dict[str, T], side: str) -> T:
-    """Of results by the name of the damage, that by the criterion of the case, beside the default one."""
+    """Result of a surface by the criterion of the case, among results by the name of the damage."""
     return found.get(f"criteria/fatemi_socie/{side}_damage", found[f"damage/{side}"])
 
 

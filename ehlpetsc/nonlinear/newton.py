@@ -36,7 +36,7 @@ REJECTED_STEP = (
 
 
 class Phase(Enum):
-    """Where a solver is: no solve runs, before and after the first residual of one, after one that failed.
+    """State of a solver: idle, before or after the first residual of a solve, or after one that failed.
 
     The first residual of a solve is that of its guess, which is evaluated already. After a solve PETSc's
     objects count as failed until its solution is accepted: they keep a failed factorisation and are then

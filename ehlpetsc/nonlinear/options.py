@@ -160,7 +160,7 @@ def line_solver(wanted: dict) -> dict:
 
 
 def plane_solver(wanted: dict) -> dict:
-    """As :func:`line_solver`, in the plane, whose preconditioner is that of this program alone."""
+    """Options as of :func:`line_solver` for the plane, whose preconditioner is that of this program alone."""
     for name in ("pc_type", "pc_python_type"):
         if wanted.get(name, PLANE[name]) != PLANE[name]:
             own = "a contact in the plane has a preconditioner of its own; leave it out"
@@ -169,7 +169,7 @@ def plane_solver(wanted: dict) -> dict:
 
 
 def roller_solver(wanted: dict) -> dict:
-    """As :func:`plane_solver`, of meshes of many rows, whose first solve takes some 60 iterations.
+    """Options as of :func:`plane_solver` for meshes of many rows, whose first solve takes some 60 iterations.
 
     GMRES then has a basis of 4 kB a node if it stores the preconditioned vectors too, else of 2 kB.
     """

@@ -78,7 +78,7 @@ def solve_checked(
 def solve_step(
     solver: Solver, guess: Unknowns, inputs: StepInputs, watch: Watch = None, max_it: int | None = None
 ) -> tuple[Unknowns, int]:
-    """As :func:`solve_checked`; of yielding solids, on failure, from the solution of elastic ones."""
+    """Solution as of :func:`solve_checked`; of yielding solids, on failure, from that of elastic ones."""
     elastic = solver.problem.model.elastic()
     try:
         return solve_checked(solver, guess, inputs, max_it, watch)

@@ -84,7 +84,7 @@ def steady(
 def flooded_start(
     solver: Solver, film: float, inputs: StepInputs, watch: Watch = None, max_it: int | None = None
 ) -> tuple[Unknowns, int]:
-    """As :func:`steady`, flooded or dry; a film thinner than a layer by :func:`from_higher_speeds`."""
+    """Start as of :func:`steady`, flooded or dry; a film below the layer by :func:`from_higher_speeds`."""
     problem, spent = solver.problem, 0
     if problem.fluid is not None and not inputs.rests and film < problem.model.touching_film:
         quick = SolveAttempts(solver, NEAR_ITERATIONS, watch)
@@ -132,12 +132,12 @@ def from_higher_speeds(attempt: SolveAttempts, film: float, inputs: StepInputs) 
 def yielding_start(
     solver: Solver, film: float, inputs: StepInputs, watch: Watch = None
 ) -> tuple[Unknowns, int]:
-    """As :func:`steady`, of solids that yield at the Hertz pressure, from the dry contact.
+    """Start as of :func:`steady` for solids that yield at the Hertz pressure, from the dry contact.
 
-    From the Hertz pressure all nodes in
-    contact would yield at once, and a pressure at its bound everywhere does not depend on the load. Most
-    films need smoothed edges of the flat pressure; thin films far above the yield pressure do not. For thick
-    films the load is increased from the onset of yielding.
+    From the Hertz pressure all nodes in contact would yield at once, and a pressure at its bound
+    everywhere does not depend on the load. Most films need smoothed edges of the flat pressure; thin
+    films far above the yield pressure do not. For thick films the load is increased from the onset of
+    yielding.
     """
     problem, quick = solver.problem, SolveAttempts(solver, QUICK_ITERATIONS, watch)
     for width in (SMOOTHING, 0.0):

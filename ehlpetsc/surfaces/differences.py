@@ -89,7 +89,7 @@ def displacement(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, float]:
 
 
 class Wear(NamedTuple):
-    """What a difference of two maps has lost and gained, against its unchanged level.
+    """Volume lost and gained between two maps, against their unchanged level.
 
     `volume`, `area`: of the places worn deeper than `limit` [m^3], [m^2].
     `depth`: the largest [m].

@@ -23,7 +23,7 @@ def smallest_film(contact: Contact, scales: Scales) -> float:
 
 
 def face_gap(contact: Contact) -> FaceGap:
-    """What solids that are near leave open at a face: in direct contact faces leak, see `finite_volumes`."""
+    """Gap at a face between solids that are near; in direct contact faces leak, see `finite_volumes`."""
     return FaceGap(contact.asperity_height or 0.0, contact.model == "direct")
 
 

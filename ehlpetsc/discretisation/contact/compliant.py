@@ -98,7 +98,7 @@ class CompliantContact(SeparatedContact):
         return found
 
     def _solids_around(self, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """As of :meth:`_solids`; of a window whose local nodes are known, only those of other ranks."""
+        """Values as of :meth:`_solids`; known local nodes are kept, and those of other ranks computed."""
         for local, known in self._known.values():
             beside = w.size - local.size
             for first in {0, beside // 2, beside} if 0 < beside < local.size else ():

@@ -18,7 +18,7 @@ def full_of_oil(q: np.ndarray) -> np.ndarray:
 
 
 class FaceGap(NamedTuple):
-    """What solids that are near leave open at a face, last constants of :func:`.finite_volumes.flux_through`.
+    """Gap at a face between solids that are near, last constants of :func:`.finite_volumes.flux_through`.
 
     `layer`: rms height of a compliant layer [m], 0 without one.
     `leaks`: whether a face next to a closed node has the mean film of both nodes.

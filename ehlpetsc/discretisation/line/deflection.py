@@ -81,7 +81,7 @@ class PressureSums(NamedTuple):
 
     @property
     def forces(self) -> np.ndarray:
-        """Of the border, see :mod:`ehlpetsc.discretisation.balance`."""
+        """Sums in the rows of the border, see :mod:`ehlpetsc.discretisation.balance`."""
         return self.load[2:]
 
 

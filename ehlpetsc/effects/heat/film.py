@@ -97,7 +97,7 @@ class FilmHeat(NamedTuple):
         return SolvedFilm(*self._replace(guess=self.guess.copy()))
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`.step_inputs.Oil.fill`, from `guess`."""
+        """Fill the arrays as :meth:`.step_inputs.Oil.fill` does, from `guess`."""
         self.begin().fill(q, h, nodes, at)
 
     def with_rows(self, rows: Iterable[int], values: Iterable[np.ndarray]) -> FilmHeat:
@@ -112,7 +112,7 @@ class SolvedFilm(FilmHeat):
     """Oil of one solve: its `guess` becomes the state of the film at the nodes last filled in."""
 
     def fill(self, q: np.ndarray, h: np.ndarray, nodes: slice | np.ndarray, at: np.ndarray) -> None:
-        """As :meth:`.step_inputs.Oil.fill`; changes `guess`."""
+        """Fill the arrays as :meth:`.step_inputs.Oil.fill` does; changes `guess`."""
         state, of_nodes = (np.ascontiguousarray(rows[:, nodes]) for rows in (self.guess, self.of_nodes))
         oil = self.isothermal
         heated_nodal(q, h, oil.density, oil.units, tuple(self.law), of_nodes, state, at)

@@ -96,7 +96,7 @@ def short_waves(layer: Layer) -> float:
 
 
 def long_waves(layer: Layer) -> float:
-    r"""What long waves, of the compliance of the body, have beyond short ones, :math:`1-\Phi_\infty`."""
+    r"""Compliance of long waves, that of the body, beyond that of short ones, :math:`1-\Phi_\infty`."""
     return 1.0 - short_waves(layer)
 
 
@@ -192,7 +192,7 @@ def hats(n: int, step: float, thickness: float) -> tuple[np.ndarray, np.ndarray]
 
 
 def boxes(n: int, step: float, thickness: float) -> tuple[np.ndarray, np.ndarray]:
-    """As :func:`hats`, of constants over the cells of the nodes."""
+    """Deflections as of :func:`hats`, by pressures constant over the cells of the nodes."""
     points, weights = panels(np.concatenate([[0.0], (np.arange(n) + 0.5) * step]), thickness)
     of_nodes = weights * (np.rint(points / step) == np.arange(n)[:, None])
     of_nodes[0] *= 2.0
@@ -200,7 +200,7 @@ def boxes(n: int, step: float, thickness: float) -> tuple[np.ndarray, np.ndarray
 
 
 def periodic_cells(layer: Layer, mesh: Mesh) -> np.ndarray:
-    """As :func:`free_cells`, summed over all periods across."""
+    """Deflections as of :func:`free_cells`, summed over all periods across."""
     (n_y, n_x), (dy, dx) = mesh.shape, mesh.spacings
     thickness, period, rows, kernel = layer.thickness, n_y * dy, np.arange(n_y), np.zeros((n_y, n_x))
     if thickness < THICK * period:

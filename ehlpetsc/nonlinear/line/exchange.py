@@ -30,7 +30,7 @@ HANDLES = {4: ctypes.c_int, 8: ctypes.c_size_t}  # numbers of MPICH, addresses o
 
 
 class Halo(NamedTuple):
-    """What a rank exchanges with others.
+    """Buffers of the exchange of a rank with others.
 
     `place`: :func:`collective` and the rank.
     `buffers`: `load_weights` of `deflection.Deflection`; messages, shape (ranks, size); unknowns of the
@@ -126,7 +126,7 @@ def exchange_unknowns(place: tuple, buffers: tuple, matrices: tuple, room: tuple
 
 
 def collective(ranks: MPI.Comm) -> tuple:
-    """What :func:`exchange` takes of a communicator, which must outlive it: addresses and arguments for MPI.
+    """Addresses and arguments of MPI for :func:`exchange`, of a communicator that must outlive it.
 
     As all that compiled functions are called with, arrays and plain tuples of four arrays at most: numba asks
     Python for the types of longer ones and for the class of named ones at every call, 50 microseconds.

@@ -57,7 +57,7 @@ def node_pairs(
 def by_pairs(
     state: tuple, depth: tuple, compliance: float, derivatives: np.ndarray, stencil: np.ndarray
 ) -> tuple:
-    """As :func:`node_pairs`; arguments of :func:`choose_pairs`."""
+    """Rows as of :func:`node_pairs`, from the arguments of :func:`choose_pairs`."""
     n = len(state[0])
     deflection, unknowns = np.empty((3, n)), np.empty((2, n, 2))
     has_film, rows, out = np.empty(n, dtype=np.bool_), np.empty((3, n)), np.empty_like(derivatives)

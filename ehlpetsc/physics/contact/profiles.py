@@ -31,7 +31,7 @@ MAX_GAP = 200e-6  # m: in place of the infinite drop of a logarithm, far from an
 
 
 class Design(NamedTuple):
-    """What a profile is designed for: length [m], load [N], radius [m], E' [Pa]."""
+    """Design values of a profile: length [m], load [N], radius [m], E' [Pa]."""
 
     length: float
     load: float

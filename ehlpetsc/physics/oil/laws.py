@@ -133,7 +133,7 @@ def _modulus(fluid: FluidValues, heat: Values | None) -> tuple[float, ...]:
 
 
 def _complete_modulus(fluid: FluidValues) -> dict[str, float]:
-    """As :func:`_complete_with_slope`; D + T and the modulus are positive by constants of T in K."""
+    """Values as of :func:`_complete_with_slope`; refuse constants that are not those of T in K."""
     values = _complete_with_slope(fluid)
     T = reference_temperature(fluid)
     if fluid.modulus_d + T < MIN_ABOVE_POLE:

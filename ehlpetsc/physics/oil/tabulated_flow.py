@@ -268,7 +268,7 @@ def tabulated_mobilities(
     slip: float,
     table: np.ndarray,
 ) -> tuple[tuple, tuple]:
-    """As :func:`.rheology.mobilities`, of a law with a table by :func:`flow_table`."""
+    """Mobilities as of :func:`.rheology.mobilities`, for a law with a table by :func:`flow_table`."""
     if h <= 0.0:
         return NO_FLOW, NO_FLOW
     last, over_h, cube = unsigned(table.shape[0] - 1), 1.0 / h, h * h * h / 12.0

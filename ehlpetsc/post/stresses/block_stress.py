@@ -63,8 +63,9 @@ def _far_weights(offset: float) -> np.ndarray:
 
 
 def _far(hats: np.ndarray, offset: float) -> np.ndarray:
-    """As `_near` where kernels are smooth over an element, from those of hats at the nodes, `HAT_REACH` more
-    at each end.
+    """Kernels as of `_near` where they are smooth over an element, from those of hats at the nodes.
+
+    `hats`: kernels of the hats, `HAT_REACH` more at each end.
     """
     windows = sliding_window_view(hats, 2 * HAT_REACH + 1, axis=-1)
     return np.moveaxis(windows @ _far_weights(offset)[:, ::-1].T, -1, 0)

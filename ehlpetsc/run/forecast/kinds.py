@@ -1,4 +1,4 @@
-"""What is said before a run by kind of contact: its shape, what its mesh leaves outside, its ends."""
+"""Notes and faults before a run by kind of contact: its shape, its ends, and oil outside its mesh."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ def _roller_faults(case: Case, scales: Scales) -> list[str]:
 
 
 def _window_ends(case: Case, scales: Scales) -> list[str]:
-    """As :func:`_roller_ends` of the rows of a window, and of the smooth roller where those have no film."""
+    """Notes as of :func:`_roller_ends` on the rows of a window, and of the smooth roller without a film."""
     notes = _roller_ends(case, scales)
     if case.fluid is None:
         return notes
