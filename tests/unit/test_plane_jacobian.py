@@ -21,6 +21,7 @@ from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.plane import step_limit
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
+from ehlpetsc.nonlinear.plane.gmres import Basis
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
 from ehlpetsc.nonlinear.plane.reduction import BOUND
@@ -131,6 +132,33 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name, complete)
     residual = b.duplicate()
     system.operator.mult(x, residual)
     assert (residual - b).norm() < 1.01e-6 * b.norm()
+
+
+@pytest.mark.parametrize("name", ("layer", "direct", "dry"))
+def test_krylov_iterations_in_the_plane_equal_those_of_petsc(name):
+    """With orthonormal vectors of single precision, of double where the tolerance is low."""
+    system, state, inputs = scene(name)
+    is_dry = system.problem.fluid is None
+    found, b = [], np.random.default_rng(2).standard_normal(len(system.x.array))
+    for of_call in ({}, {"ksp_type": "fgmres"}):
+        solver = NewtonSolver(system, RunOptions(of_call=of_call, kind="point", is_dry=is_dry))
+        system.set_initial_guess(state, inputs)
+        system.linearise(system.x)
+        system.operator.assemble()
+        ksp, right, x = solver.snes.ksp, system.x.duplicate(), system.x.duplicate()
+        ksp.setOperators(system.operator)
+        right.array[:] = b
+        ksp.setConvergenceHistory()
+        ksp.solve(right, x)
+        found.append(ksp.getConvergenceHistory())
+        residual = system.x.duplicate()
+        system.operator.mult(x, residual)
+        assert (residual - right).norm() == pytest.approx(found[-1][-1], rel=1e-3)
+    mine, petscs = found
+    assert len(mine) == len(petscs) > 4
+    np.testing.assert_allclose(mine, petscs, rtol=1e-3)
+    basis = Basis(system.jacobian, 3)
+    assert (basis.vectors.itemsize, basis.changes.itemsize) == (8 if is_dry else 4, 8)
 
 
 @pytest.mark.parametrize(("name", "value"), [("pc_type", "lu"), ("pc_python_type", "own.Preconditioner")])

@@ -32,6 +32,9 @@ class FilmElimination(Protocol):
     def prepare(self, operator: PlaneJacobian) -> None:
         """Prepare for the state of an operator."""
 
+    def precision(self, operator: PlaneJacobian) -> type:
+        """Precision that serves for the linear tolerance of an operator."""
+
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side."""
 

@@ -256,6 +256,10 @@ class Elimination:
         left = reynolds - p.reynolds.product(sparse.by, changes, p.owned.start)
         return changes[p.owned, 0], changes[p.owned, 1], left
 
+    def precision(self, operator: PlaneJacobian) -> type:
+        """Precision that serves; where incomplete factors break down, single precision may overflow."""
+        return np.float64 if self.factors.sparse.is_complete else precision_of(operator)
+
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Local unknowns for a local right-hand side, with those of the border: films, pressures, border."""
         p, exchange = self.problem, operator.exchange
