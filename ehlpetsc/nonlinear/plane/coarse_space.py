@@ -20,12 +20,14 @@ from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csr_matrix, kron
 
 from ehlpetsc.base.compiled import compiled
+from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
 from ehlpetsc.discretisation.unknowns import Share
 from ehlpetsc.nonlinear.ranks import global_sum
 
 # Between coarse nodes along the longer side of a mesh of up to OF_NODES; on finer ones they grow as the root
 # of the nodes: more waves are too long for the incomplete factorisation, and each iteration costs more.
 INTERVALS, OF_NODES = 24, 129
+BLOCK = 8192  # nodes whose rows are restricted at a time
 
 
 def linear_functions(n: int, spacing: int, periodic: bool) -> csr_matrix:
@@ -56,17 +58,29 @@ class CoarseSpace:
         )
         self.functions = kron(across, along).tocsr().astype(np.float32)
         self.counts = across.shape[1], along.shape[1]
-        self.deflections = self._deflections(kernel).astype(np.float32)
+        deflections = self._deflections(kernel)
+        self.deflections = deflections.astype(np.float32)
+        self.convolution = Convolution(deflections, False, Transposition())
 
     def reaches(self, mask: np.ndarray) -> bool:
         """Whether a coarse node is in a mask of nodes."""
         return bool(mask.reshape(self.shape)[:: self.spacing, :: self.spacing].any())
 
-    def matrix(self, stencils: np.ndarray, local: slice) -> csr_matrix:
-        """Matrix of rows of coefficients of the nodes i-2 .. i+1, below and above, (local nodes, 6)."""
-        (n_y, n_x), i = self.shape, np.arange(local.start, local.stop)
-        near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % (n_y * n_x)
-        return csr_matrix((stencils.ravel(), near.ravel(), 6 * np.arange(len(i) + 1)), (len(i), n_y * n_x))
+    def restricted(self, stencils: np.ndarray, functions: csr_matrix, first: int) -> csr_matrix:
+        """Matrix between the coarse functions of rows of coefficients, a block of nodes at a time.
+
+        `stencils`: coefficients of the nodes i-2 .. i+1, below and above, (rows, 6). `first`: node of the
+        first row.
+        """
+        (n_y, n_x), total = self.shape, csr_matrix((functions.shape[1],) * 2, dtype=stencils.dtype)
+        for begin in range(0, len(stencils), BLOCK):
+            part = stencils[begin : begin + BLOCK]
+            i = np.arange(len(part)) + first + begin
+            near = np.stack([i - 2, i - 1, i, i + 1, i - n_x, i + n_x], axis=1) % (n_y * n_x)
+            of_nodes = part.ravel(), near.ravel(), 6 * np.arange(len(i) + 1)
+            matrix = csr_matrix(of_nodes, (len(i), n_y * n_x))
+            total += functions[i[0] : i[-1] + 1].T @ (matrix @ functions)
+        return total
 
     def _deflections(self, kernel: np.ndarray) -> np.ndarray:
         """Deflection by a function at distances of coarse nodes, shape of the coarse nodes."""
@@ -78,8 +92,14 @@ class CoarseSpace:
         by_y = np.einsum("kyx,y->kx", kernel[y.ravel()].reshape(*y.shape, n_x), hat)
         return np.einsum("kmx,x->km", by_y[:, x.ravel()].reshape(len(by_y), *x.shape), hat)
 
+    def deflection(self, kept: np.ndarray, pressures: np.ndarray) -> np.ndarray:
+        """Deflections at some coarse nodes by their pressures."""
+        of_all = np.zeros(self.counts[0] * self.counts[1], dtype=pressures.dtype)
+        of_all[kept] = pressures
+        return self.convolution(of_all)[kept]
+
     def chosen(self, mask: np.ndarray) -> tuple[csr_matrix, np.ndarray]:
-        """Functions cut off outside of a mask of nodes, and their deflections K_c.
+        """Functions cut off outside of a mask of nodes, and their coarse nodes.
 
         Those whose own coarse node is in the mask: cut off more, several may be the same but for a factor.
         """
@@ -90,7 +110,7 @@ class CoarseSpace:
         count = cut_off(f.data, f.indices, f.indptr, mask, column, parts)
         data, columns, pointers = parts
         cut = csr_matrix((data[:count], columns[:count], pointers), (len(mask), len(kept)))
-        return cut, between(kept, self.counts[1], self.deflections)
+        return cut, kept
 
 
 @compiled
@@ -141,20 +161,22 @@ class CoarseCorrection:
     def __init__(
         self, space: CoarseSpace, derivatives: np.ndarray, mask: np.ndarray, share: Share, ranks: MPI.Comm
     ):
-        functions, deflections = space.chosen(mask)
-        self.ranks, self.restriction = ranks, functions[share.local].T.tocsr()
-        self.functions = functions[share.window]
-        self.deflections = deflections
+        functions, self.kept = space.chosen(mask)
+        self.ranks, self.space, self.restriction, self.functions = ranks, space, functions.T, functions
+        if share.window_size != len(mask) or ranks.size > 1:
+            self.restriction, self.functions = functions[share.local].T, functions[share.window]
         # by pressure and separation: as fast as one of both
         stencils = derivatives.astype(np.float32, copy=False).view(np.complex64)
-        both = (self.restriction @ space.matrix(stencils, share.local) @ functions).tocsr()
-        matrix = global_sum(ranks, both.real.toarray() + both.imag @ deflections)
+        both = space.restricted(stencils, functions, share.first)
+        matrix = both.imag @ between(self.kept, space.counts[1], space.deflections)
+        matrix += both.real
+        matrix = global_sum(ranks, np.asarray(matrix))
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved
             warnings.simplefilter("ignore", LinAlgWarning)
-            self.lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
+            self.lu_of_transpose = lu_factor(matrix.T, overwrite_a=True, check_finite=False)  # without a copy
 
     def __call__(self, rows: np.ndarray) -> np.ndarray:
         """Pressures that reduce local Reynolds rows, and the separations by them, shape (window, 2)."""
         restricted = global_sum(self.ranks, self.restriction @ rows)
-        coarse = lu_solve(self.lu, restricted, check_finite=False)
-        return self.functions @ np.stack([coarse, self.deflections @ coarse], axis=1)
+        coarse = lu_solve(self.lu_of_transpose, restricted, trans=1, check_finite=False)
+        return self.functions @ np.stack([coarse, self.space.deflection(self.kept, coarse)], axis=1)
