@@ -136,7 +136,6 @@ class Deflection:
     `periodic`: across.
     `owned`: local nodes in the window.
 
-    `compliances`: C K at distances, shape (n_y, n_x).
     `row_scale`: coefficient of the separation in a row; that of the border's gap is its negative.
     `cell`: dx dy.
     """
@@ -155,9 +154,10 @@ class Deflection:
         dy, dx = spacings
         self.cell, self.kernel, self.stiffness = dx * dy, kernel, stiffness
         self.row_scale = np.sqrt(self.cell) / film_scale
-        self.compliances = stiffness * kernel.direct
         mirrored = None if kernel.mirrored is None else stiffness * kernel.mirrored
-        self.convolution = Convolution(self.compliances, periodic, ranks or Transposition(), mirrored)
+        self.convolution = Convolution(
+            stiffness * kernel.direct, periodic, ranks or Transposition(), mirrored
+        )
 
     def residual(
         self, separation: np.ndarray, of_border: float | np.ndarray, sums: PressureSums

@@ -17,7 +17,7 @@ import warnings
 import numpy as np
 from mpi4py import MPI
 from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
-from scipy.sparse import csr_matrix, kron
+from scipy.sparse import csr_matrix
 
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
@@ -30,14 +30,16 @@ INTERVALS, OF_NODES = 24, 129
 BLOCK = 8192  # nodes whose rows are restricted at a time
 
 
-def linear_functions(n: int, spacing: int, periodic: bool) -> csr_matrix:
-    """Values at n nodes of hat functions over some nodes, shape (n, coarse nodes)."""
+def linear_functions(n: int, spacing: int, periodic: bool) -> tuple[np.ndarray, np.ndarray, int]:
+    """Hat functions over some of n nodes.
+
+    Those of each node, -1: none, and their values there, shape (n, 2); the number of functions.
+    """
     i, count = np.arange(n), -(-n // spacing)
     left, t = i // spacing, (i % spacing) / spacing
     right = (left + 1) % count if periodic else left + 1
     inside = right < count
-    rows, columns = np.concatenate([i, i[inside]]), np.concatenate([left, right[inside]])
-    return csr_matrix((np.concatenate([1.0 - t * inside, t[inside]]), (rows, columns)), (n, count))
+    return np.stack([left, np.where(inside, right, -1)], 1), np.stack([1.0 - t * inside, t], 1), count
 
 
 class CoarseSpace:
@@ -52,12 +54,9 @@ class CoarseSpace:
         intervals = round(INTERVALS * np.sqrt(max(longer / OF_NODES, 1.0)))
         self.spacing = max(-(-longer // intervals), 2)
         n_y, n_x = self.shape
-        across, along = (
-            linear_functions(n_y, self.spacing, periodic),
-            linear_functions(n_x, self.spacing, False),
-        )
-        self.functions = kron(across, along).tocsr().astype(np.float32)
-        self.counts = across.shape[1], along.shape[1]
+        *self.across, rows = linear_functions(n_y, self.spacing, periodic)
+        *self.along, columns = linear_functions(n_x, self.spacing, False)
+        self.counts = rows, columns
         deflections = self._deflections(kernel)
         self.deflections = deflections.astype(np.float32)
         self.convolution = Convolution(deflections, False, Transposition())
@@ -104,37 +103,41 @@ class CoarseSpace:
         Those whose own coarse node is in the mask: cut off more, several may be the same but for a factor.
         """
         of_coarse = mask.reshape(self.shape)[:: self.spacing, :: self.spacing].ravel()
-        kept, f = np.flatnonzero(of_coarse), self.functions
-        column = np.where(of_coarse, np.cumsum(of_coarse) - 1, -1).astype(np.int32)
-        parts = np.empty_like(f.data), np.empty_like(f.indices), np.zeros_like(f.indptr)
-        count = cut_off(f.data, f.indices, f.indptr, mask, column, parts)
-        data, columns, pointers = parts
+        kept, most = np.flatnonzero(of_coarse), 4 * np.count_nonzero(mask)
+        column = np.where(of_coarse, np.cumsum(of_coarse) - 1, -1).astype(np.int32).reshape(self.counts)
+        data, columns = np.empty(most, dtype=np.float32), np.empty(most, dtype=np.int32)
+        pointers = np.zeros(len(mask) + 1, dtype=np.int32)
+        count = cut_off(*self.across, *self.along, mask, column, (data, columns, pointers))
         cut = csr_matrix((data[:count], columns[:count], pointers), (len(mask), len(kept)))
         return cut, kept
 
 
 @compiled
 def cut_off(
-    values: np.ndarray,
-    indices: np.ndarray,
-    pointers: np.ndarray,
+    rows: np.ndarray,
+    of_rows: np.ndarray,
+    columns: np.ndarray,
+    of_columns: np.ndarray,
     mask: np.ndarray,
-    column: np.ndarray,
+    number: np.ndarray,
     parts: tuple,
 ) -> int:
-    """Entries of the rows in a mask whose new `column` is not negative, in compressed rows; their number.
+    """Values at the nodes of a mask, flat, of products of hat functions, in compressed rows; their number.
 
-    `parts`: filled in: entries, columns, pointers (zeros).
+    `rows`, `of_rows`; `columns`, `of_columns`: of :func:`linear_functions` across; along.
+    `number`: of each product among those wanted, -1: not wanted, shape of the coarse nodes.
+    `parts`: filled in: values, numbers, pointers (zeros).
     """
-    new_values, new_columns, new_pointers = parts
+    values, numbers, pointers = parts
     count = 0
-    for row in range(len(mask)):
-        if mask[row]:
-            for k in range(pointers[row], pointers[row + 1]):
-                if column[indices[k]] >= 0:
-                    new_values[count], new_columns[count] = values[k], column[indices[k]]
-                    count += 1
-        new_pointers[row + 1] = count
+    for node in range(len(mask)):
+        y, x = node // len(columns), node % len(columns)
+        for k in range(4 if mask[node] else 0):
+            j, i = rows[y, k // 2], columns[x, k % 2]
+            if j >= 0 and i >= 0 and number[j, i] >= 0:
+                values[count], numbers[count] = of_rows[y, k // 2] * of_columns[x, k % 2], number[j, i]
+                count += 1
+        pointers[node + 1] = count
     return count
 
 

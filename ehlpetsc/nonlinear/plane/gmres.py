@@ -1,12 +1,12 @@
-r"""Flexible GMRES of a contact in the plane as PETSc's Python Krylov method, its vectors in single precision.
+r"""Flexible GMRES of a contact in the plane as PETSc's Python Krylov method, its basis in single precision.
 
 Arnoldi's process by classical Gram and Schmidt, taken again where less than half of a vector's square is left
 (PETSc's `refine_ifneeded`), as in :mod:`ehlpetsc.nonlinear.line.gmres`. PETSc's own method stores two vectors
 of double precision an iteration, and takes memory for ten at a time: 480 bytes a node from the fourth
-iteration on, here 24 in each. The orthonormal vectors are rounded to single precision, orthogonal to 1e-7,
-far below the tolerance; where that is low, and the preconditioner of double precision, they are too. Sums,
-the triangular matrix, the vector that is made orthogonal and the preconditioned ones always are, as the
-solids' pressure is a difference of their entries.
+iteration on, here 16 in each: stored vectors are rounded to single precision, where the preconditioner is of
+single precision. The orthonormal ones are then orthogonal to 1e-7, and the solution, a sum of the others, is
+right to that, both far below the tolerance. Vectors that are multiplied or made orthogonal, sums and the
+triangular matrix are of double precision.
 
 Use: ``-ksp_type python -ksp_python_type ehlpetsc.nonlinear.plane.gmres.FlexibleGMRES`` (the default).
 """
@@ -50,11 +50,11 @@ class FlexibleGMRES:
         ksp.setIterationNumber(k)
         ksp.setResidualNorm(norm if np.isfinite(norm) else np.inf)
         ksp.setConvergedReason(reason or PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
-        x.array[:] = basis.solution(coefficients(numbers, k))[operator.active]
+        x.array[:] = basis.solution(operator, coefficients(numbers, k))[operator.active]
 
 
 class Basis:
-    """Orthonormal vectors of the local unknowns, and each of them preconditioned.
+    """Orthonormal vectors of the local rows, and quantities of each of them preconditioned.
 
     Memory of a vector is taken when it is written to: that of large arrays is not there before.
 
@@ -65,7 +65,7 @@ class Basis:
         self.ranks, self.count = operator.ranks, 0
         precision = operator.elimination.precision(operator)
         self.vectors = np.empty((max_it + 1, operator.size), dtype=precision)
-        self.changes = np.empty((max_it, operator.size))
+        self.changes = np.empty((max_it, operator.size), dtype=precision)
 
     def add(self, w: np.ndarray, column: np.ndarray) -> float:
         """Make a vector orthonormal to those before and store it; return its norm before it is made one.
@@ -105,12 +105,15 @@ class Basis:
             w[block] -= products @ self.vectors[: self.count, block].astype(np.float64, copy=False)
 
     def preconditioned(self, operator: PlaneJacobian) -> np.ndarray:
-        """Last vector with the preconditioner applied, which is stored."""
+        """Last vector with the preconditioner applied, before its quantities are rounded to be stored."""
         last = self.vectors[self.count - 1].astype(np.float64, copy=False)
         change = operator.elimination.solve(operator, last)
-        self.changes[self.count - 1] = change
+        self.changes[self.count - 1] = operator.elimination.quantities
         return change
 
-    def solution(self, factors: np.ndarray) -> np.ndarray:
+    def solution(self, operator: PlaneJacobian, factors: np.ndarray) -> np.ndarray:
         """Sum of so many times each of the first preconditioned vectors."""
-        return factors @ self.changes[: len(factors)]
+        out = np.empty(self.changes.shape[1])
+        for block in self._blocks():
+            out[block] = factors @ self.changes[: len(factors), block].astype(np.float64, copy=False)
+        return operator.elimination.unknowns(operator, out)

@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.discretisation.contact.node_state import directional_derivative
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.two_fields import Jacobian
@@ -27,7 +27,12 @@ class KnownDeflection(NamedTuple):
 
 
 class FilmElimination(Protocol):
-    """Elimination of the film for the preconditioner, kept between solves."""
+    """Elimination of the film for the preconditioner, kept between solves.
+
+    `quantities`: of the last solution.
+    """
+
+    quantities: np.ndarray
 
     def prepare(self, operator: PlaneJacobian) -> None:
         """Prepare for the state of an operator."""
@@ -37,6 +42,9 @@ class FilmElimination(Protocol):
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side."""
+
+    def unknowns(self, operator: PlaneJacobian, quantities: np.ndarray) -> np.ndarray:
+        """Unknowns of quantities of a solution, or of a sum of several."""
 
 
 class PlaneJacobian(Jacobian):
@@ -63,6 +71,11 @@ class PlaneJacobian(Jacobian):
     ):
         super().__init__(problem, exchange, ranks)
         self.elimination, self.linear_rtol = elimination, linear_rtol
+
+    def linearise(self, evaluation: Evaluation) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`; what is left of the state are derivatives."""
+        super().linearise(evaluation)
+        self.state = None
 
     def release(self) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""

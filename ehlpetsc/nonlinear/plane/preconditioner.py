@@ -31,7 +31,7 @@ from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.plane.factors import OVERLAP, CompleteLU, IncompleteLU
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, reduction_of, unknowns_of
+from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, quantities_of, reduction_of, unknowns_of
 from ehlpetsc.nonlinear.plane.screened_poisson import fill, fill_right_side, fitted_term, taken
 from ehlpetsc.nonlinear.ranks import global_sum
 
@@ -156,14 +156,18 @@ class Elimination:
     PETSc creates a new preconditioner whenever the set of active unknowns changes.
 
     `builds`: number of sparse forms so far. `back`: of the local nodes, as of :class:`.reduction.Reduction`.
+    `quantities`: of the last solution, of which `back` makes its unknowns. As the solids' pressure is a
+        difference of these, a sum of solutions is one of quantities that are rounded.
     """
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
-        self.coarse_space = CoarseSpace(problem.deflection.compliances, problem.grid.periodic)
         deflection = problem.deflection
+        self.coarse_space = CoarseSpace(
+            deflection.stiffness * deflection.kernel.direct, problem.grid.periodic
+        )
         self.term = fitted_term(deflection.stiffness, problem.grid.increments, deflection.kernel)
-        self.builds, self.back = 0, np.empty((4, 0))
+        self.builds, self.back, self.quantities = 0, np.empty((4, 0)), np.empty(0)
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again
         self.factors: PlaneFactors | None = None
@@ -274,7 +278,12 @@ class Elimination:
         pressure, r, border = self._with_border(pressure, r, forces, of_border)
         deflection = exchange.deflection(pressure, precision_of(operator))
         separation = deflection + p.balance.gap(border, p.share.local) + given
-        out = self._whole(operator, (pressure, r, separation), border)
+        self.quantities = np.empty(operator.size)
+        of_nodes = quantities_of(self.factors.sparse.kind, pressure, r, separation)
+        self.quantities[: n_dofs(p.local)] = of_nodes.ravel()
+        if p.owns_border:
+            border_of(self.quantities, p.local)[:] = border
+        out = self.unknowns(operator, self.quantities)
         operator.remember(out, pressure, deflection)
         return out
 
@@ -292,11 +301,9 @@ class Elimination:
             pressure, r = pressure + change * by_pressure, r + change * by_r
         return pressure, r, border
 
-    def _whole(self, operator: PlaneJacobian, of_nodes: tuple, border: np.ndarray) -> np.ndarray:
-        """Local unknowns of the whole system from pressure, Reynolds unknown and separation of the nodes."""
-        p, out = self.problem, np.empty(operator.size)
-        out[: n_dofs(p.local)] = unknowns_of(self.factors.sparse.kind, self.back, *of_nodes).ravel()
+    def unknowns(self, operator: PlaneJacobian, quantities: np.ndarray) -> np.ndarray:
+        """Local unknowns of the whole system from those of a reduced node, see `quantities`."""
+        out, end = quantities.copy(), n_dofs(self.problem.local)
+        out[:end] = unknowns_of(self.back, quantities[:end].reshape(-1, 2)).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
-        if p.owns_border:
-            border_of(out, p.local)[:] = border
         return out
