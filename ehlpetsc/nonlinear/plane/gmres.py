@@ -44,13 +44,20 @@ class FlexibleGMRES:
             ksp.monitor(k, norm if np.isfinite(norm) else np.inf)
             if reason or k == max_it:
                 break
-            change = basis.preconditioned(operator)
-            with PRODUCT:
-                operator.product(change, w)
+            w = None  # freed, and made anew, as the preconditioner takes most memory
+            w = self._product(operator, basis.preconditioned(operator))
         ksp.setIterationNumber(k)
         ksp.setResidualNorm(norm if np.isfinite(norm) else np.inf)
         ksp.setConvergedReason(reason or PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
+        w = None
         x.array[:] = basis.solution(operator, coefficients(numbers, k))[operator.active]
+
+    def _product(self, operator: PlaneJacobian, change: np.ndarray) -> np.ndarray:
+        """Product of the Jacobian with a preconditioned vector."""
+        out = np.empty(operator.size)
+        with PRODUCT:
+            operator.product(change, out)
+        return out
 
 
 class Basis:
@@ -109,6 +116,7 @@ class Basis:
         last = self.vectors[self.count - 1].astype(np.float64, copy=False)
         change = operator.elimination.solve(operator, last)
         self.changes[self.count - 1] = operator.elimination.quantities
+        operator.elimination.quantities = np.empty(0)
         return change
 
     def solution(self, operator: PlaneJacobian, factors: np.ndarray) -> np.ndarray:

@@ -108,6 +108,7 @@ class PlaneJacobian(Jacobian):
             deflection, forces = self.known.deflection, np.array(forces)
         else:
             deflection, forces = self.exchange.sums(self.pressure_of(v))
+        self.known = None  # of one product
         window, separation = self.exchange.window(pairs), np.empty(p.local)
         changes = np.empty_like(window)
         for k in range(2):
