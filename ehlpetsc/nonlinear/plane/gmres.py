@@ -115,8 +115,7 @@ class Basis:
         """Last vector with the preconditioner applied, before its quantities are rounded to be stored."""
         last = self.vectors[self.count - 1].astype(np.float64, copy=False)
         change = operator.elimination.solve(operator, last)
-        self.changes[self.count - 1] = operator.elimination.quantities
-        operator.elimination.quantities = np.empty(0)
+        self.changes[self.count - 1] = operator.elimination.take_quantities()
         return change
 
     def solution(self, operator: PlaneJacobian, factors: np.ndarray) -> np.ndarray:

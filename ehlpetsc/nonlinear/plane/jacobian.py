@@ -27,12 +27,7 @@ class KnownDeflection(NamedTuple):
 
 
 class FilmElimination(Protocol):
-    """Elimination of the film for the preconditioner, kept between solves.
-
-    `quantities`: of the last solution.
-    """
-
-    quantities: np.ndarray
+    """Elimination of the film for the preconditioner, kept between solves."""
 
     def prepare(self, operator: PlaneJacobian) -> None:
         """Prepare for the state of an operator."""
@@ -42,6 +37,9 @@ class FilmElimination(Protocol):
 
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side."""
+
+    def take_quantities(self) -> np.ndarray:
+        """Quantities of the last solution, once."""
 
     def unknowns(self, operator: PlaneJacobian, quantities: np.ndarray) -> np.ndarray:
         """Unknowns of quantities of a solution, or of a sum of several."""

@@ -156,8 +156,6 @@ class Elimination:
     PETSc creates a new preconditioner whenever the set of active unknowns changes.
 
     `builds`: number of sparse forms so far. `back`: of the local nodes, as of :class:`.reduction.Reduction`.
-    `quantities`: of the last solution, of which `back` makes its unknowns. As the solids' pressure is a
-        difference of these, a sum of solutions is one of quantities that are rounded.
     """
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
@@ -167,7 +165,7 @@ class Elimination:
             deflection.stiffness * deflection.kernel.direct, problem.grid.periodic
         )
         self.term = fitted_term(deflection.stiffness, problem.grid.increments, deflection.kernel)
-        self.builds, self.back, self.quantities = 0, np.empty((4, 0)), np.empty(0)
+        self.builds, self.back, self._quantities = 0, np.empty((4, 0)), np.empty(0)
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again
         self.factors: PlaneFactors | None = None
@@ -278,12 +276,12 @@ class Elimination:
         pressure, r, border = self._with_border(pressure, r, forces, of_border)
         deflection = exchange.deflection(pressure, precision_of(operator))
         separation = deflection + p.balance.gap(border, p.share.local) + given
-        self.quantities = np.empty(operator.size)
+        self._quantities = np.empty(operator.size)
         of_nodes = quantities_of(self.factors.sparse.kind, pressure, r, separation)
-        self.quantities[: n_dofs(p.local)] = of_nodes.ravel()
+        self._quantities[: n_dofs(p.local)] = of_nodes.ravel()
         if p.owns_border:
-            border_of(self.quantities, p.local)[:] = border
-        out = self.unknowns(operator, self.quantities)
+            border_of(self._quantities, p.local)[:] = border
+        out = self.unknowns(operator, self._quantities)
         operator.remember(out, pressure, deflection)
         return out
 
@@ -301,8 +299,16 @@ class Elimination:
             pressure, r = pressure + change * by_pressure, r + change * by_r
         return pressure, r, border
 
+    def take_quantities(self) -> np.ndarray:
+        """Quantities of the last solution, of which `back` makes its unknowns, once.
+
+        As the solids' pressure is a difference of unknowns, it is the quantities that may be rounded.
+        """
+        quantities, self._quantities = self._quantities, np.empty(0)
+        return quantities
+
     def unknowns(self, operator: PlaneJacobian, quantities: np.ndarray) -> np.ndarray:
-        """Local unknowns of the whole system from those of a reduced node, see `quantities`."""
+        """Local unknowns of the whole system from quantities of the nodes, and the border."""
         out, end = quantities.copy(), n_dofs(self.problem.local)
         out[:end] = unknowns_of(self.back, quantities[:end].reshape(-1, 2)).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
