@@ -15,6 +15,7 @@ import ehlpetsc
 from ehlpetsc.__main__ import main
 from ehlpetsc.base.environment import missing
 from ehlpetsc.base.errors import CaseError
+from ehlpetsc.base.quantities import STEP_SCALARS
 from ehlpetsc.case.keys import EXAMPLES, keys, template
 from ehlpetsc.case.loading import load
 from ehlpetsc.commands.surface import main as surface
@@ -89,6 +90,13 @@ def test_keys_and_parameters_on_the_page_of_surfaces_are_current(capsys):
     assert surface([str(ROOT / file), "--no-picture"]) == 0
     _, *lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 11 and all(line in TEXTS["cases/surfaces"] for line in lines)
+
+
+def test_every_scalar_of_the_steps_is_on_the_page_of_results_or_of_heat():
+    named = set(re.findall(r"`(\w+)`", TEXTS["ehlpetsc/results/README"] + TEXTS["cases/heat"]))
+    endings = {name for name in named if name.startswith("_")}
+    missing = {name for name in STEP_SCALARS if not name.endswith(tuple(endings)) and name not in named}
+    assert missing == set()
 
 
 def test_case_file_and_output_on_the_page_are_current(tmp_path):
