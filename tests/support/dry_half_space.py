@@ -18,27 +18,45 @@ def hat_kernel(n_x, n_y, dx, dy):
 
 
 class HalfSpaces:
-    """Deflection [m] of pressures [Pa]; with a share of free ends at both edges of the rows, see `mirrored`.
+    """Deflection [m] of pressures [Pa]; with a share of free ends at both edges of the rows.
 
-    `mirrored`: factor of the pressures mirrored about the edges of the first and last cell.
+    `share`: of the images, pressures mirrored about the edges of the first and last cell, times `factor` of
+    s/r, s and r their distances across and in all, plus `weighted` times 1.5 y y'/r^2 of distances from the
+    edge.
     """
 
-    def __init__(self, shape, spacings, modulus, mirrored=0.0):
+    def __init__(self, shape, spacings, modulus, share=0.0, factor=np.ones_like, weighted=0.0):
         (self.n_y, n_x), (dy, dx) = shape, spacings
-        self.mirrored, self.shape = mirrored, (3 * self.n_y, n_x)
-        kernel = hat_kernel(n_x, 3 * self.n_y, dx, dy) * 2.0 / (np.pi * modulus)
+        self.shape, self.weighted = (3 * self.n_y, n_x), share * weighted
+        self.y = dy * (np.arange(self.n_y)[:, None] + 0.5)
+        scale = 2.0 / (np.pi * modulus)
+        kernel = scale * hat_kernel(n_x, 3 * self.n_y, dx, dy)
+        s = dy * np.maximum(np.arange(3.0 * self.n_y)[:, None], 0.5)
+        r = np.hypot(dx * np.arange(n_x), s)
         self.lengths = 2 * self.shape[0], 2 * n_x
+        self.direct, self.images = self.spectrum(kernel), share * self.spectrum(kernel * factor(s / r))
+        self.dipoles = self.spectrum(1.5 * scale * dx * dy / r**3)
+
+    def spectrum(self, kernel):
         even = np.zeros(self.lengths)
-        even[: self.shape[0], :n_x] = kernel
-        even[self.shape[0] + 1 :, :n_x] = kernel[:0:-1]
+        n_y, n_x = kernel.shape
+        even[:n_y, :n_x] = kernel
+        even[n_y + 1 :, :n_x] = kernel[:0:-1]
         even[:, n_x + 1 :] = even[:, n_x - 1 : 0 : -1]
-        self.spectrum = rfft2(even)
+        return rfft2(even)
+
+    def product(self, pressure, block, spectrum):
+        whole, n = np.zeros(self.shape), self.n_y
+        whole[block * n : (block + 1) * n] = pressure
+        return irfft2(rfft2(whole, self.lengths) * spectrum, self.lengths)[n : 2 * n, : self.shape[1]]
 
     def __call__(self, pressure):
-        whole, n = np.zeros(self.shape), self.n_y
-        whole[n : 2 * n] = pressure
-        whole[:n] = whole[2 * n :] = self.mirrored * pressure[::-1]
-        return irfft2(rfft2(whole, self.lengths) * self.spectrum, self.lengths)[n : 2 * n, : self.shape[1]]
+        found = self.product(pressure, 1, self.direct)
+        for block, y in ((0, self.y), (2, self.y[::-1])):
+            found += self.product(pressure[::-1], block, self.images)
+            if self.weighted:
+                found += self.weighted * y * self.product((y * pressure)[::-1], block, self.dipoles)
+        return found
 
 
 def dry_pressure(gap, load, cell, deflection, tolerance=1e-9):

@@ -1,4 +1,4 @@
-"""Quarter space under pressures cos(k x) along its edge, by finite elements; a roller with such ends.
+"""Quarter space under pressures cos(k x) along its edge, by finite elements.
 
 The displacements are (u sin kx, v cos kx, w cos kx) of y and z alone: a plane problem of three components.
 """
@@ -99,31 +99,3 @@ def half_space(k, width, rows, poisson_ratio, mirrored):
 
     direct, image = (np.diff(integral(ends[None] + side * centres), axis=1) for side in (-1.0, 1.0))
     return 2.0 * (1.0 - poisson_ratio**2) / (np.pi * k) * (direct + mirrored * image)
-
-
-class FreeEnds:
-    """Deflection [m] of a half-space and a body with free ends, both of one modulus, by pressures [Pa].
-
-    `by_images`: deflection with images times a factor `mirrored`, to which the difference of finite elements
-    from images is added. `modulus`: E' of both [Pa].
-    """
-
-    def __init__(self, by_images, shape, spacings, modulus, poisson_ratio, mirrored):
-        self.by_images, (n_y, self.n_x), (dy, dx) = by_images, shape, spacings
-        self.differences = []
-        for wave in range(self.n_x + 1):
-            k = np.pi * max(wave, 0.5) / (self.n_x * dx)  # a uniform pressure as a long wave
-            rows = int(np.clip(np.ceil(7.0 / (k * dy)), 3, n_y // 2))
-            parts = int(np.clip(np.ceil(k * dy / LARGEST), 1, 6))
-            exact = compliance(k * dy, 1.0, rows, parts, poisson_ratio)
-            images = half_space(k * dy, 1.0, rows, poisson_ratio, mirrored)
-            self.differences.append((exact - images) * dy / ((1.0 - poisson_ratio**2) * modulus))
-
-    def __call__(self, pressure):
-        waves = np.fft.rfft(pressure, 2 * self.n_x, axis=1)
-        added = np.zeros_like(waves)
-        for wave, difference in enumerate(self.differences):
-            near = len(difference)
-            added[:near, wave] += difference @ waves[:near, wave]
-            added[-near:, wave] += (difference @ waves[::-1][:near, wave])[::-1]
-        return self.by_images(pressure) + np.fft.irfft(added, 2 * self.n_x, axis=1)[:, : self.n_x]

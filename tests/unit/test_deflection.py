@@ -237,7 +237,7 @@ def test_film_of_hertz_pressure_is_flat_to_second_order():
 @pytest.mark.parametrize("periodic", (False, True))
 def test_convolution_has_the_precision_of_its_argument(periodic):
     kernel = (periodic_kernel if periodic else free_kernel)(33, 24, CELL_X, CELL_Y)
-    product = Convolution(kernel, periodic, Transposition())
+    product = Convolution(Kernel(kernel), periodic, Transposition())
     pressure = np.random.default_rng(5).random(24 * 33)
     exact, single = product(pressure), product(pressure.astype(np.float32))
     assert single.dtype == np.float32

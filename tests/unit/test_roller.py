@@ -143,7 +143,7 @@ def test_scales_and_nodes_of_a_roller():
     assert len(rounded.axes[0]) == 62  # 110 um beyond each end
 
 
-HELD, FREE = (False, 0.0), (True, 0.5 * image_factor(0.3))  # half of the compliance is the roller's
+HELD, FREE = (False,), (True, 0.5, lambda q: image_factor(q, 0.3), 1.0)  # half the compliance: the roller's
 
 
 @pytest.mark.parametrize(
@@ -158,14 +158,14 @@ HELD, FREE = (False, 0.0), (True, 0.5 * image_factor(0.3))  # half of the compli
     ids=["iso", "iso tilted", "blend tilted", "blend with free ends", "straight with free ends"],
 )
 def test_dry_pressure_equals_that_of_conjugate_gradients(profile, more, ends):
-    free_ends, mirrored = ends
+    free_ends, *images = ends
     case = load(roller(profile, free_ends=free_ends, **more))
     state, scales = Simulation(case).advance(), Scales.of(case)
     grid = scales.grid
     y, x = (c.reshape(grid.shape) * scales.a for c in grid.coordinates)
     gap = x**2 / (2 * R) + gap_across(y, case.contact, Design(L, W, R, scales.E))
     gap += more.get("tilt", 0.0) * y
-    half_spaces = HalfSpaces(grid.shape, grid.spacings, scales.E, mirrored)
+    half_spaces = HalfSpaces(grid.shape, grid.spacings, scales.E, *images)
     expected = dry_pressure(gap, W, np.prod(grid.spacings), half_spaces)
     np.testing.assert_allclose(state.pressure / scales.p0, expected / scales.p0, atol=1e-4)
     moments = [(p * y).sum() * np.prod(grid.spacings) for p in (state.pressure, expected)]

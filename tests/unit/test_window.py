@@ -10,9 +10,8 @@ import ehlpetsc
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
-from ehlpetsc.elasticity.half_space import free_kernel
 from ehlpetsc.elasticity.kernel import Mesh
-from ehlpetsc.elasticity.terms.free_ends import images
+from ehlpetsc.elasticity.terms.free_ends import of_quarter_spaces
 from ehlpetsc.physics.scales import Scales
 from ehlpetsc.pictures.frames.choice import Choice
 from ehlpetsc.run import checkpoint
@@ -48,6 +47,7 @@ def solved(*args, **options):
 
 @pytest.mark.parametrize("oil", [{}, OIL], ids=["dry", "in oil"])
 def test_smooth_window_is_the_smooth_roller(oil):
+    oil = oil | {"petsc": {"snes_atol": 1e-11}}  # a further iteration of the window changes nothing
     whole, state = solved(oil)
     for window, to_ends in ((END, (0, 60)), (MIDDLE, (30, 30))):
         grid, found = solved(oil, window)
@@ -79,11 +79,10 @@ def test_images_of_a_window_are_those_of_the_roller_around_it():
     long[before : before + rows] = pressure
     meshes = Mesh((rows, n_x), steps, False, 1e-4, (before, behind)), Mesh(long.shape, steps, False, 1e-4)
     of_window, of_roller = (
-        Convolution(free_kernel(n_x, mesh.shape[0], *steps[::-1]), False, Transposition(), images(mesh))
-        for mesh in meshes
+        Convolution(of_quarter_spaces(mesh, 0.3), False, Transposition()) for mesh in meshes
     )
     expected = of_roller(long.ravel()).reshape(long.shape)[before : before + rows]
-    np.testing.assert_allclose(of_window(pressure.ravel()), expected.ravel(), rtol=1e-13)
+    np.testing.assert_allclose(of_window(pressure.ravel()), expected.ravel(), rtol=1e-12)
 
 
 def test_maps_of_roughness_begin_in_the_middle_of_a_window():

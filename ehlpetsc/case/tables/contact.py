@@ -146,8 +146,10 @@ KEYS = {
         kind=bool,
         default=True,
         contacts=ROLLERS,
-        equation="deflection of the roller also by pressures mirrored about its end faces, times "
-        "`1.29 - (0.08 - 0.5 nu)/(1 - nu)`",
+        equation="deflection of the roller also by pressures mirrored about its end faces, `s = y + y'` away "
+        "across and `r` in all, `y` and `y'` the distances from the face, times `(pi^2 + 4)/(pi^2 - 4) "
+        "- (1 - 2 nu) ((2.42 - 0.66 nu)/(1 - nu) s/r - (1.51 - 0.39 nu) s^2/r^2 + 0.46 s^3/r^3) "
+        "+ 1.5 y y'/r^2`",
     ),
     "tilt": Key(
         "misalignment of a roller or point contact: slope of the gap across; it moves a point `-tilt Ry`",

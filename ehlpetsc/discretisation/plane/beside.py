@@ -29,7 +29,6 @@ def gap_and_load_beside(
     beside[inside.start // parts : inside.stop // parts] = 0.0
     fine = np.repeat([np.interp(grid.x, whole.x, row) for row in beside], parts, axis=0)
     kernel = kernel_of(Bodies.of(contact), Mesh(fine.shape, grid.increments, False, scales.a))
-    mirrored = None if kernel.mirrored is None else scales.stiffness * kernel.mirrored
-    product = Convolution(scales.stiffness * kernel.direct, False, Transposition(), mirrored)
+    product = Convolution(kernel.times(scales.stiffness), False, Transposition())
     gap = product(fine.ravel()).reshape(fine.shape)[inside]
     return gap.ravel(), float(whole.cell * beside.sum())

@@ -22,6 +22,7 @@ from scipy.sparse import csr_matrix
 from ehlpetsc.base.compiled import compiled
 from ehlpetsc.discretisation.plane.deflection import Convolution, Transposition
 from ehlpetsc.discretisation.unknowns import Share
+from ehlpetsc.elasticity.kernel import Kernel
 from ehlpetsc.nonlinear.ranks import global_sum
 
 # Between coarse nodes along the longer side of a mesh of up to OF_NODES; on finer ones they grow as the root
@@ -59,7 +60,7 @@ class CoarseSpace:
         self.counts = rows, columns
         deflections = self._deflections(kernel)
         self.deflections = deflections.astype(np.float32)
-        self.convolution = Convolution(deflections, False, Transposition())
+        self.convolution = Convolution(Kernel(deflections), False, Transposition())
 
     def reaches(self, mask: np.ndarray) -> bool:
         """Whether a coarse node is in a mask of nodes."""
