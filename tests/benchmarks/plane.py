@@ -6,7 +6,7 @@ scenes of a circular contact, M = 200 and L = 10, each in a process of its own; 
 - smooth: steady start, counted as one step.
 - wave: cos kx cos ky of a half-width, a hundredth of the film (2 nm), pure rolling.
 - rigid, layer: self-affine roughness in mixed contact, slide/roll ratio 0.3, with a boundary film or a
-  compliant layer; heavy, slow: more of the load on solids, 2 and, at 0.02 m/s, 20 %.
+  compliant layer; heavy, slow: more of the load on solids, 3 and, at 0.02 m/s, 20 %.
 - heat: layer with temperatures of film and surfaces, 2 m/s, slide/roll ratio 0.5.
 
 Waves and roughness fill the contact from the first step on (`time.start = "rough"`).
