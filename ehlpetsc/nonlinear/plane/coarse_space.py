@@ -28,6 +28,7 @@ from ehlpetsc.nonlinear.ranks import global_sum
 # Between coarse nodes along the longer side of a mesh of up to OF_NODES; on finer ones they grow as the root
 # of the nodes: more waves are too long for the incomplete factorisation, and each iteration costs more.
 INTERVALS, OF_NODES = 24, 129
+MAX_DENSE = 600  # functions up to which a product with their deflections is faster than transforms
 BLOCK = 8192  # nodes whose rows are restricted at a time
 
 
@@ -172,7 +173,9 @@ class CoarseCorrection:
         # by pressure and separation: as fast as one of both
         stencils = derivatives.astype(np.float32, copy=False).view(np.complex64)
         both = space.restricted(stencils, functions, share.first)
-        matrix = both.imag @ between(self.kept, space.counts[1], space.deflections)
+        deflections = between(self.kept, space.counts[1], space.deflections)
+        self.deflections = deflections if len(self.kept) <= MAX_DENSE else None
+        matrix = both.imag @ deflections
         matrix += both.real
         matrix = global_sum(ranks, np.asarray(matrix))
         with warnings.catch_warnings():  # a singular one ends the solve, and the step is halved
@@ -183,4 +186,9 @@ class CoarseCorrection:
         """Pressures that reduce local Reynolds rows, and the separations by them, shape (window, 2)."""
         restricted = global_sum(self.ranks, self.restriction @ rows)
         coarse = lu_solve(self.lu_of_transpose, restricted, trans=1, check_finite=False)
-        return self.functions @ np.stack([coarse, self.space.deflection(self.kept, coarse)], axis=1)
+        by_coarse = (
+            self.space.deflection(self.kept, coarse)
+            if self.deflections is None
+            else self.deflections @ coarse
+        )
+        return self.functions @ np.stack([coarse, by_coarse], axis=1)

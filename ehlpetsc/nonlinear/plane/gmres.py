@@ -22,7 +22,7 @@ from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
 from ehlpetsc.nonlinear.ranks import global_sum
 
 MAX_IT = 100  # of a solve
-BLOCK = 8192  # entries of all vectors that are in the cache at a time
+BLOCK = 16384  # entries of all vectors that are in the cache at a time
 
 
 class FlexibleGMRES:
