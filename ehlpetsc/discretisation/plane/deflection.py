@@ -144,7 +144,8 @@ class EndProducts:
         along = rfft(np.concatenate([level, level[:, (length_x - 1) // 2 : 0 : -1]], axis=1), axis=1).real
         sizes = np.abs(along) * np.arange(1.0, sums + 1.0)[:, None] ** 2
         distances = end.step * (end.beyond + 0.5 + np.arange(n_y))
-        self.octaves, begin, stop = [], 0, 2
+        self.octaves: list[EndRows] = []
+        begin, stop = 0, 2
         while begin < along.shape[1]:
             reached = np.flatnonzero(sizes[:, begin:stop].max(axis=1) > NEGLIGIBLE * sizes.max())
             near = min(n_y, int(reached.max(initial=0)) + 1 - end.beyond)
@@ -154,6 +155,10 @@ class EndProducts:
                 kernel = along[2 * end.beyond :][: 2 * near - 1, waves]
                 spectrum = fft(_of_both_signs(kernel, next_fast_len(2 * near - 1)), axis=0)
                 own = slice(waves.start - here.start, waves.stop - here.start)
+                if self.octaves and len(self.octaves[-1].distances) == near:
+                    last = self.octaves.pop()
+                    own = slice(last.waves.start, own.stop)
+                    spectrum = np.concatenate([last.spectrum, spectrum], axis=1)
                 self.octaves.append(EndRows(rows, own, distances[:near, None], spectrum))
             begin, stop = stop, 2 * stop
 
