@@ -83,7 +83,7 @@ KINDS["roller"] = KINDS["point"]._replace(
     radii=" in a roller, of one radius and a length",
     geometry="physics.contact.roller:ROLLER",
     forecast="run.forecast.kinds:ROLLER",
-    linear_solver="nonlinear.options:plane_solver",
+    linear_solver="nonlinear.options:roller_solver",
     has_ends=True,
     picture="roller",
 )

@@ -12,7 +12,6 @@ from support.points import point
 
 from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.case.loading import load
-from ehlpetsc.discretisation import reynolds
 from ehlpetsc.discretisation.contact.node_state import limit_cavitation, open_cavity
 from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.finite_volumes import STENCIL
@@ -22,10 +21,9 @@ from ehlpetsc.nonlinear.newton import NewtonSolver
 from ehlpetsc.nonlinear.options import RunOptions
 from ehlpetsc.nonlinear.plane import step_limit
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
-from ehlpetsc.nonlinear.plane.gmres import Basis
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
-from ehlpetsc.nonlinear.plane.reduction import BOUND, reduction_of
+from ehlpetsc.nonlinear.plane.reduction import BOUND
 from ehlpetsc.nonlinear.plane.screened_poisson import MIDDLE, fill, neighbour
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
@@ -111,7 +109,9 @@ def test_product_equals_differences(name):
 def complete(monkeypatch):
     """Complete factors of the sparse form in place of incomplete ones."""
     build = Elimination._build
-    monkeypatch.setattr(Elimination, "_build", lambda self, *given: build(self, *given, True))
+    monkeypatch.setattr(
+        Elimination, "_build", lambda self, operator, with_coarse: build(self, operator, with_coarse, True)
+    )
 
 
 @pytest.mark.parametrize("name", ("rolling", "eyring", "layer", "strip", "tilt"))
@@ -131,61 +131,6 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name, complete)
     residual = b.duplicate()
     system.operator.mult(x, residual)
     assert (residual - b).norm() < 1.01e-6 * b.norm()
-
-
-@pytest.mark.parametrize("name", ("layer", "direct", "dry"))
-def test_krylov_iterations_in_the_plane_equal_those_of_petsc(name):
-    """With a basis of single precision, of double where the tolerance is low."""
-    system, state, inputs = scene(name)
-    is_dry = system.problem.fluid is None
-    found, b = [], np.random.default_rng(2).standard_normal(len(system.x.array))
-    for of_call in ({}, {"ksp_type": "fgmres"}):
-        solver = NewtonSolver(system, RunOptions(of_call=of_call, kind="point", is_dry=is_dry))
-        system.set_initial_guess(state, inputs)
-        system.linearise(system.x)
-        system.operator.assemble()
-        ksp, right, x = solver.snes.ksp, system.x.duplicate(), system.x.duplicate()
-        ksp.setOperators(system.operator)
-        right.array[:] = b
-        ksp.setConvergenceHistory()
-        ksp.solve(right, x)
-        found.append(ksp.getConvergenceHistory())
-        residual = system.x.duplicate()
-        system.operator.mult(x, residual)
-        # the true residual: of 3e-3 of the right-hand side, or of 1e-6 without oil
-        rounding = 1e-12 if is_dry else 1e-4
-        assert (residual - right).norm() == pytest.approx(found[-1][-1], abs=rounding * right.norm())
-    mine, petscs = found
-    assert len(mine) == len(petscs) > 4
-    np.testing.assert_allclose(mine, petscs, rtol=1e-3)
-    basis = Basis(system.jacobian, 3)
-    assert basis.vectors.itemsize == basis.changes.itemsize == (8 if is_dry else 4)
-
-
-def test_derivatives_of_one_state_at_a_time_are_kept(monkeypatch):
-    system, state, inputs = scene("layer")
-    solver, problem = NewtonSolver(system, RunOptions("mixed", kind="point")), system.problem
-    evaluate, kept = problem.evaluate, []
-
-    def watched(*given):
-        kept.append(system.jacobian.reynolds_derivatives is not None or system._evaluation is not None)
-        return evaluate(*given)
-
-    monkeypatch.setattr(problem, "evaluate", watched)
-    solver.solve(*solver.solve(state, inputs)[:1], inputs)
-    solver.residual()
-    assert len(kept) > 4 and not any(kept)
-    assert system._evaluation is None and system.jacobian.derivatives is None
-
-
-@pytest.mark.parametrize("name", ("layer", "strip", "starved"))
-def test_properties_do_not_depend_on_the_blocks_that_are_computed_at_a_time(name, monkeypatch):
-    system, state, inputs = scene(name)
-    window = system.problem.share.window
-    given = state.q[window], np.abs(state.w[window]), inputs.oil
-    whole = system.problem.reynolds.properties(*given)
-    monkeypatch.setattr(reynolds, "BLOCK", 100)
-    np.testing.assert_array_equal(whole, system.problem.reynolds.properties(*given))
 
 
 @pytest.mark.parametrize(("name", "value"), [("pc_type", "lu"), ("pc_python_type", "own.Preconditioner")])
@@ -211,8 +156,8 @@ def test_coarse_functions_around_an_isolated_node_are_independent():
     assert space.spacing == 2
     mask = np.zeros((9, 9), dtype=bool)
     mask[:, 2:5] = mask[5, 7] = True  # the last one lies between four coarse nodes
-    functions, kept = space.chosen(mask.ravel())
-    assert functions.shape[1] == len(kept) == 10
+    functions, deflections = space.chosen(mask.ravel())
+    assert functions.shape[1] == len(deflections) == 10
     assert np.linalg.matrix_rank(functions.toarray()) == functions.shape[1]
 
 
@@ -258,9 +203,8 @@ def test_blocks_filled_in_place_are_those_of_the_matrix(name, complete):
     elimination = prepared(system, state, inputs)
     form, p = elimination.factors.sparse, system.problem
     factors = form.factors
-    blocks, nothing = np.zeros_like(factors.blocks), np.zeros(p.share.window_size, dtype=bool)
-    reduction = reduction_of(system.jacobian.derivatives, nothing)
-    whole = form._at_hand([part[p.owned] for part in reduction[:6]])
+    blocks = np.zeros_like(factors.blocks)
+    whole = form._at_hand([part[p.owned] for part in elimination.reduction[:6]])
     scales = p.deflection.row_scale, *p.grid.increments
     rows = form.rows.start, form.rows.stop, factors.pointers, factors.places
     derivatives = system.exchange.window(system.jacobian.reynolds_derivatives)

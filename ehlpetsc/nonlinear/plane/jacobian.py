@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.discretisation.contact.node_state import directional_derivative
-from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
+from ehlpetsc.discretisation.ehl_problem import EHLProblem
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.two_fields import Jacobian
@@ -32,17 +32,8 @@ class FilmElimination(Protocol):
     def prepare(self, operator: PlaneJacobian) -> None:
         """Prepare for the state of an operator."""
 
-    def precision(self, operator: PlaneJacobian) -> type:
-        """Precision that serves for the linear tolerance of an operator."""
-
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Unknowns for a local right-hand side."""
-
-    def take_quantities(self) -> np.ndarray:
-        """Quantities of the last solution, once."""
-
-    def unknowns(self, operator: PlaneJacobian, quantities: np.ndarray) -> np.ndarray:
-        """Unknowns of quantities of a solution, or of a sum of several."""
 
 
 class PlaneJacobian(Jacobian):
@@ -70,16 +61,6 @@ class PlaneJacobian(Jacobian):
         super().__init__(problem, exchange, ranks)
         self.elimination, self.linear_rtol = elimination, linear_rtol
 
-    def linearise(self, evaluation: Evaluation) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`; what is left of the state are derivatives."""
-        super().linearise(evaluation)
-        self.state = None
-
-    def release(self) -> None:
-        """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
-        super().release()
-        self.known = None
-
     def pressure_of(self, v: np.ndarray) -> np.ndarray:
         """Change of the local pressures by a change of the local unknowns."""
         pressure = np.empty(self.problem.local)
@@ -106,7 +87,6 @@ class PlaneJacobian(Jacobian):
             deflection, forces = self.known.deflection, np.array(forces)
         else:
             deflection, forces = self.exchange.sums(self.pressure_of(v))
-        self.known = None  # of one product
         window, separation = self.exchange.window(pairs), np.empty(p.local)
         changes = np.empty_like(window)
         for k in range(2):

@@ -31,7 +31,7 @@ from ehlpetsc.nonlinear.plane.coarse_space import CoarseCorrection, CoarseSpace
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.plane.factors import OVERLAP, CompleteLU, IncompleteLU
 from ehlpetsc.nonlinear.plane.jacobian import PlaneJacobian
-from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, quantities_of, reduction_of, unknowns_of
+from ehlpetsc.nonlinear.plane.reduction import PRESSURE, Reduction, reduction_of, unknowns_of
 from ehlpetsc.nonlinear.plane.screened_poisson import fill, fill_right_side, fitted_term, taken
 from ehlpetsc.nonlinear.ranks import global_sum
 
@@ -105,7 +105,7 @@ class SparseForm:
         """Arrays of the local nodes with the rows of neighbours that the factors need."""
         if self.problem.share.window_size == self.problem.local:
             return local
-        return self.exchange.windows(local, self.overlap)
+        return np.ascontiguousarray(self.exchange.window(np.stack(local, axis=1), self.overlap).T)
 
     def set_up(self, reduction: Reduction, derivatives: np.ndarray) -> None:
         """Factor for a state: reduction of the window, derivatives of the local Reynolds rows."""
@@ -116,8 +116,8 @@ class SparseForm:
         derivatives = self.exchange.window(derivatives, self.overlap)
         fill(whole, derivatives, self.term, scales, self.n_x, of_rows, factors.blocks, self.of_rows)
         factors.factor()
-        self.of_factors = whole[0][rows], whole[5][rows].copy()  # without the other changes
-        self.kind, self.p_s = whole[0][self.own], self.of_factors[1][self.own.start - rows.start :][: p.local]
+        self.of_factors = whole[0][rows], whole[5][rows]
+        self.kind, self.p_s = whole[0][self.own], whole[5][self.own]
         first = self.own.start - rows.start
         self.by = self.of_rows[first : first + p.local]
         self.no_pressure = reduction.kind != PRESSURE
@@ -155,17 +155,15 @@ class Elimination:
 
     PETSc creates a new preconditioner whenever the set of active unknowns changes.
 
-    `builds`: number of sparse forms so far. `back`: of the local nodes, as of :class:`.reduction.Reduction`.
+    `builds`: number of sparse forms so far.
     """
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
+        self.coarse_space = CoarseSpace(problem.deflection.compliances, problem.grid.periodic)
         deflection = problem.deflection
-        self.coarse_space = CoarseSpace(
-            deflection.stiffness * deflection.kernel.direct, problem.grid.periodic
-        )
         self.term = fitted_term(deflection.stiffness, problem.grid.increments, deflection.kernel)
-        self.builds, self.back, self._quantities = 0, np.empty((4, 0)), np.empty(0)
+        self.builds = 0
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again
         self.factors: PlaneFactors | None = None
@@ -192,12 +190,11 @@ class Elimination:
         owned = self.problem.owned
         inactive = np.zeros(self.problem.share.window_size, dtype=bool)
         inactive[owned.start + operator.inactive_nodes] = True
-        reduction = reduction_of(operator.derivatives, inactive)
-        self.back = np.ascontiguousarray(reduction.back[:, owned])
+        self.reduction = reduction_of(operator.derivatives, inactive)
         slow = self._any(self.applications > MAX_KEPT)
-        if slow or self._any(not np.array_equal(reduction.kind[owned], self.factors.sparse.kind)):
+        if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
             with FACTOR:
-                self._build(operator, reduction, slow or self.factors is self.kept)
+                self._build(operator, slow or self.factors is self.kept)
         self.applications = 0
 
     def _any(self, condition: bool) -> bool:
@@ -208,9 +205,7 @@ class Elimination:
         """Values of all nodes from those of the local ones, first axis."""
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def _build(
-        self, operator: PlaneJacobian, reduction: Reduction, with_coarse: bool, is_complete: bool = False
-    ) -> None:
+    def _build(self, operator: PlaneJacobian, with_coarse: bool, is_complete: bool = False) -> None:
         """Factor for the state of an operator; completely where incomplete factors break down."""
         p, self.builds = self.problem, self.builds + 1
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
@@ -221,7 +216,7 @@ class Elimination:
                 p, operator.exchange, self.term, self.comm, precision_of(operator), is_complete
             )
         sparse = self.form
-        sparse.set_up(reduction, operator.reynolds_derivatives)
+        sparse.set_up(self.reduction, operator.reynolds_derivatives)
         mask = self._gathered(sparse.kind == PRESSURE)
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
@@ -233,7 +228,7 @@ class Elimination:
         self.factors = PlaneFactors(sparse, coarse, of_border)
         is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
         if is_broken and not is_complete:
-            self._build(operator, reduction, with_coarse, is_complete=True)
+            self._build(operator, with_coarse, is_complete=True)
 
     def _pressures(
         self, operator: PlaneJacobian, reynolds: np.ndarray, separation: np.ndarray
@@ -261,10 +256,6 @@ class Elimination:
         left = reynolds - p.reynolds.product(sparse.by, changes, p.owned.start)
         return changes[p.owned, 0], changes[p.owned, 1], left
 
-    def precision(self, operator: PlaneJacobian) -> type:
-        """Precision that serves; where incomplete factors break down, single precision may overflow."""
-        return np.float64 if self.factors.sparse.is_complete else precision_of(operator)
-
     def solve(self, operator: PlaneJacobian, full: np.ndarray) -> np.ndarray:
         """Local unknowns for a local right-hand side, with those of the border: films, pressures, border."""
         p, exchange = self.problem, operator.exchange
@@ -276,12 +267,7 @@ class Elimination:
         pressure, r, border = self._with_border(pressure, r, forces, of_border)
         deflection = exchange.deflection(pressure, precision_of(operator))
         separation = deflection + p.balance.gap(border, p.share.local) + given
-        self._quantities = np.empty(operator.size)
-        of_nodes = quantities_of(self.factors.sparse.kind, pressure, r, separation)
-        self._quantities[: n_dofs(p.local)] = of_nodes.ravel()
-        if p.owns_border:
-            border_of(self._quantities, p.local)[:] = border
-        out = self.unknowns(operator, self._quantities)
+        out = self._whole(operator, (pressure, r, separation), border)
         operator.remember(out, pressure, deflection)
         return out
 
@@ -299,17 +285,12 @@ class Elimination:
             pressure, r = pressure + change * by_pressure, r + change * by_r
         return pressure, r, border
 
-    def take_quantities(self) -> np.ndarray:
-        """Quantities of the last solution, of which `back` makes its unknowns, once.
-
-        As the solids' pressure is a difference of unknowns, it is the quantities that may be rounded.
-        """
-        quantities, self._quantities = self._quantities, np.empty(0)
-        return quantities
-
-    def unknowns(self, operator: PlaneJacobian, quantities: np.ndarray) -> np.ndarray:
-        """Local unknowns of the whole system from quantities of the nodes, and the border."""
-        out, end = quantities.copy(), n_dofs(self.problem.local)
-        out[:end] = unknowns_of(self.back, quantities[:end].reshape(-1, 2)).ravel()
+    def _whole(self, operator: PlaneJacobian, of_nodes: tuple, border: np.ndarray) -> np.ndarray:
+        """Local unknowns of the whole system from pressure, Reynolds unknown and separation of the nodes."""
+        p, out = self.problem, np.empty(operator.size)
+        back = np.ascontiguousarray(self.reduction.back[:, p.owned])
+        out[: n_dofs(p.local)] = unknowns_of(self.factors.sparse.kind, back, *of_nodes).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
+        if p.owns_border:
+            border_of(out, p.local)[:] = border
         return out

@@ -102,24 +102,16 @@ def kind_of_node(p_q: float, p_w: float, s_q: float, s_w: float, is_inactive: bo
 
 
 @compiled
-def quantities_of(
-    kind: np.ndarray, pressure: np.ndarray, r: np.ndarray, separation: np.ndarray
+def unknowns_of(
+    kind: np.ndarray, back: np.ndarray, pressure: np.ndarray, r: np.ndarray, separation: np.ndarray
 ) -> np.ndarray:
-    """First and second quantity of some nodes, see `back` of :class:`Reduction`, shape (nodes, 2)."""
+    """Both unknowns of some nodes, shape (nodes, 2); `kind` and `back` as of :class:`Reduction`."""
     out = np.empty((len(kind), 2))
     for i in range(len(kind)):
-        out[i, 0] = r[i] if kind[i] == VOID else pressure[i]
-        out[i, 1] = r[i] if kind[i] == STIFF or kind[i] == CONTACT else separation[i]
-    return out
-
-
-@compiled
-def unknowns_of(back: np.ndarray, quantities: np.ndarray) -> np.ndarray:
-    """Both unknowns of some nodes, shape (nodes, 2), of two quantities; `back` as of :class:`Reduction`."""
-    out = np.empty((len(quantities), 2))
-    for i in range(len(out)):
-        out[i, 0] = back[0, i] * quantities[i, 0] + back[1, i] * quantities[i, 1]
-        out[i, 1] = back[2, i] * quantities[i, 0] + back[3, i] * quantities[i, 1]
+        first = r[i] if kind[i] == VOID else pressure[i]
+        second = r[i] if kind[i] == STIFF or kind[i] == CONTACT else separation[i]
+        out[i, 0] = back[0, i] * first + back[1, i] * second
+        out[i, 1] = back[2, i] * first + back[3, i] * second
     return out
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.case import Case
 
 # options of glibc's mallopt, and values: M_MMAP_THRESHOLD, M_MMAP_MAX, M_TRIM_THRESHOLD
-RETURNING = ((-3, 1 << 24), (-4, 1 << 16), (-1, 1 << 25))
+RETURNING = ((-3, 1 << 25), (-4, 1 << 16), (-1, 1 << 27))
 
 
 class PlaneMatrices(Matrices):
@@ -55,7 +55,7 @@ class PlaneMatrices(Matrices):
 
 
 def return_freed_memory() -> None:
-    """Have malloc return freed blocks of 16 MB and more to the system.
+    """Have malloc return freed blocks of 4 MB and more to the system.
 
     SuperLU_DIST, which Debian's PETSc loads, has it keep them, and factors do not fit the holes of others.
     """
