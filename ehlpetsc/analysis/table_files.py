@@ -1,4 +1,4 @@
-"""Files of a table over conditions: CSV, HDF5, a Python function without dependencies, fits of friction."""
+"""Files of a table over conditions: CSV, HDF5, Python without dependencies, a script of MASTA, fits."""
 
 from __future__ import annotations
 
@@ -46,6 +46,34 @@ def at(name, *conditions):
     return exp(value) if POSITIVE[name] else value
 '''
 
+# what `at` needs, from the properties of a mesh in MASTA
+OF_MESH = {
+    "pressure": "(modulus * mesh.normal_load / mesh.contact_length / (2 * pi * radius)) ** 0.5",
+    "speed": "speed",
+    "slide_roll": "abs(mesh.sliding_velocity) / speed",
+    "temperature": "TEMPERATURE",
+}
+SCRIPT = '''
+
+# Friction in the gear meshes of MASTA, by its script for the coefficient of friction. The properties of a
+# mesh are taken in SI units, the entrainment velocity as the mean of both surfaces. MASTA has not run this
+# file yet.
+
+from math import pi
+
+from mastapy import masta_property
+from mastapy.gears.materials import ScriptCoefficientOfFrictionCalculator
+
+{constants}
+
+@masta_property(name="Friction by ehlpetsc", description="Coefficient of friction by a table of ehlpetsc")
+def friction_by_ehlpetsc(mesh: ScriptCoefficientOfFrictionCalculator) -> float:
+    """Coefficient of friction by a table of ehlpetsc."""
+    speed = max(abs(mesh.entrainment_velocity), 1e-9)
+    radius, modulus = mesh.combined_radius_of_curvature, REDUCED_MODULUS
+    return at("friction_coefficient", {arguments})
+'''
+
 
 def columns(axes: Sequence[Axis], names: Sequence[str], units: Sequence[str]) -> list[str]:
     """Names of the columns of the CSV file, with units."""
@@ -80,6 +108,22 @@ def python_text(table: Table, title: str, version: str) -> str:
         values={name: [float(f"{v:.6g}") for v in values[:, k]] for k, name in enumerate(table.names)},
         positive={name: bool(flag) for name, flag in zip(table.names, positive, strict=True)},
     )
+
+
+def masta_text(table: Table, title: str, version: str, modulus: float) -> str:
+    r"""Source text of :func:`python_text` with a property by which MASTA asks for friction in gears.
+
+    The pressure is that of a line, :math:`p_0=\sqrt{wE'/(2\pi R)}`.
+
+    `modulus`: E' of the bodies of the table [Pa].
+    """
+    constants = f"REDUCED_MODULUS = {modulus:.6g}  # [Pa]\n"
+    for axis in table.axes:
+        if axis.name == "temperature":
+            middle, ends = 0.5 * (axis.low + axis.high), f"{axis.low:g} to {axis.high:g}"
+            constants += f"TEMPERATURE = {middle:g}  # [K], of the oil, to be entered: {ends}\n"
+    arguments = ", ".join(OF_MESH[axis.name] for axis in table.axes)
+    return python_text(table, title, version) + SCRIPT.format(constants=constants, arguments=arguments)
 
 
 def write_hdf5(

@@ -2,9 +2,9 @@
 
 Solves the smooth steady contact at crossings of lines over pressure, speed, slide/roll ratio and temperature,
 and adds lines until points between them agree within the tolerance. Writes T.csv with units and limits of
-validity, T.h5 with the errors too, T.py, a function of Python without dependencies, and T.fits.csv, constants
-of traction and Stribeck curves. Ranges that are left out have the value of the case. Under mpirun the ranks
-share the points.
+validity, T.h5 with the errors too, T.py, a function of Python without dependencies, T.fits.csv, constants of
+traction and Stribeck curves, and of lines T_masta.py, a script for the friction of gears in MASTA. Ranges
+that are left out have the value of the case. Under mpirun the ranks share the points.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ehlpetsc.base.case import KINDS
 from ehlpetsc.base.command_line import CommandParser, exit_status
 from ehlpetsc.base.environment import need_solver, other_mpi
 from ehlpetsc.base.errors import UsageError
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from ehlpetsc.run.conditions_table import ConditionsTable
 
 ENDINGS = ".csv", ".h5", ".py", ".fits.csv"
+MASTA = "_masta.py"  # a module that can be imported, of loads per length
 TOLERANCE, MIN_TOLERANCE = 0.03, 1e-4
 
 
@@ -107,8 +109,14 @@ def _check(target: Path, of_case: ConditionsTable, axes: Sequence[Axis], overwri
 
     check_derived(target, inputs_of(of_case.case), (".csv",))
     check_table(target, ",".join(columns(axes, of_case.quantities, of_case.units)), overwrite)
-    for ending in ENDINGS[1:]:
-        check_new(target.with_suffix(ending), overwrite or target.exists())
+    for path in _files(target, of_case)[1:]:
+        check_new(path, overwrite or target.exists())
+
+
+def _files(target: Path, of_case: ConditionsTable) -> list[Path]:
+    """Files of a table, that of MASTA last."""
+    of_lines = [] if KINDS[of_case.case.kind].is_whole else [target.with_name(target.stem + MASTA)]
+    return [*map(target.with_suffix, ENDINGS), *of_lines]
 
 
 def _write(target: Path, table: Table, of_case: ConditionsTable) -> None:
@@ -122,4 +130,8 @@ def _write(target: Path, table: Table, of_case: ConditionsTable) -> None:
     files.write_hdf5(target.with_suffix(".h5"), table, units, limits, attributes)
     atomic_write(target.with_suffix(".py"), files.python_text(table, case.title, __version__).encode())
     atomic_write(target.with_suffix(".fits.csv"), files.fits_text(table, speed).encode())
-    print(*map(target.with_suffix, ENDINGS), sep="\n")
+    written = _files(target, of_case)
+    for path in written[len(ENDINGS) :]:
+        script = files.masta_text(table, case.title, __version__, of_case.scales.E)
+        atomic_write(path, script.encode())
+    print(*written, sep="\n")

@@ -56,19 +56,18 @@ class ConditionsTable:
 
     def changes(self, point: tuple[float, ...]) -> dict[str, Any]:
         """Keys of the case at a point."""
+        keys = {
+            "pressure": "contact.load",
+            "speed": "motion.entrainment_speed",
+            "slide_roll": "motion.slide_roll_ratio",
+            "temperature": "heat.bulk_temperature" if self.case.heat else "fluid.temperature",
+        }
         changes: dict[str, Any] = {"time": None}
         for name, value in zip(self.names, point, strict=True):
-            if (
-                name == "pressure"
-            ):  # Hertz pressures grow with the load to the power of half the growth of its area
+            if name == "pressure":  # which grows with the load to the power of half the growth of its area
                 power = 2.0 / self.scales.grid.growth
-                changes["contact.load"] = self.scales.load * (value / self.scales.p0) ** power
-            elif name == "temperature":
-                changes["heat.bulk_temperature" if self.case.heat else "fluid.temperature"] = value
-            else:
-                changes[
-                    {"speed": "motion.entrainment_speed", "slide_roll": "motion.slide_roll_ratio"}[name]
-                ] = value
+                value = self.scales.load * (value / self.scales.p0) ** power
+            changes[keys[name]] = value
         return changes
 
     def compute(self, points: list[tuple[float, ...]]) -> np.ndarray:

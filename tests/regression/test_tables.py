@@ -78,6 +78,12 @@ def test_a_case_that_varies_or_is_rough_is_refused_with_what_to_leave_out(case, 
     assert f"; to leave out the rest, add {cure}" in capsys.readouterr().err
 
 
+def test_script_of_masta_is_the_function_and_a_property(target):
+    script = target.with_name("t_masta.py").read_text()
+    assert script.startswith(target.with_suffix(".py").read_text())
+    assert 'at("friction_coefficient", speed, abs(mesh.sliding_velocity) / speed)' in script
+
+
 def test_files_that_are_no_table_are_kept(tmp_path, capsys):
     (tmp_path / "t.csv").write_text("x,z\n0,0\n")
     words = ["table", str(CASES / "traction.toml"), *ISOTHERMAL, *RANGES, "-o", str(tmp_path / "t.csv")]

@@ -1,9 +1,13 @@
 """Tables over conditions: refinement, interpolation, fits of traction curves."""
 
+import sys
+from types import ModuleType, SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from ehlpetsc.analysis.table_files import masta_text
 from ehlpetsc.analysis.tabulation import Axis, tabulate
 from ehlpetsc.analysis.traction_fits import fitted_stribeck, fitted_traction, stribeck, traction
 from ehlpetsc.base.errors import UsageError
@@ -46,6 +50,32 @@ def test_every_point_is_computed_once():
 
     tabulate(AXES, ("friction", "film"), counted, 0.001)
     assert len(asked) == len(set(asked))
+
+
+def test_script_of_masta_reads_the_table_at_the_pressure_of_a_mesh(monkeypatch):
+    """Of a mesh with 0.85 GPa at 3.16228 m/s, on lines of the table."""
+    mastapy, gears, materials = map(ModuleType, ("mastapy", "mastapy.gears", "mastapy.gears.materials"))
+    properties = {}
+    mastapy.masta_property = lambda name, description: lambda function: properties.setdefault(name, function)
+    materials.ScriptCoefficientOfFrictionCalculator = SimpleNamespace
+    for module in (mastapy, gears, materials):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+
+    def friction(points):
+        return np.array([[power_law([(u, p)])[0, 0] * abs(s) * 350.0 / t] for u, p, s, t in points])
+
+    axes = *AXES, Axis("slide_roll", "1", 0.05, 0.1), Axis("temperature", "K", 330.0, 370.0)
+    table = tabulate(axes, ("friction_coefficient",), friction, 0.03)
+    exec(masta_text(table, "Gears", "0.1", 231e9), {})
+    mesh = SimpleNamespace(
+        normal_load=0.02 * 2.0 * np.pi * 0.01 * 0.85e9**2 / 231e9,
+        contact_length=0.02,
+        combined_radius_of_curvature=0.01,
+        entrainment_velocity=3.16228,
+        sliding_velocity=-0.075 * 3.16228,
+    )
+    found = properties["Friction by ehlpetsc"](mesh)
+    assert found == pytest.approx(friction([(3.16228, 0.85e9, 0.075, 350.0)])[0, 0], rel=1e-4)
 
 
 def test_noise_ends_in_a_sentence():
