@@ -7,7 +7,6 @@ usage() {
     cat <<'END'
 ./run_mpi.sh [-n RANKS] CASE.toml [options]         run a case; without -n one contact on 1 rank, a series on 2
 ./run_mpi.sh COMMAND ...                            as ehlpetsc COMMAND, see below
-./run_mpi.sh python SCRIPT.py                       run a script in which import ehlpetsc works
 ./run_mpi.sh test [TESTS]                           run the test suite, serial and under mpirun
 ./run_mpi.sh docs [FOLDER]                          open the pages as one site, or build it in a folder
 ./run_mpi.sh --install                              install what is missing for runs and pictures, nothing else
@@ -262,7 +261,7 @@ write_command() {
 }
 
 ranks=""
-if [ "${0##*/}" = ehlpetsc ] && [ "${1-}" != -n ] && [ "${1-}" != python ]; then # by the link of write_command
+if [ "${0##*/}" = ehlpetsc ] && [ "${1-}" != -n ]; then # by the link of write_command
     prepare "$run_modules" "$drawing"
     exec "$python" -m ehlpetsc "$@"
 elif [ "${1-}" = -n ]; then
@@ -277,7 +276,6 @@ case ${1-} in
     --commands) write_command "${2-}" ;;
     test) prepare "$run_modules $testing"; run_tests "${@:2}" ;;
     docs) prepare "$run_modules $drawing $site"; build_site "${@:2}" ;;
-    python) prepare "$run_modules" "$drawing"; exec "$python" "${@:2}" ;;
     -[!-]*) say "$1: a case or a command comes first, see -h"; exit 2 ;;
     *)
         trap stopped_early INT TERM HUP USR1

@@ -15,6 +15,7 @@ import traceback
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from types import TracebackType
 
 import ehlpetsc.base.environment as packages
 from ehlpetsc.base.environment import NUMERICS, READING
@@ -51,7 +52,8 @@ def main(words: list[str] | None = None) -> int:
     words = sys.argv[1:] if words is None else words
     if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:  # set by the package while it was imported
         signal.signal(signal.SIGINT, signal.default_int_handler)
-    if not sys.warnoptions:  # warnings of numpy are for developers: python3 -W default shows them
+    # warnings of numpy are for developers: python3 -W default shows them, and a script those of its own
+    if not sys.warnoptions and words[:1] != ["python"]:
         warnings.simplefilter("ignore")
     try:
         status = _start(words)
@@ -206,9 +208,19 @@ def _after_error(error: BaseException) -> int:
     if any(isinstance(one, KeyboardInterrupt) for one in _causes(error)):
         refuse("ehlpetsc: stopped; files written before are complete")
         return ExitStatus.STOPPED
-    traceback.print_exception(error)
+    traceback.print_exception(error.with_traceback(_in_script(error.__traceback__)))
     sys.stdout.flush()
     return ExitStatus.BUG
+
+
+def _in_script(whole: TracebackType | None) -> TracebackType | None:
+    """Traceback without the frames that lead to a script of ``ehlpetsc python``."""
+    found = frame = whole
+    while frame is not None:
+        if frame.tb_frame.f_globals.get("__name__") == "runpy":
+            found = frame.tb_next
+        frame = frame.tb_next
+    return found
 
 
 def _causes(error: BaseException | None) -> Iterator[BaseException]:

@@ -148,16 +148,40 @@ def test_a_run_of_another_launcher_ends_before_the_case_in_one_sentence(case, ra
         assert done.stderr == ""
 
 
-def test_a_script_runs_with_its_arguments_and_the_package_from_any_folder(tmp_path):
-    script = tmp_path / "mine.py"
-    script.write_text(
-        "import sys, ehlpetsc\nprint(sys.argv[1:], ehlpetsc.__version__, __name__)\nsys.exit(3)\n"
-    )
+def run_script(folder, text, *words):
+    """The end of ``ehlpetsc python mine.py``, with the package on no path."""
+    (folder / "mine.py").write_text(text)
     code = (
         f"import sys; sys.path.insert(0, {str(ROOT)!r}); from ehlpetsc.__main__ import main; sys.exit(main())"
     )
     alone = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    words = [sys.executable, "-c", code, "python", "mine.py", "-o", "a b", "--help"]
-    done = subprocess.run(words, cwd=tmp_path, env=alone, capture_output=True, text=True)
+    words = [sys.executable, "-c", code, "python", "mine.py", *words]
+    return subprocess.run(words, cwd=folder, env=alone, capture_output=True, text=True)
+
+
+def test_a_script_runs_with_its_arguments_and_the_package_from_any_folder(tmp_path):
+    text = "import sys, ehlpetsc\nprint(sys.argv[1:], ehlpetsc.__version__, __name__)\nsys.exit(3)\n"
+    done = run_script(tmp_path, text, "-o", "a b", "--help")
     assert (done.returncode, done.stdout) == (3, f"['-o', 'a b', '--help'] {__version__} __main__\n")
     assert main(["python", str(tmp_path / "none.py")]) == ExitStatus.BAD_INPUT
+
+
+@pytest.mark.parametrize(
+    "line, status, words",
+    [
+        ("os.kill(os.getpid(), signal.SIGINT)", 130, ["mine.py: stopped; files written before are complete"]),
+        ("os.kill(os.getpid(), signal.SIGTERM)", 130, ["mine.py: stopped; "]),
+        ("ehlpetsc.load('gone.toml')", 2, ["mine.py: gone.toml: cannot be read: "]),
+        ("raise ehlpetsc.NotConverged('step 3')", 3, ["mine.py: not converged: step 3"]),
+    ],
+)
+def test_a_stopped_or_refused_script_ends_in_one_sentence(tmp_path, line, status, words):
+    done = run_script(tmp_path, f"import ehlpetsc, os, signal\n{line}\n")
+    assert done.returncode == status and done.stdout == ""
+    assert is_line_with(done.stderr, *words)
+
+
+def test_a_fault_of_a_script_has_a_traceback_of_the_script_alone(tmp_path):
+    done = run_script(tmp_path, "def f():\n    return 1 / 0\n\nf()\n")
+    assert done.returncode == 1 and done.stderr.count("  File ") == 2
+    assert done.stderr.endswith("ZeroDivisionError: division by zero\n")
