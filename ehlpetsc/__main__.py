@@ -11,6 +11,7 @@ import os
 import shutil
 import signal
 import sys
+import threading
 import traceback
 import warnings
 from collections.abc import Iterator
@@ -25,6 +26,9 @@ from ehlpetsc.base.version import __version__
 from ehlpetsc.run.ranks import StopRequest
 
 MAX_RANKS = 99999
+SECONDS_TO_REPEAT = 0.1  # after which the callback has returned
+LOST_INTERRUPTS: list[object] = []  # the callbacks
+INTERRUPTED = 130  # exit status of a script after Ctrl-C, as shells have it
 DRAWING, FORECAST = (*NUMERICS, "matplotlib"), (*READING, "h5py")
 
 
@@ -52,8 +56,10 @@ def main(words: list[str] | None = None) -> int:
     words = sys.argv[1:] if words is None else words
     if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:  # set by the package while it was imported
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.unraisablehook = _repeat_lost_interrupt
+    is_script = words[:1] == ["python"]
     # warnings of numpy are for developers: python3 -W default shows them, and a script those of its own
-    if not sys.warnoptions and words[:1] != ["python"]:
+    if not (sys.warnoptions or is_script):
         warnings.simplefilter("ignore")
     try:
         status = _start(words)
@@ -68,13 +74,24 @@ def main(words: list[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = ExitStatus.STOPPED
     except BaseException as error:  # otherwise the other ranks would wait for ever
-        status = _after_error(error)
+        status = _after_error(error, is_script)
         mpi = sys.modules.get("mpi4py.MPI")
         if mpi and mpi.COMM_WORLD.size > 1:
             mpi.COMM_WORLD.Abort(status)
     signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # run_mpi.sh may repeat it while Python ends
     _leave_nothing_to_one_rank()
     return status
+
+
+def _repeat_lost_interrupt(lost: "sys.UnraisableHookArgs") -> None:
+    """Send a Ctrl-C again that a callback from C has swallowed, as those of numba's compiler do."""
+    if lost.exc_type is KeyboardInterrupt:
+        LOST_INTERRUPTS.append(lost.object)
+        again = threading.Timer(SECONDS_TO_REPEAT, os.kill, (os.getpid(), signal.SIGINT))
+        again.daemon = True  # the end of the program does not wait for it
+        again.start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _leave_nothing_to_one_rank() -> None:
@@ -200,14 +217,17 @@ def refuse(text: str, status: ExitStatus = ExitStatus.BAD_INPUT) -> int:
     return status
 
 
-def _after_error(error: BaseException) -> int:
-    """Report an error, or Ctrl-C in a command; returns the exit status.
+def _after_error(error: BaseException, is_script: bool) -> int:
+    """Report an error, or Ctrl-C in a command or script; returns the exit status.
 
-    Some libraries answer Ctrl-C with an error of their own: matplotlib as it ends a movie, Python in a class.
+    Some libraries answer Ctrl-C with an error of their own: matplotlib as it ends a movie, Python in a class,
+    numba after a lost one.
     """
-    if any(isinstance(one, KeyboardInterrupt) for one in _causes(error)):
-        refuse("ehlpetsc: stopped; files written before are complete")
-        return ExitStatus.STOPPED
+    stops = [one for one in _causes(error) if isinstance(one, KeyboardInterrupt)]
+    if stops or LOST_INTERRUPTS:
+        reason = str(stops[0]) if stops else ""
+        refuse(f"ehlpetsc: {reason or 'stopped; files written before are complete'}")
+        return INTERRUPTED if is_script else ExitStatus.STOPPED
     traceback.print_exception(error.with_traceback(_in_script(error.__traceback__)))
     sys.stdout.flush()
     return ExitStatus.BUG

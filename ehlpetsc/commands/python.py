@@ -13,8 +13,6 @@ from ehlpetsc.base.environment import first_rank
 from ehlpetsc.base.errors import CaseError, ExitStatus, NotConverged, OutputError, PostError, UsageError
 
 PACKAGE = Path(__file__).parents[2]  # folder from which `import ehlpetsc` is
-INTERRUPTED = 130  # exit status of a script after Ctrl-C, as shells have it
-FAULTS = (CaseError, NotConverged, OutputError, PostError, UsageError)
 
 
 def main(words: list[str]) -> int:
@@ -32,23 +30,21 @@ def _check(script: str) -> None:
 
 
 def _run(script: str, arguments: list[str]) -> int:
-    """Run a script as Python does; Ctrl-C and faults of the user's input are messages without a traceback."""
+    """Run a script as Python does; faults of the user's input are messages without a traceback."""
     before = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(PACKAGE), *([before] if before else [])])
     sys.path[:1] = [str(Path(script).resolve().parent), str(PACKAGE)]
     sys.argv[:] = [script, *arguments]
     try:
         runpy.run_path(script, run_name="__main__")
-    except KeyboardInterrupt as stop:
-        return _end(script, str(stop) or "stopped; files written before are complete", INTERRUPTED)
-    except FAULTS as fault:
-        not_converged = isinstance(fault, NotConverged)
-        kind = ExitStatus.NOT_CONVERGED if not_converged else getattr(fault, "status", ExitStatus.BAD_INPUT)
-        return _end(script, f"not converged: {fault}" if not_converged else str(fault), kind)
+    except NotConverged as fault:
+        return _end(f"{script}: not converged: {fault}", ExitStatus.NOT_CONVERGED)
+    except (CaseError, OutputError, PostError, UsageError) as fault:
+        return _end(f"{script}: {fault}", getattr(fault, "status", ExitStatus.BAD_INPUT))
     return ExitStatus.DONE
 
 
-def _end(script: str, message: str, status: int) -> int:
+def _end(message: str, status: int) -> int:
     if first_rank():
-        print(f"{script}: {message}", file=sys.stderr, flush=True)
+        print(message, file=sys.stderr, flush=True)
     return status

@@ -166,17 +166,26 @@ def test_a_script_runs_with_its_arguments_and_the_package_from_any_folder(tmp_pa
     assert main(["python", str(tmp_path / "none.py")]) == ExitStatus.BAD_INPUT
 
 
+IN_CALLBACK = "ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))"
+
+
 @pytest.mark.parametrize(
     "line, status, words",
     [
-        ("os.kill(os.getpid(), signal.SIGINT)", 130, ["mine.py: stopped; files written before are complete"]),
-        ("os.kill(os.getpid(), signal.SIGTERM)", 130, ["mine.py: stopped; "]),
+        (
+            "os.kill(os.getpid(), signal.SIGINT)",
+            130,
+            ["ehlpetsc: stopped; files written before are complete"],
+        ),
+        ("os.kill(os.getpid(), signal.SIGTERM)", 130, ["ehlpetsc: stopped; "]),
+        (f"{IN_CALLBACK}(); time.sleep(60)", 130, ["ehlpetsc: stopped; "]),
+        (f"{IN_CALLBACK}(); raise RuntimeError('no code')", 130, ["ehlpetsc: stopped; "]),
         ("ehlpetsc.load('gone.toml')", 2, ["mine.py: gone.toml: cannot be read: "]),
         ("raise ehlpetsc.NotConverged('step 3')", 3, ["mine.py: not converged: step 3"]),
     ],
 )
 def test_a_stopped_or_refused_script_ends_in_one_sentence(tmp_path, line, status, words):
-    done = run_script(tmp_path, f"import ehlpetsc, os, signal\n{line}\n")
+    done = run_script(tmp_path, f"import ctypes, ehlpetsc, os, signal, time\n{line}\n")
     assert done.returncode == status and done.stdout == ""
     assert is_line_with(done.stderr, *words)
 
