@@ -1,6 +1,7 @@
 """Error bars of `ehlpetsc converge` in seven mixed contacts, against runs with twice the nodes.
 
-``python3 tests/benchmarks/bars.py [CONTACT ...] [--nodes 8 12 16 32]``: nodes to the shortest wave; the limit
+``python3 tests/benchmarks/bars.py [CONTACT ...] [--nodes 8 12 16 32]``: nodes to the shortest wave;
+``--damage`` adds the mean damage of both surfaces 0.05 a deep, for a multiple of the time. The limit
 is extrapolated from the third and the last mesh with the order that the first, the third and the last show,
 within the bounds of the command. Prints, for each contact and quantity, the errors on the first and on the
 third mesh, that of the limit by the first three, and its bar, all over the limit.
@@ -22,6 +23,8 @@ environment.prepare()
 import petsc4py
 
 petsc4py.init(sys.argv[:1])
+
+from support.waves import FOR_DAMAGE, mean_damage
 
 from ehlpetsc.analysis.convergence import (
     HIGHEST_ORDER,
@@ -83,14 +86,15 @@ CONTACTS = {
 }
 
 
-def means(contact: Contact, nodes: int) -> dict[str, float]:
+def means(contact: Contact, nodes: int, damage: bool) -> dict[str, float]:
     """Means of a run on so many nodes to the shortest wave."""
     points = round(nodes * Scales.of(load(CASE, contact.changes)).a / contact.wave)
-    case = load(CASE, contact.changes | {"mesh.points_per_half_width": points})
+    changes = {"mesh.points_per_half_width": points} | (FOR_DAMAGE if damage else {})
+    case = load(CASE, contact.changes | changes)
     with tempfile.TemporaryDirectory() as folder:
         solve(case, output=(path := Path(folder) / "run.h5")).close()
         with read_result(path) as result:
-            return run_scalars(result)
+            return run_scalars(result) | ({"damage": mean_damage(path)} if damage else {})
 
 
 def line(quantity: str, nodes: list[int], values: list[float]) -> str:
@@ -109,13 +113,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("contacts", nargs="*", default=list(CONTACTS), help="; ".join(CONTACTS))
     parser.add_argument("--nodes", nargs=4, type=int, default=[8, 12, 16, 32], help="to the wave")
+    parser.add_argument("--damage", action="store_true", help="mean damage of both surfaces too")
     chosen = parser.parse_args()
     print("contact,quantity,first,third,extrapolated,bar,order")
     for name in chosen.contacts:
         if name not in CONTACTS:
             parser.error(f"no contact {name!r}; there are: {'; '.join(CONTACTS)}")
-        runs = [means(CONTACTS[name], n) for n in chosen.nodes]
-        for quantity in QUANTITIES:
+        runs = [means(CONTACTS[name], n, chosen.damage) for n in chosen.nodes]
+        for quantity in (*QUANTITIES, *["damage"] * chosen.damage):
             print(f"{name},{line(quantity, chosen.nodes, [run[quantity] for run in runs])}", flush=True)
 
 

@@ -112,12 +112,23 @@ class Pass(NamedTuple):
     seconds: float
 
 
+# so that damage follows: what stresses need in each step, and the depth
+STORED = ["pressure", "film_thickness", "shear_stress_1", "shear_stress_2"]
+FOR_DAMAGE = {"output": {"fields": STORED, "every": 1}, "post.depths": [0.05]}
+
+
+def mean_damage(path: Path) -> float:
+    """Mean damage of the surfaces of a result computed with `FOR_DAMAGE`, where points have passed whole."""
+    run(Job(str(path), str(post := path.with_suffix(".post.h5"))))
+    found = PostResult(post)
+    passed = [k for k in found.surfaces if found.complete[k].any()]
+    return float(np.mean([found.damage[k][0, ..., found.complete[k]].mean() for k in passed]))
+
+
 def mixed_pass(points: int, courant: float = 1.0, damage: bool = False) -> Pass:
     """`compliant_mixed.toml` on `points` nodes a half-width, 13.4 times as many as to its shortest wave."""
     changes = {"mesh.points_per_half_width": points, "time.courant": courant}
-    if damage:
-        stresses = ["pressure", "film_thickness", "shear_stress_1", "shear_stress_2"]
-        changes |= {"output": {"fields": stresses, "every": 1}, "post.depths": [0.05]}
+    changes |= FOR_DAMAGE if damage else {}
     case = load(ROOT / "cases" / "compliant_mixed.toml", changes)
     with tempfile.TemporaryDirectory() as folder:
         path, begin = Path(folder) / "pass.h5", time.process_time()
@@ -126,12 +137,7 @@ def mixed_pass(points: int, courant: float = 1.0, damage: bool = False) -> Pass:
         with read_result(path) as result:
             names = "friction_coefficient", "contact_share", "mass_error", "newton"
             friction, share, mass_error, newton = (result.steps(name) for name in names)
-        found = np.nan
-        if damage:
-            run(Job(str(path), str(post := path.with_suffix(".post.h5"))))
-            by_surface = PostResult(post)
-            depth = [by_surface.damage[k][0, by_surface.complete[k]].mean() for k in by_surface.surfaces]
-            found = float(np.mean(depth))
+        found = mean_damage(path) if damage else np.nan
     late = slice(len(friction) * 6 // 10, None)
     means = float(friction[late].mean()), float(share[late].mean())
     return Pass(*means, float(mass_error.max()), found, int(newton.sum()), len(newton) - 1, seconds)
