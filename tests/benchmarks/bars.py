@@ -32,7 +32,7 @@ from ehlpetsc.analysis.convergence import (
     OF_SPOTS,
     SPOT_ORDER,
     extrapolated,
-    limit,
+    limit_of,
     observed_order,
 )
 from ehlpetsc.analysis.summary import run_scalars
@@ -103,7 +103,7 @@ def line(quantity: str, nodes: list[int], values: list[float]) -> str:
     kept = [0, 2, 3]
     order = observed_order([nodes[k] for k in kept], [values[k] for k in kept])
     fine = extrapolated(nodes[2:], values[2:], min(max(least, order), HIGHEST_ORDER))
-    found = limit(nodes[:3], values[:3], least)
+    found = limit_of(quantity, nodes[:3], values[:3], SPOT_ORDER)
     errors = (f"{value / fine - 1.0:+.2%}" for value in (values[0], values[2], found.value))
     return ",".join([quantity, *errors, f"{found.bar / abs(fine):.2%}", f"{order:.2f}"])
 
