@@ -8,8 +8,8 @@ An error :math:`C n^{-p}` of n nodes leaves three values the limit, C and p:
 The limit is that of the observed order, between `LEAST_ORDER` and `HIGHEST_ORDER`, that of the scheme.
 Where solids touch in spots of one or two nodes, friction, the load on the solids and damage show orders
 of 0.8 to 1 on coarse meshes and 1.5 to 2 on fine ones: their limit is that of at least `SPOT_ORDER`.
-The bar reaches to the limits of orders `SPREAD` lower and higher, or to that of a higher observed one; that of
-damage, which follows few large cycles, also to the value on the finest mesh.
+The bar reaches to the limits of orders `SPREAD` lower and higher, or to that of a higher observed one; that
+of damage, which follows few large cycles, also to the value on the finest mesh.
 On three meshes and factors of safety: Roache, J. Fluids Eng. 116 (1994) 405.
 """
 

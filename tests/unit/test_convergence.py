@@ -71,7 +71,7 @@ def test_the_bar_of_spots_covers_what_mixed_contact_showed():
 
 
 def test_the_bar_of_damage_reaches_to_the_finest_mesh():
-    """Damage of compliant_mixed.toml and of a layer of 50 nm on 8, 12, 16 nodes a wave, over that of 16, 32."""
+    """Of compliant_mixed.toml and of a layer of 50 nm on 8, 12, 16 nodes a wave, over the limit by 16, 32."""
     for given, error in (((0.8757, 0.9468, 0.9801), 0.0372), ((1.0676, 1.0301, 1.0087), -0.0235)):
         found = limit_of("damage_1 z/a=0.05", NODES, given, SPOT_ORDER)
         assert found.value - 1.0 == pytest.approx(error, abs=1e-4)
