@@ -20,7 +20,7 @@ complementary to the gap; in mixed contact, whose solids have a pressure of thei
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
     from ehlpetsc.base.case import Fluid
     from ehlpetsc.discretisation.step_inputs import Oil
 
+BLOCK = 8192  # nodes whose properties are computed at a time, to be put in place
 OF_PRESSURE = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
 
 
@@ -154,13 +155,18 @@ class Reynolds(NoOil):
             at = np.empty((oil.rows, len(q) + self.has_outlet))
             oil.fill(q, h, self.nodes, at)
             return at
-        (n_y, n_x), (has_lower, has_upper), rows = self.shape, self.has_sides, len(q) // self.n_x
-        flat = np.empty((oil.rows, len(q) + rows))
-        oil.fill(q, h, self.nodes, flat)
+        (n_y, n_x), (has_lower, has_upper), count = self.shape, self.has_sides, len(q) // self.n_x
         at = np.empty((oil.rows, n_y + 2, n_x + 1))
+        nodes, step = cast("np.ndarray", self.nodes), max(BLOCK // n_x, 1)
         inner = at[:, int(has_lower) : n_y + 2 - int(has_upper)]
-        inner[:, :, :n_x] = flat[:, : len(q)].reshape(oil.rows, rows, n_x)
-        inner[:, :, n_x] = flat[:, len(q) :]
+        for begin in range(0, count, step):
+            rows = slice(begin, min(begin + step, count))
+            block = slice(rows.start * n_x, rows.stop * n_x)
+            flat = np.empty((oil.rows, (rows.stop - begin) * (n_x + 1)))
+            oil.fill(q[block], h[block], nodes[block], flat)
+            of_nodes, beyond = np.split(flat, [block.stop - block.start], axis=1)
+            inner[:, rows, :n_x] = of_nodes.reshape(oil.rows, -1, n_x)
+            inner[:, rows, n_x] = beyond
         for given, has_side, beyond, last in zip(self.given, self.has_sides, (0, -1), (1, -2), strict=True):
             if has_side and given is not None:
                 side = np.empty((oil.rows, n_x + 1))

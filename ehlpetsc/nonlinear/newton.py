@@ -75,6 +75,10 @@ class NewtonSolver:
         self._unconstrained = self._reaches_bound = False
         # other line searches may end at another point than the last trial point
         self._accepts_last = self._options.value("snes_linesearch_type") == "basic"
+        # the Jacobian before the next residual, which takes as much memory; other types of SNES may need it
+        # once more, as may a search that a bound has ended
+        others = any(name == "snes_type" or name.startswith("snes_lag_") for name in self._options.given)
+        self._releases = self._accepts_last and system.model.lower_bound is None and not others
         self.snes: Any = None
         self._unconstrained_snes: Any = None
         self.tolerance: float = None
@@ -96,7 +100,7 @@ class NewtonSolver:
             system.create_matrices(self.snes.ksp)
         self._set_jacobian(self.snes)
         if self.snes.getType() == "vinewtonrsls":
-            self.snes.setVariableBounds(system.lower, system.upper)
+            self.snes.setVariableBounds(*system.bounds)
             if model.starts_unconstrained and "snes_type" not in self._options.given:
                 self._unconstrained_snes = self._snes_of_type("newtonls")
                 self._set_jacobian(self._unconstrained_snes)
@@ -132,6 +136,8 @@ class NewtonSolver:
         if self._phase is Phase.BEGUN:  # evaluated anew where SNESVI has projected the guess onto the bounds
             f.array[:], self._phase = self.system.evaluation(x).residual, Phase.ITERATING
             return
+        if self._releases:
+            self.system.jacobian.release()
         f.array[:] = self.system.evaluate(x, self._reaches_bound).residual
         if self.system.bound_reached:
             set_function_domain_error(snes)  # rejects the step
@@ -175,6 +181,7 @@ class NewtonSolver:
         with np.errstate(over="ignore", invalid="ignore"):
             self.system.linearise(self.system.x)
             self.system.matrices.keep(self.system.jacobian)
+        self.system.jacobian.release()
 
     def residual(self) -> Rows:
         """Residual of the last solution."""
@@ -235,6 +242,9 @@ class NewtonSolver:
                 break
             share = 0.5 * share if taken == 0 else 0.5
             self.system.continue_from(self._before)
+        self._before = None
+        if self._releases:
+            self.system.jacobian.release()
         return self._solution(snes, spent - 1)
 
     def _run(self, snes: PETSc.SNES, max_it: int) -> None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Iterator
 from copy import copy
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,10 @@ class Jacobian:
         self.derivatives: np.ndarray = None
         self.reynolds_derivatives: np.ndarray = None
         self.size = problem.size
+
+    def release(self) -> None:
+        """Free the point of linearisation, which no one needs once a step has been taken."""
+        self.state = self.derivatives = self.reynolds_derivatives = None
 
     def product(self, v: np.ndarray, out: np.ndarray) -> None:
         """Fill in the local rows of the product with a local vector, zero in inactive rows; collective."""
@@ -101,6 +105,7 @@ def python_matrix(context: object, sizes: tuple[int, int], comm: PETSc.Comm) -> 
     return matrix
 
 
+BLOCK = 8192  # nodes whose derivatives are copied at a time
 LAST_DIGIT = 1.1e-16  # relative rounding error of a number
 RESIDUAL_ROUNDING = 2.0  # times the residual of a change of every unknown in its last digit
 ZERO_TOLERANCE = 1e-8  # PETSc's default of -snes_vi_zero_tolerance, in a^2/R
@@ -147,7 +152,6 @@ class TwoFields:
     `limit`: of its steps.
 
     `x`, `f`: unknowns and residual.
-    `lower`, `upper`: bounds of the unknowns.
     `bound_reached`: whether a film is at its bound after the last evaluated step, on any rank.
     `operator`, `preconditioned`: the Jacobian, and the matrix for preconditioners; set by
         :meth:`create_matrices`.
@@ -169,18 +173,28 @@ class TwoFields:
         self.inputs: StepInputs = None
         self.rows: Rows = None
         self.x_evaluated = self.operator = None
+        self._evaluation: Evaluation = None
         self.bound_reached = False
 
     def _create_vectors(self) -> None:
         sizes = self.problem.size, n_dofs(self.n) + self.problem.balance.unknowns
         self.x = PETSc.Vec().createMPI(sizes, comm=self.comm)
-        self.f, self.lower, self.upper = self.x.duplicate(), self.x.duplicate(), self.x.duplicate()
-        self.lower.set(PETSc.NINFINITY)
-        self.upper.set(PETSc.INFINITY)
+        self.f = self.x.duplicate()
+        self._petsc_objects = owned(self, self.x, self.f)
+        if self.ranks.size > 1:
+            self.to_all, self.all = PETSc.Scatter.toAll(self.x)
+            self._petsc_objects += [self.all, self.to_all]
+
+    @cached_property
+    def bounds(self) -> tuple[PETSc.Vec, PETSc.Vec]:
+        """Lower and upper bounds of the unknowns, of which only some types of SNES ask for vectors."""
+        lower, upper = self.x.duplicate(), self.x.duplicate()
+        self._petsc_objects += [lower, upper]
+        lower.set(PETSc.NINFINITY)
+        upper.set(PETSc.INFINITY)
         if self.model.lower_bound is not None:
-            w_of(self.lower.array, self.local)[:] = self.model.lower_bound
-        self.to_all, self.all = PETSc.Scatter.toAll(self.x)
-        self._petsc_objects = owned(self, self.x, self.f, self.lower, self.upper, self.all, self.to_all)
+            w_of(lower.array, self.local)[:] = self.model.lower_bound
+        return lower, upper
 
     def create_matrices(self, ksp: PETSc.KSP) -> None:
         """Create the Jacobian, and the matrix for the preconditioner of a Krylov solver."""
@@ -212,8 +226,9 @@ class TwoFields:
         return Unknowns(*self._parts_of(self.x))
 
     def _parts_of(self, v: PETSc.Vec) -> Iterator[np.ndarray]:
-        self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
-        values = self.all.array_r
+        if self.ranks.size > 1:
+            self.to_all.scatter(v, self.all, mode=PETSc.ScatterMode.FORWARD)
+        values = (self.all if self.ranks.size > 1 else v).array_r
         return (part(values, self.n).copy() for part in (q_of, w_of, border_of))
 
     def residual(self) -> Rows:
@@ -221,6 +236,7 @@ class TwoFields:
         if self.rows is None:
             self.f.array[:] = self.evaluation(self.x).residual
             self.rows = Rows(*self._parts_of(self.f))
+            self._evaluation = self.x_evaluated = None
         return self.rows
 
     def evaluation(self, x: PETSc.Vec) -> Evaluation:
@@ -234,7 +250,7 @@ class TwoFields:
 
         :attr:`bound_reached` then holds whether `reaches_bound` is true on any rank.
         """
-        self.x_evaluated = x.array_r.copy()
+        self._evaluation, self.x_evaluated = None, x.array_r.copy()
         with RESIDUAL:
             pressure = self.contact.pressure(*pairs(self.x_evaluated, self.local).T)
             local_data = self.x_evaluated, np.ascontiguousarray(pressure), reaches_bound
@@ -243,8 +259,12 @@ class TwoFields:
         return self._evaluation
 
     def linearise(self, x: PETSc.Vec, is_evaluated: bool = False) -> None:
-        """Set the matrices for x; `is_evaluated` states that x is the point evaluated last, on every rank."""
+        """Set the matrices for x; `is_evaluated` states that x is the point evaluated last, on every rank.
+
+        The record of the evaluation is the Jacobian's from then on.
+        """
         self.jacobian.linearise(self._evaluation if is_evaluated else self.evaluation(x))
+        self._evaluation = self.x_evaluated = None
         if self.assembled:
             with ASSEMBLY:
                 state = gathered(self.ranks, self.jacobian.state, self.problem.owned)
@@ -271,8 +291,12 @@ class TwoFields:
         """
         evaluation = self.evaluate(self.x)
         unknown, film = evaluation.state.reynolds_unknown, evaluation.state.film
-        derivatives, first = np.abs(evaluation.reynolds_derivatives), self.problem.owned.start
-        changes = self.problem.reynolds.product(derivatives, np.abs(np.stack([unknown, film], 1)), first)
+        state, derivatives = np.abs(np.stack([unknown, film], 1)), evaluation.reynolds_derivatives
+        product, first = self.problem.reynolds.product, self.problem.owned.start
+        changes = np.empty(self.local)
+        for begin in range(0, self.local, BLOCK):
+            block = slice(begin, begin + BLOCK)
+            changes[block] = product(np.abs(derivatives[block]), state, first + begin)
         changes *= LAST_DIGIT
         return float(RESIDUAL_ROUNDING * np.sqrt(global_sum(self.ranks, float(changes @ changes))))
 

@@ -12,6 +12,7 @@ from support.points import point
 
 from ehlpetsc.base.errors import SolveFailed, UsageError
 from ehlpetsc.case.loading import load
+from ehlpetsc.discretisation import reynolds
 from ehlpetsc.discretisation.contact.node_state import limit_cavitation, open_cavity
 from ehlpetsc.discretisation.film_history import FilmHistory
 from ehlpetsc.discretisation.finite_volumes import STENCIL
@@ -23,7 +24,7 @@ from ehlpetsc.nonlinear.plane import step_limit
 from ehlpetsc.nonlinear.plane.coarse_space import CoarseSpace
 from ehlpetsc.nonlinear.plane.held_films import HeldFilms, settle, solution
 from ehlpetsc.nonlinear.plane.preconditioner import Elimination, SparseForm
-from ehlpetsc.nonlinear.plane.reduction import BOUND
+from ehlpetsc.nonlinear.plane.reduction import BOUND, reduction_of
 from ehlpetsc.nonlinear.plane.screened_poisson import MIDDLE, fill, neighbour
 from ehlpetsc.nonlinear.plane.system import plane_system
 from ehlpetsc.physics.film_formulas import expected_film
@@ -109,9 +110,7 @@ def test_product_equals_differences(name):
 def complete(monkeypatch):
     """Complete factors of the sparse form in place of incomplete ones."""
     build = Elimination._build
-    monkeypatch.setattr(
-        Elimination, "_build", lambda self, operator, with_coarse: build(self, operator, with_coarse, True)
-    )
+    monkeypatch.setattr(Elimination, "_build", lambda self, *given: build(self, *given, True))
 
 
 @pytest.mark.parametrize("name", ("rolling", "eyring", "layer", "strip", "tilt"))
@@ -131,6 +130,32 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name, complete)
     residual = b.duplicate()
     system.operator.mult(x, residual)
     assert (residual - b).norm() < 1.01e-6 * b.norm()
+
+
+def test_derivatives_of_one_state_at_a_time_are_kept(monkeypatch):
+    system, state, inputs = scene("layer")
+    solver, problem = NewtonSolver(system, RunOptions("mixed", kind="point")), system.problem
+    evaluate, kept = problem.evaluate, []
+
+    def watched(*given):
+        kept.append(system.jacobian.reynolds_derivatives is not None or system._evaluation is not None)
+        return evaluate(*given)
+
+    monkeypatch.setattr(problem, "evaluate", watched)
+    solver.solve(*solver.solve(state, inputs)[:1], inputs)
+    solver.residual()
+    assert len(kept) > 4 and not any(kept)
+    assert system._evaluation is None and system.jacobian.derivatives is None
+
+
+@pytest.mark.parametrize("name", ("layer", "strip", "starved"))
+def test_properties_do_not_depend_on_the_blocks_that_are_computed_at_a_time(name, monkeypatch):
+    system, state, inputs = scene(name)
+    window = system.problem.share.window
+    given = state.q[window], np.abs(state.w[window]), inputs.oil
+    whole = system.problem.reynolds.properties(*given)
+    monkeypatch.setattr(reynolds, "BLOCK", 100)
+    np.testing.assert_array_equal(whole, system.problem.reynolds.properties(*given))
 
 
 @pytest.mark.parametrize(("name", "value"), [("pc_type", "lu"), ("pc_python_type", "own.Preconditioner")])
@@ -203,8 +228,9 @@ def test_blocks_filled_in_place_are_those_of_the_matrix(name, complete):
     elimination = prepared(system, state, inputs)
     form, p = elimination.factors.sparse, system.problem
     factors = form.factors
-    blocks = np.zeros_like(factors.blocks)
-    whole = form._at_hand([part[p.owned] for part in elimination.reduction[:6]])
+    blocks, nothing = np.zeros_like(factors.blocks), np.zeros(p.share.window_size, dtype=bool)
+    reduction = reduction_of(system.jacobian.derivatives, nothing)
+    whole = form._at_hand([part[p.owned] for part in reduction[:6]])
     scales = p.deflection.row_scale, *p.grid.increments
     rows = form.rows.start, form.rows.stop, factors.pointers, factors.places
     derivatives = system.exchange.window(system.jacobian.reynolds_derivatives)

@@ -61,6 +61,11 @@ class PlaneJacobian(Jacobian):
         super().__init__(problem, exchange, ranks)
         self.elimination, self.linear_rtol = elimination, linear_rtol
 
+    def release(self) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
+        super().release()
+        self.known = None
+
     def pressure_of(self, v: np.ndarray) -> np.ndarray:
         """Change of the local pressures by a change of the local unknowns."""
         pressure = np.empty(self.problem.local)

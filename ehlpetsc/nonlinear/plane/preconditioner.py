@@ -116,8 +116,8 @@ class SparseForm:
         derivatives = self.exchange.window(derivatives, self.overlap)
         fill(whole, derivatives, self.term, scales, self.n_x, of_rows, factors.blocks, self.of_rows)
         factors.factor()
-        self.of_factors = whole[0][rows], whole[5][rows]
-        self.kind, self.p_s = whole[0][self.own], whole[5][self.own]
+        self.of_factors = whole[0][rows], whole[5][rows].copy()  # without the other changes
+        self.kind, self.p_s = whole[0][self.own], self.of_factors[1][self.own.start - rows.start :][: p.local]
         first = self.own.start - rows.start
         self.by = self.of_rows[first : first + p.local]
         self.no_pressure = reduction.kind != PRESSURE
@@ -155,7 +155,7 @@ class Elimination:
 
     PETSc creates a new preconditioner whenever the set of active unknowns changes.
 
-    `builds`: number of sparse forms so far.
+    `builds`: number of sparse forms so far. `back`: of the local nodes, as of :class:`.reduction.Reduction`.
     """
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
@@ -163,7 +163,7 @@ class Elimination:
         self.coarse_space = CoarseSpace(problem.deflection.compliances, problem.grid.periodic)
         deflection = problem.deflection
         self.term = fitted_term(deflection.stiffness, problem.grid.increments, deflection.kernel)
-        self.builds = 0
+        self.builds, self.back = 0, np.empty((4, 0))
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
         self.form: SparseForm | None = None  # filled in again and again
         self.factors: PlaneFactors | None = None
@@ -190,11 +190,12 @@ class Elimination:
         owned = self.problem.owned
         inactive = np.zeros(self.problem.share.window_size, dtype=bool)
         inactive[owned.start + operator.inactive_nodes] = True
-        self.reduction = reduction_of(operator.derivatives, inactive)
+        reduction = reduction_of(operator.derivatives, inactive)
+        self.back = np.ascontiguousarray(reduction.back[:, owned])
         slow = self._any(self.applications > MAX_KEPT)
-        if slow or self._any(not np.array_equal(self.reduction.kind[owned], self.factors.sparse.kind)):
+        if slow or self._any(not np.array_equal(reduction.kind[owned], self.factors.sparse.kind)):
             with FACTOR:
-                self._build(operator, slow or self.factors is self.kept)
+                self._build(operator, reduction, slow or self.factors is self.kept)
         self.applications = 0
 
     def _any(self, condition: bool) -> bool:
@@ -205,7 +206,9 @@ class Elimination:
         """Values of all nodes from those of the local ones, first axis."""
         return local if self.ranks.size == 1 else np.concatenate(self.ranks.allgather(local))
 
-    def _build(self, operator: PlaneJacobian, with_coarse: bool, is_complete: bool = False) -> None:
+    def _build(
+        self, operator: PlaneJacobian, reduction: Reduction, with_coarse: bool, is_complete: bool = False
+    ) -> None:
         """Factor for the state of an operator; completely where incomplete factors break down."""
         p, self.builds = self.problem, self.builds + 1
         coarse = None if with_coarse or self.factors is None else self.factors.coarse
@@ -216,7 +219,7 @@ class Elimination:
                 p, operator.exchange, self.term, self.comm, precision_of(operator), is_complete
             )
         sparse = self.form
-        sparse.set_up(self.reduction, operator.reynolds_derivatives)
+        sparse.set_up(reduction, operator.reynolds_derivatives)
         mask = self._gathered(sparse.kind == PRESSURE)
         mask[:: p.grid.shape[-1]] = False  # the inlet has no balance
         if coarse is None and p.fluid is not None and self.coarse_space.reaches(mask):
@@ -228,7 +231,7 @@ class Elimination:
         self.factors = PlaneFactors(sparse, coarse, of_border)
         is_broken = self._any(not np.isfinite([part.sum() for parts in of_border for part in parts]).all())
         if is_broken and not is_complete:
-            self._build(operator, with_coarse, is_complete=True)
+            self._build(operator, reduction, with_coarse, is_complete=True)
 
     def _pressures(
         self, operator: PlaneJacobian, reynolds: np.ndarray, separation: np.ndarray
@@ -288,8 +291,7 @@ class Elimination:
     def _whole(self, operator: PlaneJacobian, of_nodes: tuple, border: np.ndarray) -> np.ndarray:
         """Local unknowns of the whole system from pressure, Reynolds unknown and separation of the nodes."""
         p, out = self.problem, np.empty(operator.size)
-        back = np.ascontiguousarray(self.reduction.back[:, p.owned])
-        out[: n_dofs(p.local)] = unknowns_of(self.factors.sparse.kind, back, *of_nodes).ravel()
+        out[: n_dofs(p.local)] = unknowns_of(self.factors.sparse.kind, self.back, *of_nodes).ravel()
         out[2 * operator.inactive_nodes + 1] = 0.0
         if p.owns_border:
             border_of(out, p.local)[:] = border
