@@ -7,6 +7,7 @@ imports only what it needs, and names the packages that are missing.
 import difflib
 import gc
 import importlib
+import io
 import os
 import shutil
 import signal
@@ -20,12 +21,20 @@ from types import TracebackType
 
 import ehlpetsc.base.environment as packages
 from ehlpetsc.base.environment import NUMERICS, READING
-from ehlpetsc.base.errors import CaseError, ExitStatus, OutputError, UsageError
+from ehlpetsc.base.errors import (
+    CaseError,
+    ExitStatus,
+    OutputError,
+    UsageError,
+    is_of_standard_output,
+    not_written,
+)
 from ehlpetsc.base.toml_file import is_plain
 from ehlpetsc.base.version import __version__
 from ehlpetsc.run.ranks import StopRequest
 
 MAX_RANKS = 99999
+FIRST_FILE = 3  # number of the first file after the standard streams
 SECONDS_TO_REPEAT = 0.1  # after which the callback has returned
 LOST_INTERRUPTS: list[object] = []  # the callbacks
 INTERRUPTED = 130  # exit status of a script after Ctrl-C, as shells have it
@@ -54,6 +63,7 @@ COMMANDS = {
 def main(words: list[str] | None = None) -> int:
     """Run the program; returns its exit status. An unexpected error on one rank ends all ranks."""
     words = sys.argv[1:] if words is None else words
+    _prepare_streams()
     if signal.getsignal(signal.SIGINT) == signal.SIG_DFL:  # set by the package while it was imported
         signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.unraisablehook = _repeat_lost_interrupt
@@ -71,7 +81,7 @@ def main(words: list[str] | None = None) -> int:
     except UsageError as error:  # of a command whose modules cannot be imported
         status = refuse(f"ehlpetsc: {error}")
     except BrokenPipeError:  # the reader has gone, as `head -1` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         status = ExitStatus.STOPPED
     except BaseException as error:  # otherwise the other ranks would wait for ever
         status = _after_error(error, is_script)
@@ -81,6 +91,26 @@ def main(words: list[str] | None = None) -> int:
     signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # run_mpi.sh may repeat it while Python ends
     _leave_nothing_to_one_rank()
     return status
+
+
+def _prepare_streams() -> None:
+    """Open the null device as the standard streams that are closed, as files would get their numbers.
+
+    Letters that the code page of the output does not have are printed as their numbers.
+    """
+    while (number := os.open(os.devnull, os.O_RDWR)) < FIRST_FILE:
+        os.set_inheritable(number, True)
+    os.close(number)
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, "w", closefd=False))
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
+
+
+def _drop_output() -> None:
+    """Discard what is not printed yet, which Python would try again at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _repeat_lost_interrupt(lost: "sys.UnraisableHookArgs") -> None:
@@ -228,6 +258,9 @@ def _after_error(error: BaseException, is_script: bool) -> int:
         reason = str(stops[0]) if stops else ""
         refuse(f"ehlpetsc: {reason or 'stopped; files written before are complete'}")
         return INTERRUPTED if is_script else ExitStatus.STOPPED
+    if is_of_standard_output(error):
+        _drop_output()
+        return refuse(f"ehlpetsc: {not_written(error)}")
     traceback.print_exception(error.with_traceback(_in_script(error.__traceback__)))
     sys.stdout.flush()
     return ExitStatus.BUG

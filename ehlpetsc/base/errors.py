@@ -9,6 +9,7 @@ import errno
 import os
 from enum import IntEnum
 from pathlib import Path
+from typing import TypeGuard
 
 
 class ExitStatus(IntEnum):
@@ -27,9 +28,19 @@ class ExitStatus(IntEnum):
         return self.name.lower().replace("_", " ")
 
 
+OF_FULL_DISKS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+
+
+def is_of_standard_output(error: BaseException) -> TypeGuard[OSError]:
+    """Whether an error is that of a print to a full disk, which has no name of a file."""
+    return isinstance(error, OSError) and error.errno in OF_FULL_DISKS and error.filename is None
+
+
 def not_written(error: Exception, path: str | os.PathLike | None = None) -> str:
     """Message of a failed write: the file, by default that of the error if any, and the system's reason."""
     path, number = path or getattr(error, "filename", None), getattr(error, "errno", None)
+    if path is None and is_of_standard_output(error):
+        path = "standard output"
     reason = os.strerror(number) if number else str(error)
     if number == errno.ENOENT and path and not (folder := Path(path).parent).exists():
         reason += f": create the folder {folder} first"

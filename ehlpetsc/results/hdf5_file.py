@@ -44,6 +44,8 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
 
     Further options are those of `h5py.File`; an OutputError if there is no readable HDF5 file.
     """
+    if Path(path).is_dir():
+        raise OutputError(f"{path}: a folder; allowed: a file of HDF5")
     if not Path(path).is_file():
         raise OutputError(f"{path}: no such file{similar_file(path, '*.h5')}")
     try:
@@ -53,6 +55,8 @@ def open_for_reading(path: str | Path, **options: Any) -> h5py.File:
             return open_hdf5(path, "r", swmr=True, **options)
         if getattr(fault, "errno", None) == errno.EAGAIN:
             raise OutputError(f"{path}: another process has it open for writing; wait for it") from fault
+        if isinstance(fault, PermissionError):
+            raise OutputError(f"{path}: cannot be read: {os.strerror(errno.EACCES)}") from fault
         raise OutputError(f"{path}: not an HDF5 file, or a damaged one ({fault})") from fault
 
 

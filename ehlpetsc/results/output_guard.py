@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import glob
 import os
 import socket
+import tempfile
 import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
     from ehlpetsc.case.loading import Case
 
-TEMPORARY = ".tmp.{}"  # name of the file that replaces one of this name
+TEMPORARY = ".tmp.{}.{}"  # process, and name of the file that it replaces
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 PAGES = (".html", ".htm")
@@ -38,10 +40,11 @@ def file_path(text: str | os.PathLike) -> Path:
 
 
 def check_output_path(path: Path, inputs: Iterable[Path], option: str = "-o") -> None:
-    """Refuse an output path, that of `option`, that is an input or not a regular file: OutputError."""
+    """Refuse an output path, that of `option`, that is an input or cannot be written: OutputError."""
     try:
         exists = path.exists()
-        path.with_name(TEMPORARY.format(path.name)).exists()  # may be too long a name
+        _temporary(path).exists()  # may be too long a name
+        tempfile.TemporaryFile(dir=path.parent).close()
     except OSError as error:  # or in a folder that this user may not search
         raise OutputError(not_written(error, path)) from error
     if exists and not path.is_file():
@@ -112,8 +115,8 @@ class Lock:
             file.close()  # the previous process removed the file between opening and locking
             return Lock.acquire(self)
         file.truncate(0)
-        file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
-        file.flush()
+        with contextlib.suppress(OSError):  # on a full disk it locks without a name
+            os.write(file.fileno(), f"process {os.getpid()} on {socket.gethostname()}\n".encode())
         self._file = file
 
     def release(self) -> None:
@@ -168,16 +171,35 @@ def put(text: str, chosen: argparse.Namespace, inputs: Iterable[Path] = ()) -> N
     print(chosen.output)
 
 
+def _temporary(target: Path) -> Path:
+    return target.with_name(TEMPORARY.format(os.getpid(), target.name))
+
+
+def _is_alive(process: str) -> bool:
+    """Whether a process of this machine is alive."""
+    try:
+        os.kill(int(process), 0)
+    except PermissionError:  # of another user
+        return True
+    except (OSError, OverflowError, ValueError):
+        return False
+    return True
+
+
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """Context manager of a temporary file beside `path`: renamed at the end, removed after an error.
 
     It is created within, as a killed process would leave an empty one; that it can be is checked first. An
-    error of the system becomes an OutputError. What a killed process left is overwritten.
+    error of the system becomes an OutputError. Of processes that write the same file at once the last one
+    replaces it. What killed ones left is removed.
     """
     target = Path(os.path.realpath(path))
-    temporary = target.with_name(TEMPORARY.format(target.name))
+    temporary = _temporary(target)
     try:
+        for old in target.parent.glob(TEMPORARY.format("*", glob.escape(target.name))):
+            if not _is_alive(old.name.split(".")[2]):
+                old.unlink(missing_ok=True)
         temporary.touch()
         temporary.unlink()
         yield temporary

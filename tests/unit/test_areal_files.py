@@ -606,3 +606,14 @@ def test_the_command_doubts_heights_that_are_hardly_roughness(tmp_path, capsys, 
         doubts = [line for line in capsys.readouterr().out.splitlines() if line.startswith("warning: ")]
         assert len(doubts) == (warning is not None)
         assert not doubts or doubts[0].startswith(warning)
+
+
+def test_map_that_may_not_be_read_is_refused(tmp_path, monkeypatch):
+    def denied(path):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    (tmp_path / "map.txt").write_text("1 2 3\n")
+    monkeypatch.setattr("ehlpetsc.surfaces.files.areal.read_softgauge", denied)
+    assert is_map(tmp_path / "map.txt", Layout())
+    with pytest.raises(ProfileError, match="cannot be read: Permission denied$"):
+        read_map(tmp_path / "map.txt", Layout())

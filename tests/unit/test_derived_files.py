@@ -23,7 +23,7 @@ from ehlpetsc.commands.plot import main as plot
 from ehlpetsc.commands.post import main as post
 from ehlpetsc.commands.summary import main as summary
 from ehlpetsc.commands.surface import main as surface
-from ehlpetsc.results.output_guard import replacing
+from ehlpetsc.results.output_guard import Lock, replacing
 from ehlpetsc.run.checkpoint import save_restart
 
 CASE = ROOT / "cases" / "dry_hertz.toml"
@@ -86,6 +86,29 @@ def test_temporary_file_exists_while_it_has_content_and_is_removed_after_an_erro
         assert beside.suffix == ".png" and beside.parent == tmp_path
         raise OSError(28, "No space left on device")
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+
+
+def test_two_processes_write_the_same_file_one_after_the_other(tmp_path, monkeypatch):
+    """Each a whole one; what a killed one left is removed."""
+    (tmp_path / ".tmp.99999999.a.csv").write_text("of a killed process")
+    with replacing(tmp_path / "a.csv") as first:
+        first.write_text("first")
+        monkeypatch.setattr(os, "getpid", os.getppid)
+        with replacing(tmp_path / "a.csv") as second:
+            second.write_text("second")
+        assert (tmp_path / "a.csv").read_text() == "second"
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("a.csv", "first")]
+
+
+def test_disk_too_full_for_a_name_in_the_lock_is_locked(tmp_path, monkeypatch):
+    lock, other = Lock(tmp_path / "a.h5"), Lock(tmp_path / "a.h5")
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "write", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+        lock.acquire()
+    with pytest.raises(OutputError, match=r"a\.h5: is being written by another process; wait for it"):
+        other.acquire()
+    lock.release()
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])

@@ -317,6 +317,7 @@ def test_full_disk_is_reported_and_the_file_stays_readable(tmp_path, disk):
     "make, message",
     [
         (lambda path: None, "such file$"),
+        (lambda path: path.mkdir(), "r.h5: a folder"),
         (lambda path: path.write_text("x" * 3000), "r.h5: not an HDF5"),
         (lambda path: h5py.File(path, "w").close(), "r.h5: an HDF5 .*not a result"),
         (lambda path: save_restart(path, {"p": X}), "r.h5: an HDF5 .*not a result"),
@@ -328,6 +329,16 @@ def test_foreign_result_files_are_refused(tmp_path, make, message):
     make(path)
     with pytest.raises(OutputError, match=message):
         read_result(path)
+
+
+def test_file_that_may_not_be_read_is_not_called_damaged(tmp_path, monkeypatch):
+    def denied(*_, **options):
+        raise PermissionError(errno.EACCES, "Unable to open file")
+
+    (tmp_path / "r.h5").touch()
+    monkeypatch.setattr(h5py, "File", denied)
+    with pytest.raises(OutputError, match=r"r\.h5: cannot be read: Permission denied$"):
+        read_result(tmp_path / "r.h5")
 
 
 def later_version(path):

@@ -13,6 +13,7 @@ from ehlpetsc.__main__ import COMMANDS, main
 from ehlpetsc.base import environment
 from ehlpetsc.base.environment import SIZE_VARIABLES, other_mpi
 from ehlpetsc.base.errors import ExitStatus
+from ehlpetsc.results.reader import read_result
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -146,6 +147,32 @@ def test_a_run_of_another_launcher_ends_before_the_case_in_one_sentence(case, ra
         assert is_line_with(done.stderr, "2 processes were started together (PMI_SIZE)", "mpirun")
     else:
         assert done.stderr == ""
+
+
+@pytest.mark.parametrize(
+    "redirection, status, words",
+    [
+        (">&- 2>&-", 0, []),
+        (">/dev/full", 2, ["standard output: not written, No space left on device"]),
+        ("<&- >&- 2>&-", 0, []),
+    ],
+)
+@pytest.mark.parametrize("command", ["keys contact", "cases/dry_hertz.toml -o {}"])
+def test_output_that_is_closed_or_full_is_no_bug(tmp_path, command, redirection, status, words):
+    program = f"{sys.executable} -m ehlpetsc {command.format(tmp_path / 'r.h5')} {redirection}"
+    done = subprocess.run(["sh", "-c", program], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == status and done.stdout == ""
+    assert is_line_with(done.stderr, *words)
+    if status == 0 and "-o" in command:
+        with read_result(tmp_path / "r.h5") as result:
+            assert result.attrs["status"] == "done"
+
+
+def test_letters_that_the_output_does_not_have_are_printed_as_numbers():
+    words = [sys.executable, "-m", "ehlpetsc", "explain", "cases/dry_hertz.toml", "--set", "title=\u00d6l"]
+    ascii_alone = os.environ | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(words, cwd=ROOT, env=ascii_alone, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.startswith("\\xd6l\n")
 
 
 def run_script(folder, text, *words):

@@ -24,11 +24,11 @@ def is_map(path: str | PathLike, layout: Layout) -> bool:
         return path.suffix.lower() not in TEXT_ENDINGS
     if path.suffix.lower() == ".npy":
         return True
-    if not _is_text(path):
-        try:
+    try:
+        if not _is_text(path):
             return isinstance(read_instrument(path, layout), Map)
-        except ProfileError:
-            return True
+    except (ProfileError, OSError):
+        return True
     columns, header = _columns_of(path, layout)
     return listed(columns, header) is not None or is_matrix(columns, header, layout)
 

@@ -42,7 +42,7 @@ def read_once(read: Callable[[Path, Layout], R]) -> Callable[..., R]:
             state = path.stat()
             return remembered(path, layout, state.st_mtime_ns, state.st_size)
         except (OSError, ValueError) as error:  # ValueError: a name no file system takes
-            raise ProfileError(f"cannot be read: {error}") from None
+            raise ProfileError(f"cannot be read: {getattr(error, 'strerror', None) or error}") from None
 
     return reading
 
