@@ -210,8 +210,9 @@ class TimeStepping:
             state = replace(state, unknowns=begun.unknowns, m=m, m_older=None)
             state = replace(state, time=begun.time, travelled=begun.travelled)
         before = left * self.ramp_time + (dt if left else COUNT_TOLERANCE * dt)  # steps may be coarse
+        max_it = None if begun is None else self.solver.start_iterations()  # asperities overlap between nodes
         while state.time < -before:
-            state = self.advance(state, watch=watch)
+            state, max_it = self.advance(state, watch=watch, max_it=max_it), None
             state, newton = replace(state, records=state.records | frozen), newton + state.newton
             self._show_ramp(1.0 + state.time / self.ramp_time)
         return replace(state, newton=newton)
@@ -306,8 +307,13 @@ class TimeStepping:
         history = self.history(State(smooth, m=m, m_older=m, dt=dt), dt)
         self.solver.prepare(smooth, self.problem.inputs(history=history, dt=dt))
 
-    def advance(self, state: State, dt: float | None = None, watch: Watch = None) -> State:
-        """State after one time step of `dt` [s], by default of the step control; halved as needed."""
+    def advance(
+        self, state: State, dt: float | None = None, watch: Watch = None, max_it: int | None = None
+    ) -> State:
+        """State after one time step of `dt` [s], by default of the step control; halved as needed.
+
+        `max_it`: iteration limit in place of that of a time step.
+        """
         nominal = self.operation.time_step(state.time, self.scales.dt)
         levels, dt = (1, dt) if dt else self._length(state, nominal)
         self._prepare(nominal)
@@ -316,7 +322,8 @@ class TimeStepping:
             guess = self.guess(state, dt) if retries == 0 else (state.q, state.w)
             try:
                 step, inputs = self.inputs(state, dt)
-                solved, iterations = self._solve_step(inputs, Unknowns(*guess, state.unknowns.border), watch)
+                unknowns = Unknowns(*guess, state.unknowns.border)
+                solved, iterations = self._solve_step(inputs, unknowns, watch, max_it)
             except SolveFailed as error:
                 newton, retries, levels = newton + error.iterations, retries + 1, 1
                 dt *= 0.5

@@ -49,6 +49,20 @@ def test_film_of_a_coarse_ramp_ends_as_that_of_a_fine_one_and_takes_a_few_of_its
     assert at_end < 1e-3
 
 
+def test_first_step_after_a_coarse_ramp_has_the_iterations_of_a_start(monkeypatch):
+    """Where asperities of the coarse mesh overlap on the fine one, the residual begins at 1e9."""
+    given, advance = {}, TimeStepping.advance
+
+    def noted(stepping, state, dt=None, watch=None, max_it=None):
+        given.setdefault(stepping.problem.n, []).append(max_it)
+        return advance(stepping, state, dt, watch, max_it)
+
+    monkeypatch.setattr(TimeStepping, "advance", noted)
+    Simulation(load(tables("coarse"))).advance()
+    coarse, fine = (given[nodes] for nodes in sorted(given))
+    assert fine == [210, None] and coarse == [None] * len(coarse)
+
+
 def test_coarser_mesh_has_half_of_the_nodes_along_and_across():
     for given, halved in ((12, (6, None)), ([12, 10], (6, 5)), ([20, 7], (10, 3))):
         mesh = coarser(load(tables("fine"), {"mesh.points_per_half_width": given})).mesh
