@@ -202,8 +202,8 @@ def frame_table(result: Result, step: int) -> list[Sequence]:
     """Names with units of x and the fields of the frame of a step, then a row for every node."""
     frame = result.nearest_frame(step=step)
     if result.step[frame] != step:
-        stored = f"{result.step[0]} to {result.step[-1]}, next to it {result.step[frame]}"
-        raise UsageError(f"--frame {step}: {result.path} stores no such step; allowed: one of {stored}")
+        stored = f"of {result.step[0]} to {result.step[-1]}; the nearest is {result.step[frame]}"
+        raise UsageError(f"--frame {step}: {result.path} stores no such step; allowed: a stored one {stored}")
     fields = {f"{name} [{result.unit(name)}]": result[name][frame] for name in result.fields}
     if result.y is None:
         return _columns({"x [m]": result.x} | fields)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import sys
 import time as clock
@@ -53,6 +54,18 @@ class CommandParser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """End the command with the fault and a hint to the list of options."""
         self.exit(2, f"{self.prog}: {message}; {self.prog} -h lists the options\n" if first_rank() else None)
+
+
+def number(least: float, most: float) -> Callable[[str], float]:
+    """Type of an option: a number between bounds."""
+
+    def converted(text: str) -> float:
+        with contextlib.suppress(ValueError):
+            if least <= float(text) <= most:
+                return float(text)
+        raise argparse.ArgumentTypeError(f"{text}: allowed: a number >= {least:g} and <= {most:g}")
+
+    return converted
 
 
 def exit_status(

@@ -116,7 +116,7 @@ def factor(text: str, unit: str, number: float = 1.0) -> float:
             f'"{value:.4g} cSt"'
         )
     if dimensions != wanted:
-        raise UnitFault(f"not a unit of this key; allowed: {f'one of {unit}' if unit else ANY}")
+        raise UnitFault(f"not a unit of this key; allowed: {f'a unit of {unit}' if unit else ANY}")
     return size / wanted_size
 
 

@@ -19,6 +19,7 @@ from ehlpetsc.case.values import (
     celsius,
     is_allowed,
     is_word,
+    nearest,
     show,
     similar,
     unknown,
@@ -53,7 +54,7 @@ def in_si(data: Tables, kind: str) -> tuple[Tables, list[Fault]]:
             try:
                 holder[name] = converted(holder[name], key.unit, key.is_difference)
             except UnitFault as fault:
-                is_other = key.point_unit and str(fault).endswith(f"one of {key.unit}")
+                is_other = key.point_unit and str(fault).endswith(f"a unit of {key.unit}")
                 faults.append(Fault(place, f"{place} = {fault}{KINDS[kind].radii if is_other else ''}"))
     return tables, faults
 
@@ -196,6 +197,8 @@ def _checked(
         if limit is not None and is_allowed(table.keys[key.below], limit) and result >= limit:
             raise NotAllowed
     except NotAllowed:
+        if key.variants and isinstance(value, dict) and "kind" in value:
+            return None, [Fault(place, _unknown_kind(place, key.variants, value["kind"]))]
         if isinstance(value, dict) and key.kind is not dict:
             return None, [Fault(place, f"{place}: a table here; allowed: {allowed(key)}")]
         hint = celsius(key, value)
@@ -204,6 +207,13 @@ def _checked(
     unmet = [need for need in key.needs if result != key.default and not _holds(need, scope.root)]
     of_need = f"{place} = {show(value)}: needs {' and '.join(unmet)} ({without_backticks(key.text)})"
     return (None, [Fault(place, of_need, not scope.is_sound)]) if unmet else (result, [])
+
+
+def _unknown_kind(place: str, variants: Collection[str], kind: object) -> str:
+    """Fault of a table whose kind is not one of several."""
+    names = ", ".join(f'"{name}"' for name in variants)
+    hint = f"; {close}" if (close := nearest(str(kind), variants)) else ""
+    return f"{place}.kind = {show(kind)}: allowed: one of {names}{hint}"
 
 
 def _table_of(key: Key, value: object) -> KeyTable | None:

@@ -41,7 +41,8 @@ def checked_with_surfaces(folder: Path, data: Tables, kind: str, known: Collecti
         except ProfileError as error:
             key = "z" if "z" in tables[side] else "file"
             of_map = whole and KINDS[whole.kind].is_areal  # of several keys
-            given = "" if of_map else f".{key} = {show(tables[side][key])}"
+            is_named = key in tables[side] and not (of_map and key == "z")
+            given = f".{key} = {show(tables[side][key])}" if is_named else ""
             faults = [*faults, Fault("", f"surface.{side}{given}: {error}")]
     return Checked(stored, case, faults)
 

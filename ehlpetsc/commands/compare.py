@@ -13,7 +13,7 @@ import argparse
 from collections.abc import Sequence
 
 from ehlpetsc.analysis.compare import common, common_nodes, compare, table
-from ehlpetsc.base.command_line import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status, number
 from ehlpetsc.results.reader import read_result
 
 RTOL = 1e-6  # default of --rtol
@@ -24,7 +24,9 @@ def main(words: Sequence[str]) -> int:
     parser = CommandParser("compare", __doc__, "")
     parser.add_argument("one", metavar="A.h5")
     parser.add_argument("other", metavar="B.h5")
-    parser.add_argument("--rtol", type=float, default=RTOL, help="tolerance over the scale [%(default)s]")
+    parser.add_argument(
+        "--rtol", type=number(0.0, 1.0), default=RTOL, help="tolerance over the scale [%(default)s]"
+    )
     options = parser.parse_args(words)
     return exit_status("compare", lambda: _compare_files(options))
 

@@ -19,7 +19,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from ehlpetsc.base.command_line import CommandParser, exit_status
+from ehlpetsc.base.command_line import CommandParser, exit_status, number
 from ehlpetsc.base.errors import OutputError
 from ehlpetsc.pictures import style
 from ehlpetsc.pictures.case_surfaces import draw_case
@@ -66,8 +66,11 @@ def arguments() -> CommandParser:
     parser.add_argument("--window", type=float, nargs=2, metavar=("LOW", "HIGH"), help="limits of x/a")
     parser.add_argument("--section", type=float, metavar="Y", help="y/a of a point or strip, drawn as a line")
     parser.add_argument("--field", metavar="NAME", help="stored field to draw instead of the film")
-    parser.add_argument("--dpi", type=float, default=style.DPI, help="dots per inch of a png [%(default)s]")
-    parser.add_argument("--size", type=float, nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches")
+    dots = "dots per inch of a png [%(default)s]"
+    parser.add_argument("--dpi", type=number(1.0, 1e4), default=style.DPI, help=dots)
+    parser.add_argument(
+        "--size", type=number(0.1, 100.0), nargs=2, metavar=("WIDTH", "HEIGHT"), help="inches"
+    )
     parser.add_argument("--no-title", action="store_true", help="without the title above the panels")
     kind = parser.add_mutually_exclusive_group()
     for name, (*_, text) in (FIGURES | {name: (text,) for name, text in MAPS.items()} | NOT_DRAWN).items():
@@ -116,6 +119,8 @@ def draw(results: list[Result], options: argparse.Namespace, output: Path) -> No
     if options.field and options.kind not in OF_FIELDS:
         raise OutputError(f"--field: of pictures of an instant, --map, --movie and --report, not of {kind}")
     low, high = frames.view(results, options.window)
+    if not low < high:
+        raise OutputError(f"--window {low:g} {high:g}: allowed: LOW below HIGH")
     for result in results:
         if not len(result.time):
             raise OutputError(f"{result.path}: no frame in it")

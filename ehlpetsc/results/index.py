@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ehlpetsc.base.errors import OutputError
+from ehlpetsc.base.errors import ExitStatus, OutputError
+from ehlpetsc.base.toml_file import similar_file
 from ehlpetsc.case.checking import attribute, in_kind
 from ehlpetsc.case.tables import CASE, key_of
 from ehlpetsc.results.output_guard import OVERWRITE_ADVICE, Lock, atomic_write, check_output_path, inputs_of
@@ -28,10 +29,15 @@ OTHER_ENDINGS = (".post.h5", ".restart.h5")  # of files next to results that mat
 def read_index(path: Path) -> dict:
     """Content of an index file; OutputError."""
     try:
-        return dict(json.loads(path.read_text()))
+        content = dict(json.loads(path.read_text()))
+        for row in (*content.get("members", []), *content.get("passes", [])):
+            path.with_name(row["file"].strip())
+        return content
     except OSError as error:
-        raise OutputError(f"{path}: {error.strerror}") from error
-    except (ValueError, TypeError) as error:
+        raise OutputError(f"{path}: {error.strerror}{similar_file(path, '*.json')}") from error
+    except KeyError as error:
+        raise OutputError(f"{path}: not an index of ehlpetsc (a row without {error})") from error
+    except (AttributeError, ValueError, TypeError) as error:
         raise OutputError(f"{path}: not an index of ehlpetsc ({error})") from error
 
 
@@ -76,12 +82,14 @@ def open_all(paths: Sequence[Path], stack: ExitStack) -> list[Result]:
 
 
 def files_of(path: Path) -> list[Path]:
-    """Result file of a path, or the existing result files of an index; errors as of :func:`open_all`."""
+    """Result file of a path, or the existing ones of an index; errors as of :func:`open_all`."""
     path = Path(path)
     if path.suffix != ".json":
         return [path]
     index = read_index(path)
-    files = [path.with_name(row["file"]) for row in index.get("passes", index.get("members", []))]
+    rows = index.get("passes", index.get("members", []))
+    # a file in the place of a member that was refused is that of another case
+    files = [path.with_name(row["file"]) for row in rows if row.get("state") != ExitStatus.BAD_INPUT.words]
     existing = [file for file in files if file.exists()]
     if not existing:
         raise OutputError(f"{path}: no member of the series has a result file beside it")

@@ -218,7 +218,10 @@ def test_missing_tables_and_keys_of_another_kind_are_named(write, tmp_path):
     wave = "surface.2.synthetic={kind='sine', amplitude=1e-7, ra=1e-7}"
     named = [line.partition(": surface.2.synthetic.")[2].split()[0] for line in faults(SMOOTH, wave)]
     assert named == ["wavelength", "ra"]
-    assert '"ground" | "sine"' in fault(SMOOTH, "surface.2.synthetic={kind='waves'}")
+    assert 'surface.2.synthetic.kind = "squar": allowed: one of "ground", "sine", "square", ' in (
+        found := fault(SMOOTH, "surface.2.synthetic={kind='squar'}")
+    )
+    assert found.endswith('; did you mean "square"?')
     mixed = "surface.2={synthetic={kind='sine', amplitude=1e-7, wavelength=1e-4}, level=true}"
     assert is_line_with(fault(SMOOTH, mixed), "surface.2: level: ", "file", "synthetic")
 

@@ -5,6 +5,7 @@ import csv
 import h5py
 import numpy as np
 import pytest
+from support import is_line_with
 from support.made_results import P0, A, make_result
 
 from ehlpetsc.analysis.compare import compare
@@ -39,6 +40,14 @@ def test_equal_results_compare_bitwise_equal_and_a_nan_is_a_difference(tmp_path,
     status, text, _ = run(capsys, result, make_result(tmp_path / "two.h5", factor=np.nan), "--rtol", 1)
     assert status == 1
     assert "different: pressure;" in text
+
+
+@pytest.mark.parametrize("rtol", ["nan", "-1", "1e3", "x"])
+def test_tolerance_out_of_range_is_refused(result, capsys, rtol):
+    with pytest.raises(SystemExit) as end:
+        run(capsys, result, result, "--rtol", rtol)
+    assert end.value.code == 2
+    assert is_line_with(capsys.readouterr().err, f"--rtol: {rtol}: allowed: a number >= 0 and <= 1")
 
 
 def test_difference_has_size_and_position(tmp_path, result, capsys):

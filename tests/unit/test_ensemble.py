@@ -11,7 +11,9 @@ from support.made_results import change_case, make_result, with_solids
 
 from ehlpetsc.__main__ import main as program
 from ehlpetsc.analysis.summary import ensemble_table, ensembles, run_scalars
+from ehlpetsc.base.errors import OutputError
 from ehlpetsc.commands.summary import main as summary
+from ehlpetsc.results.index import files_of
 from ehlpetsc.results.means import bootstrap_bounds, both_fill
 from ehlpetsc.results.reader import read_result
 
@@ -155,3 +157,15 @@ def test_wide_table_has_a_row_for_each_result_in_si_units(tmp_path):
     )
     with read_result(paths[1]) as result:
         assert float(second["film_central [m]"]) == pytest.approx(result.steps("film_central")[0], rel=1e-8)
+
+
+def test_index_without_files_is_refused_and_a_refused_member_left_out(tmp_path):
+    """The file in the place of a refused member is the result of another case."""
+    index, files = tmp_path / "a.series.json", [make_result(tmp_path / f"{name}.h5").name for name in "bc"]
+    rows = [{"file": name, "state": state} for name, state in zip(files, ("done", "bad input"), strict=True)]
+    index.write_text(json.dumps({"members": rows}))
+    assert files_of(index) == [tmp_path / "b.h5"]
+    for rows in ([{}], [{"file": 3}], 3, [1], [{"file": ""}]):
+        index.write_text(json.dumps({"members": rows}))
+        with pytest.raises(OutputError, match=r"a\.series\.json: not an index of ehlpetsc"):
+            files_of(index)

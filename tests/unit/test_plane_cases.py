@@ -40,8 +40,8 @@ def fault(tables, **overrides):
 @pytest.mark.parametrize(
     "tables, load_text, message",
     [
-        (POINT, "20 N/m", "allowed: one of N in a point contact, of two radii"),
-        (STRIP, "20 N", "allowed: one of N/m in a line contact or a strip, of one radius"),
+        (POINT, "20 N/m", "allowed: a unit of N in a point contact, of two radii"),
+        (STRIP, "20 N", "allowed: a unit of N/m in a line contact or a strip, of one radius"),
         (POINT, 1e-4, "allowed: a number >= 0.001 and <= 1e+10 [N]"),
     ],
 )
@@ -63,7 +63,7 @@ REFUSED = {  # by key: tables, overrides, words of the message
     "[gears]": (POINT, {"gears": {"speed": 1}}, "leave the radius out (mesh.width: a strip)"),
     "[life]": (POINT, {"life": {"passes": 10}}, "of line and strip contacts, and this is a point"),
     "mesh.near_field": (POINT, {"mesh.near_field": 5}, "of line contacts, and this is a point"),
-    "contact.load": (STRIP, {"contact.load": "20 N"}, "allowed: one of N/m"),
+    "contact.load": (STRIP, {"contact.load": "20 N"}, "allowed: a unit of N/m"),
     "mesh": (POINT, {"mesh.width": 900}, "allowed: 1100000 in all"),
     "wavelength_across": (STRIP, {"surface.1": {"synthetic": ACROSS}}, "allowed: whole waves over the width"),
     "direction": (POINT, {"surface.1": {"synthetic": WAVE, "direction": 30.0}}, "of a map in a file or"),
@@ -93,7 +93,10 @@ def test_a_measured_layer_has_the_height_that_the_filter_of_a_map_removes():
     "overrides, message",
     [
         ({"mesh.points_per_half_width": [24, 3]}, "mesh.points_per_half_width = [24, 3]: allowed:"),
-        ({"operation": {"time": [0, 1], "load": ["2 N", "3 N/m"]}}, "allowed: one of N in a point contact"),
+        (
+            {"operation": {"time": [0, 1], "load": ["2 N", "3 N/m"]}},
+            "allowed: a unit of N in a point contact",
+        ),
         ({"operation": {"time": [0, 1], "load": [2, -3]}}, "row 2: load = -3 N: allowed: above 0"),
     ],
 )

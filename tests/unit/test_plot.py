@@ -323,3 +323,21 @@ def test_case_picture_shows_parameters_and_passing_length(tmp_path, capsys):
     assert title.startswith("Ra 0.079 µm") and "Rsk 0.08" in title and "travel 1.50 a of 5 a" in title
     title = draw_case(CASES / "fzg.toml")._suptitle.get_text()
     assert "slide/roll" not in title and "of the widest contact; conditions over time" in title
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--size", "0", "3"], "--size: 0: allowed: a number >= 0.1 and <= 100"),
+        (["--dpi", "nan"], "--dpi: nan: allowed: a number >= 1 and <= 10000"),
+        (["--window", "3", "1"], "--window 3 1: allowed: LOW below HIGH"),
+    ],
+)
+def test_option_out_of_range_is_named_and_draws_nothing(tmp_path, capsys, words, message):
+    result = make_result(tmp_path / "one.h5", steps=3)
+    try:
+        status = plot.main([str(result), *words])
+    except SystemExit as end:
+        status = end.code
+    assert status == 2 and is_line_with(capsys.readouterr().err, message)
+    assert list(tmp_path.iterdir()) == [result]

@@ -119,7 +119,7 @@ def test_profile_of_a_file_is_stored_with_its_points(tmp_path):
         ({"profile": {"file": "no.csv", "y": [0, 1]}}, "contact.profile: y; allowed: file, its name"),
         ({"profile": {"kind": "crowned"}}, "contact.profile"),
         ({"load": None, "approach": 1e-6}, "contact.approach"),
-        ({"load": "20 N/mm"}, "allowed: one of N in a roller, of one radius and a length"),
+        ({"load": "20 N/mm"}, "allowed: a unit of N in a roller, of one radius and a length"),
     ],
 )
 def test_faults_of_a_roller_are_named(contact, message):

@@ -199,9 +199,14 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
     return [
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
         f"Run time on one rank: {_time(case.kind, expected_work(case, s, rough), about)}; "
-        f"result file: {about} {1e-6 * file_size(case, s):.1f} MB{each}; "
+        f"result file: {about} {_file_size(file_size(case, s))}{each}; "
         f"memory: about {1e-6 * memory(s, rough):.0f} MB",
     ]
+
+
+def _file_size(count: float) -> str:
+    """Size of a file of so many bytes."""
+    return f"{1e-6 * count:.1f} MB" if count < 1e9 else f"{1e-9 * count:.3g} GB"
 
 
 def _time(kind: str, amount: float, about: str = "about") -> str:
@@ -226,5 +231,5 @@ def _series(case: Case) -> list[str]:
         size += file_size(member, scales)
     return [
         f"A series: {values}; below, the base case.",
-        f"All members on one rank: {_time(case.kind, amount)}; result files: about {1e-6 * size:.1f} MB",
+        f"All members on one rank: {_time(case.kind, amount)}; result files: about {_file_size(size)}",
     ]
