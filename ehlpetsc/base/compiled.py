@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ehlpetsc.base.errors import CaseError
+
 if TYPE_CHECKING:
     from llvmlite.ir import IRBuilder, Value
     from numba.core.base import BaseContext
@@ -153,12 +155,16 @@ def inlined(function: Callable, **options: object) -> Any:
     return compiled(function, forceinline=True, **options)
 
 
+OF_NUMBA = "Failed in ", "Internal error at "  # begins of lines before the reason of an error
 _KEPT: list[Any] = []  # compiled laws of the user, which must outlive their addresses
 
 
 @cache
 def address_of(law: Callable, count: int, state: int) -> int:
-    """Address, for `call_at`, of a law of one or two `state` variables and `count` constants, compiled."""
+    """Address, for `call_at`, of a law of one or two `state` variables and `count` constants, compiled.
+
+    Raises `CaseError` for a law that cannot be compiled.
+    """
     function, real = numba.njit(error_model="numpy")(law), numba.float64
     pointer = numba.types.CPointer(real)
     if state == 1:
@@ -173,7 +179,14 @@ def address_of(law: Callable, count: int, state: int) -> int:
             values, given = numba.carray(found, 3), to_fixed_tuple(numba.carray(constants, count), count)
             values[0], values[1], values[2] = function(p, T, *given)
 
-    _KEPT.append(numba.cfunc(numba.void(real, real, pointer, pointer))(call))
+    try:
+        _KEPT.append(numba.cfunc(numba.void(real, real, pointer, pointer))(call))
+    except numba.core.errors.NumbaError as error:
+        lines = (line for line in str(error).splitlines() if not line.startswith(OF_NUMBA))
+        place = f"{Path(law.__code__.co_filename).name}, line {law.__code__.co_firstlineno}"
+        allowed = f"{state + count} arguments, {state + 1} returned numbers, numpy and arithmetic alone"
+        reason = f"cannot be compiled: {next(lines, '')}; allowed: {allowed}"
+        raise CaseError([f"law {law.__name__} ({place}): {reason}"]) from None
     return _KEPT[-1].address
 
 

@@ -8,10 +8,11 @@ from types import SimpleNamespace
 import h5py
 import numpy as np
 import pytest
-from support import CASES, one_fault, roelands_oil
+from support import CASES, is_line_with, one_fault, roelands_oil
 from support.driving import Scene
 from support.running import PYTHON, SCRIPT, called
 
+from ehlpetsc.base.compiled import address_of
 from ehlpetsc.base.declarations import Key
 from ehlpetsc.base.errors import CaseError
 from ehlpetsc.case.loading import load, stored_case
@@ -202,3 +203,37 @@ def test_module_that_is_missing_is_named(tmp_path):
         done = called(command, tmp_path, SCRIPT | {"EHLPETSC_OWN": "nosuch"})
         assert done.returncode == 2 and done.stderr.count("\n") == 1
         assert "EHLPETSC_OWN = nosuch: No module named 'nosuch'; allowed: a module in this" in done.stderr
+
+
+def no_such_name(p, T, slope):
+    return slope * p / growth, slope, 0.0  # noqa: F821
+
+
+def two_numbers(p, T, slope):
+    return slope * p, slope
+
+
+@pytest.mark.parametrize(
+    "law, reason",
+    [(no_such_name, "NameError: name 'growth' is not defined"), (two_numbers, "wrong tuple length")],
+)
+def test_a_law_that_cannot_be_compiled_is_refused_with_its_place(law, reason):
+    with pytest.raises(CaseError) as fault:
+        address_of(law, 1, 2)
+    place = f"law {law.__name__} (test_effects.py, line {law.__code__.co_firstlineno}): "
+    assert is_line_with(str(fault.value), place, reason, "allowed: 3 arguments, 3 returned numbers")
+
+
+@pytest.mark.parametrize(
+    "text, reason",
+    [
+        ("LAWS = (", "SyntaxError: '(' was never closed (mine.py, line 1)"),
+        ("\nraise ValueError('x')", "ValueError: x, mine.py, line 2"),
+        ("LAWS = 3", "TypeError: 'int' object is not iterable"),
+    ],
+)
+def test_a_module_of_the_user_that_fails_is_refused_in_one_sentence(tmp_path, text, reason):
+    (tmp_path / "mine.py").write_text(text)
+    done = called([PYTHON, "-m", "ehlpetsc", "keys", "fluid"], tmp_path, SCRIPT | {"EHLPETSC_OWN": "mine"})
+    assert done.returncode == 2
+    assert is_line_with(done.stderr, f"EHLPETSC_OWN = mine: {reason}", "; allowed: ", "LAWS")

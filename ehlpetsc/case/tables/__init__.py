@@ -8,8 +8,10 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+import traceback
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 
 from ehlpetsc.base import quantities
 from ehlpetsc.base.case import Case
@@ -130,7 +132,12 @@ if name := os.environ.get("EHLPETSC_OWN"):  # of commands: module of the user, a
     sys.path.append(os.getcwd())
     try:
         own = importlib.import_module(name)
-    except ImportError as error:
+        extend(*(getattr(own, name, {}) for name in OWN_NAMES))
+    except CaseError:
+        raise
+    except Exception as error:  # any, of the user's module
         allowed = f"a module in this folder or on Python's path, with {', '.join(OWN_NAMES)}"
-        raise UsageError(f"EHLPETSC_OWN = {name}: {error}; allowed: {allowed}") from None
-    extend(*(getattr(own, name, {}) for name in OWN_NAMES))
+        of_last = traceback.extract_tb(error.__traceback__)[-1]
+        place = f", {Path(of_last.filename).name}, line {of_last.lineno}"
+        reason = error if isinstance(error, ImportError) else f"{type(error).__name__}: {error}{place}"
+        raise UsageError(f"EHLPETSC_OWN = {name}: {reason}; allowed: {allowed}") from None
