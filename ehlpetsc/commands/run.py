@@ -167,8 +167,7 @@ def _run(chosen: argparse.Namespace, comm: MPI.Comm, options: PETSc.Options, sto
     from ehlpetsc.run.solve import Run
 
     simulation = Simulation(case, comm)
-    if comm.rank == 0:
-        _print_heading(simulation)
+    on_root(comm, _print_heading, simulation)  # which may refuse a law of the user
     return Run(simulation, output, stop).run(restart, overwrite)[0]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support import CASES, is_line_with, one_fault, roelands_oil
 from support.driving import Scene
-from support.running import PYTHON, SCRIPT, called
+from support.running import BARE, PYTHON, SCRIPT, called, command
 
 from ehlpetsc.base.compiled import address_of
 from ehlpetsc.base.declarations import Key
@@ -222,6 +222,14 @@ def test_a_law_that_cannot_be_compiled_is_refused_with_its_place(law, reason):
         address_of(law, 1, 2)
     place = f"law {law.__name__} (test_effects.py, line {law.__code__.co_firstlineno}): "
     assert is_line_with(str(fault.value), place, reason, "allowed: 3 arguments, 3 returned numbers")
+
+
+def test_a_law_that_cannot_be_compiled_ends_all_ranks(folder):
+    broken = (folder / "my_oil.py").read_text().replace("/ growth,", "/ grown,")
+    (folder / "my_oil.py").write_text(broken)
+    words = command("table1_smooth.toml", "--set", "fluid.law=saturating", ranks=2)
+    done = called(words, folder, BARE | SCRIPT | {"EHLPETSC_OWN": "my_oil"})
+    assert done.returncode == 2 and "law saturating (my_oil.py, line 5): cannot be compiled" in done.stderr
 
 
 @pytest.mark.parametrize(
