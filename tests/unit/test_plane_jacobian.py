@@ -181,8 +181,8 @@ def test_coarse_functions_around_an_isolated_node_are_independent():
     assert space.spacing == 2
     mask = np.zeros((9, 9), dtype=bool)
     mask[:, 2:5] = mask[5, 7] = True  # the last one lies between four coarse nodes
-    functions, deflections = space.chosen(mask.ravel())
-    assert functions.shape[1] == len(deflections) == 10
+    functions, kept = space.chosen(mask.ravel())
+    assert functions.shape[1] == len(kept) == 10
     assert np.linalg.matrix_rank(functions.toarray()) == functions.shape[1]
 
 
