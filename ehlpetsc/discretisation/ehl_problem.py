@@ -52,7 +52,7 @@ class Solution:
     """An accepted solution on the whole mesh, dimensionless; arrays of shape (nodes,).
 
     `unknowns`: as solved, with the plastic deformation of the step.
-    `nodes`: pressure, film and plastic deformation of the step.
+    `nodes`: pressure, film and plastic deformation of the step, without derivatives.
     `loads`: pressures, film and friction on the surfaces.
     `residual`: rows F of the Reynolds equation.
     `mass`: mass per area of the film, :math:`\rho h(1-\theta)`; None without oil.
@@ -175,7 +175,8 @@ class EHLProblem(Generic[D]):
         q, w, _ = unknowns
         nodes = self.model.state(q, w)
         loads = self.model.surface_loads(q, w, nodes.film, residual)
-        return Solution(unknowns, nodes, loads, residual, self._mass(nodes, inputs.fluid), inputs)
+        mass = self._mass(nodes, inputs.fluid)
+        return Solution(unknowns, nodes.without_derivatives(), loads, residual, mass, inputs)
 
     def evaluate(self, unknowns: Unknowns, inputs: StepInputs, sums: Sums) -> Evaluation:
         """Local rows and their derivatives at the unknowns of the window's nodes.

@@ -20,7 +20,7 @@ complementary to the gap; in mixed contact, whose solids have a pressure of thei
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -58,6 +58,13 @@ if TYPE_CHECKING:
 
 BLOCK = 8192  # nodes whose properties are computed at a time, to be put in place
 OF_PRESSURE = np.array([P, DP, RHO, RHO_P, FLUIDITY, LN_ETA_P])  # properties that depend on the pressure
+
+
+def part_of(nodes: slice | np.ndarray, block: slice) -> slice | np.ndarray:
+    """Some of the nodes by their places among them."""
+    if isinstance(nodes, slice):
+        return slice(nodes.start + block.start, nodes.start + block.stop)
+    return nodes[block]
 
 
 class NoOil:
@@ -157,13 +164,13 @@ class Reynolds(NoOil):
             return at
         (n_y, n_x), (has_lower, has_upper), count = self.shape, self.has_sides, len(q) // self.n_x
         at = np.empty((oil.rows, n_y + 2, n_x + 1))
-        nodes, step = cast("np.ndarray", self.nodes), max(BLOCK // n_x, 1)
+        step = max(BLOCK // n_x, 1)
         inner = at[:, int(has_lower) : n_y + 2 - int(has_upper)]
         for begin in range(0, count, step):
             rows = slice(begin, min(begin + step, count))
             block = slice(rows.start * n_x, rows.stop * n_x)
             flat = np.empty((oil.rows, (rows.stop - begin) * (n_x + 1)))
-            oil.fill(q[block], h[block], nodes[block], flat)
+            oil.fill(q[block], h[block], part_of(self.nodes, block), flat)
             of_nodes, beyond = np.split(flat, [block.stop - block.start], axis=1)
             inner[:, rows, :n_x] = of_nodes.reshape(oil.rows, -1, n_x)
             inner[:, rows, n_x] = beyond

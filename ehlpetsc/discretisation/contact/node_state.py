@@ -1,5 +1,7 @@
 """Pressures, film and separation of the nodes as functions of the two unknowns, with derivatives."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 import numpy as np
@@ -82,6 +84,13 @@ class NodeState(NamedTuple):
     def separation_w(self) -> np.ndarray:
         """Derivative of the separation with respect to w."""
         return self.h_w if self.plastic is None else self.h_w - self.plastic.depth_w
+
+    def without_derivatives(self) -> NodeState:
+        """The state with empty arrays in place of derivatives."""
+        none, plastic = np.empty(0), self.plastic
+        if plastic is not None:
+            plastic = PlasticState(plastic.depth, plastic.yielding, none, none, none, none, plastic.hardening)
+        return self._replace(p_q=none, p_w=none, h_w=none, plastic=plastic)
 
     def derivatives(self) -> np.ndarray:
         """Derivatives with respect to q and w, shape (4, 2, nodes).

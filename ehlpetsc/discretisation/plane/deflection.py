@@ -198,7 +198,6 @@ class Deflection:
     `periodic`: across.
     `owned`: local nodes in the window.
 
-    `compliances`: C K at distances, shape (n_y, n_x).
     `row_scale`: coefficient of the separation in a row; that of the border's gap is its negative.
     `cell`: dx dy.
     """
@@ -217,7 +216,6 @@ class Deflection:
         dy, dx = spacings
         self.cell, self.kernel, self.stiffness = dx * dy, kernel, stiffness
         self.row_scale = np.sqrt(self.cell) / film_scale
-        self.compliances = stiffness * kernel.direct
         self.convolution = Convolution(kernel.times(stiffness), periodic, ranks or Transposition())
 
     def residual(

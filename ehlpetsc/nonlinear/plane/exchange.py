@@ -30,8 +30,10 @@ def share_of(shape: Sequence[int], rows: Sequence[int], periodic: bool) -> tuple
     """
     (n_y, n_x), (begin, end) = shape, rows
     has_sides = (begin == 0 and not periodic), (end == n_y and not periodic)
-    window = np.arange(begin - (not has_sides[0]), end + (not has_sides[1])) % n_y
-    nodes = (window[:, None] * n_x + np.arange(n_x)).ravel()
+    below, above = begin - (not has_sides[0]), end + (not has_sides[1])
+    nodes: slice | np.ndarray = slice(below * n_x, above * n_x)
+    if below < 0 or above > n_y:
+        nodes = ((np.arange(below, above) % n_y)[:, None] * n_x + np.arange(n_x)).ravel()
     start = n_x * (not has_sides[0])
     return Share(begin * n_x, end * n_x, nodes, slice(start, start + (end - begin) * n_x)), has_sides
 

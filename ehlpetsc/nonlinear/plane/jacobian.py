@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from ehlpetsc.discretisation.contact.node_state import directional_derivative
-from ehlpetsc.discretisation.ehl_problem import EHLProblem
+from ehlpetsc.discretisation.ehl_problem import EHLProblem, Evaluation
 from ehlpetsc.discretisation.unknowns import border_of, n_dofs
 from ehlpetsc.nonlinear.plane.exchange import PlaneExchange
 from ehlpetsc.nonlinear.two_fields import Jacobian
@@ -61,6 +61,11 @@ class PlaneJacobian(Jacobian):
         super().__init__(problem, exchange, ranks)
         self.elimination, self.linear_rtol = elimination, linear_rtol
 
+    def linearise(self, evaluation: Evaluation) -> None:
+        """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`; what is left of the state are derivatives."""
+        super().linearise(evaluation)
+        self.state = None
+
     def release(self) -> None:
         """See :class:`ehlpetsc.nonlinear.two_fields.Jacobian`."""
         super().release()
@@ -92,6 +97,7 @@ class PlaneJacobian(Jacobian):
             deflection, forces = self.known.deflection, np.array(forces)
         else:
             deflection, forces = self.exchange.sums(self.pressure_of(v))
+        self.known = None  # of one product
         window, separation = self.exchange.window(pairs), np.empty(p.local)
         changes = np.empty_like(window)
         for k in range(2):

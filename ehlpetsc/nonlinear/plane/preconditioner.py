@@ -160,8 +160,9 @@ class Elimination:
 
     def __init__(self, problem: EHLProblem, ranks: MPI.Comm, comm: PETSc.Comm):
         self.problem, self.ranks, self.comm = problem, ranks, comm
-        self.coarse_space = CoarseSpace(problem.deflection.compliances, problem.grid.periodic)
         deflection = problem.deflection
+        compliances = deflection.stiffness * deflection.kernel.direct
+        self.coarse_space = CoarseSpace(compliances, problem.grid.periodic)
         self.term = fitted_term(deflection.stiffness, problem.grid.increments, deflection.kernel)
         self.builds, self.back = 0, np.empty((4, 0))
         self.applications = MAX_KEPT + 1  # since the last linear solve began: iterations of GMRES
