@@ -122,20 +122,31 @@ class PlaneExchange:
             return local
         window = np.empty((own.stop + behind, *local.shape[1:]), dtype=local.dtype)
         window[own] = local
-        below, above = window[: own.start], window[own.stop :]
-        if self.ranks.size == 1:
-            if len(below):
-                below[:], above[:] = local[-count:], local[:count]
-            return window
-        lowest, highest = np.ascontiguousarray(local[:count]), np.ascontiguousarray(local[-count:])
-        received = np.empty_like(lowest)
-        self.ranks.Sendrecv(lowest, self.below, 0, received, self.above, 0)
-        if len(above):
-            above[:] = received
-        self.ranks.Sendrecv(highest, self.above, 1, received, self.below, 1)
-        if len(below):
-            below[:] = received
+        below, above = self._beside(local[:count], local[-count:])
+        window[: own.start], window[own.stop :] = below[: own.start], above[:behind]
         return window
+
+    def windows(self, local: Sequence[np.ndarray], rows: int) -> np.ndarray:
+        """As :meth:`window` of several arrays of the local nodes, shape (arrays, nodes), by one message."""
+        p, own, count = self.problem, self.slab(rows), rows * self.n_x
+        behind = count if p.share.window_size > p.owned.stop else 0
+        window = np.empty((len(local), own.stop + behind), dtype=np.result_type(*local))
+        inner = window[:, own]
+        for row, values in zip(inner, local, strict=True):
+            row[:] = values
+        below, above = self._beside(inner[:, :count], inner[:, -count:])
+        window[:, : own.start], window[:, own.stop :] = below[:, : own.start], above[:, :behind]
+        return window
+
+    def _beside(self, lowest: np.ndarray, highest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of the neighbours below and above, from the own lowest and highest ones; any without one."""
+        lowest, highest = np.ascontiguousarray(lowest), np.ascontiguousarray(highest)
+        if self.ranks.size == 1:
+            return highest, lowest
+        below, above = np.empty_like(lowest), np.empty_like(lowest)
+        self.ranks.Sendrecv(lowest, self.below, 0, above, self.above, 0)
+        self.ranks.Sendrecv(highest, self.above, 1, below, self.below, 1)
+        return below, above
 
     def with_border(self, numbers: np.ndarray, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Sums of numbers over all ranks, and the border's unknowns, or rows, of a vector, by one message.

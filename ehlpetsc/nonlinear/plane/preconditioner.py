@@ -105,7 +105,7 @@ class SparseForm:
         """Arrays of the local nodes with the rows of neighbours that the factors need."""
         if self.problem.share.window_size == self.problem.local:
             return local
-        return np.ascontiguousarray(self.exchange.window(np.stack(local, axis=1), self.overlap).T)
+        return self.exchange.windows(local, self.overlap)
 
     def set_up(self, reduction: Reduction, derivatives: np.ndarray) -> None:
         """Factor for a state: reduction of the window, derivatives of the local Reynolds rows."""
