@@ -49,9 +49,10 @@ PLANE = {
     "pc_type": "python",
     "pc_python_type": "ehlpetsc.nonlinear.plane.preconditioner.EliminatedFilm",
 }
+PLANE_KRYLOV = {"ksp_type": "python", "ksp_python_type": "ehlpetsc.nonlinear.plane.gmres.FlexibleGMRES"}
 # of a dry one: an error of a stiff layer's separation is one of its pressure a thousand times as large
 DRY_PLANE = {"ksp_rtol": "1e-6"}
-# options that FlexibleGMRES supports; any other KSP option of the user selects PETSc's fgmres
+# options that both FlexibleGMRES support; any other KSP option of the user selects PETSc's fgmres
 GMRES_OPTIONS = ("ksp_rtol", "ksp_atol", "ksp_divtol", "ksp_monitor", "ksp_converged_reason", "ksp_view")
 # PETSc's LU and ILU do not pivot, and pivots of the deflection rows may be zero by chance
 PETSC_FACTORISATION = {"pc_factor_shift_type": "nonzero", "sub_pc_factor_shift_type": "nonzero"}
@@ -154,9 +155,7 @@ def line_solver(wanted: dict) -> dict:
     """Options with those of KSP and PC: this program's types unless the options of the user exclude them."""
     if any(wanted.get(name, value) != value for name, value in PRECONDITIONER.items()):
         return PETSC_FACTORISATION | wanted
-    if any(name.startswith("ksp_") and name not in GMRES_OPTIONS for name in wanted):
-        return PRECONDITIONER | wanted
-    return PRECONDITIONER | KRYLOV | wanted
+    return PRECONDITIONER | (KRYLOV if _has_own_krylov(wanted) else {}) | wanted
 
 
 def plane_solver(wanted: dict) -> dict:
@@ -165,7 +164,7 @@ def plane_solver(wanted: dict) -> dict:
         if wanted.get(name, PLANE[name]) != PLANE[name]:
             own = "a contact in the plane has a preconditioner of its own; leave it out"
             raise UsageError(f"-{name} {wanted[name]}: {own}")
-    return PLANE | wanted
+    return PLANE | (PLANE_KRYLOV if _has_own_krylov(wanted) else {}) | wanted
 
 
 def roller_solver(wanted: dict) -> dict:
@@ -174,6 +173,11 @@ def roller_solver(wanted: dict) -> dict:
     GMRES then has a basis of 4 kB a node if it stores the preconditioned vectors too, else of 2 kB.
     """
     return plane_solver({"ksp_type": "gmres"} | wanted)
+
+
+def _has_own_krylov(wanted: dict) -> bool:
+    """Whether no option asks for more than this program's GMRES has."""
+    return not any(name.startswith("ksp_") and name not in GMRES_OPTIONS for name in wanted)
 
 
 def was_read(name: str) -> bool:

@@ -132,6 +132,29 @@ def test_preconditioner_with_exact_factors_is_nearly_the_inverse(name, complete)
     assert (residual - b).norm() < 1.01e-6 * b.norm()
 
 
+@pytest.mark.parametrize("name", ("layer", "direct", "dry"))
+def test_krylov_iterations_in_the_plane_equal_those_of_petsc(name):
+    system, state, inputs = scene(name)
+    is_dry = system.problem.fluid is None
+    found, b = [], np.random.default_rng(2).standard_normal(len(system.x.array))
+    for of_call in ({}, {"ksp_type": "fgmres"}):
+        solver = NewtonSolver(system, RunOptions(of_call=of_call, kind="point", is_dry=is_dry))
+        system.set_initial_guess(state, inputs)
+        system.linearise(system.x)
+        system.operator.assemble()
+        ksp, right, x = solver.snes.ksp, system.x.duplicate(), system.x.duplicate()
+        ksp.setOperators(system.operator)
+        right.array[:] = b
+        ksp.setConvergenceHistory()
+        ksp.solve(right, x)
+        found.append((ksp.getConvergenceHistory(), x.array.copy()))
+        assert ksp.getType() == of_call.get("ksp_type", "python")
+    (mine, of_mine), (petscs, of_petscs) = found
+    assert len(mine) == len(petscs) > 4
+    np.testing.assert_allclose(mine, petscs, rtol=1e-9)
+    np.testing.assert_allclose(of_mine, of_petscs, rtol=0.0, atol=1e-9 * abs(of_petscs).max())
+
+
 def test_derivatives_of_one_state_at_a_time_are_kept(monkeypatch):
     system, state, inputs = scene("layer")
     solver, problem = NewtonSolver(system, RunOptions("mixed", kind="point")), system.problem

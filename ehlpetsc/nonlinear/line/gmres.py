@@ -24,6 +24,7 @@ from ehlpetsc.base.compiled import ZERO, compiled
 from ehlpetsc.nonlinear.line.distributed_lu import solve
 from ehlpetsc.nonlinear.line.exchange import exchange
 from ehlpetsc.nonlinear.line.jacobian import jacobian_product
+from ehlpetsc.nonlinear.minimum_residual import coefficients, least_residual, numbers_of
 
 MAX_IT = 100  # of a solve
 CANCELLED = 1e-8  # of the square of a norm: what is left of it by differences is right to as many digits
@@ -81,8 +82,7 @@ def iterations(
     halo, factors = ((collective, rank), buffers, matrices, pressures), (place, lu, cuts, border, room)
     v, z, norms = np.empty((max_it + 1, len(b))), np.empty((max_it, len(b))), np.zeros(max_it + 1)
     sums = np.zeros((len(buffers[1]), MAX_IT + 2))  # products of the vectors, local parts of each rank
-    # columns of the triangular matrix; cosines and sines; rotated right-hand side, last number the residual
-    numbers = np.zeros((max_it, max_it + 1)), np.zeros((max_it, 2)), np.zeros(max_it + 1)
+    numbers = numbers_of(max_it)
     v[0] = b
     new = ZERO
     while True:
@@ -92,7 +92,7 @@ def iterations(
         norm = orthonormalise(v, new, numbers[0][max(new - 1, 0)], sums, rank, collective)
         norms[new] = least_residual(numbers, new, norm)
         if norms[new] <= max(rtol * norms[0], atol) or not norms[new] < divtol * norms[0] or new == max_it:
-            combine(z, numbers, new, b)
+            np.dot(coefficients(numbers, new), z[:new], out=b)
             return norms[: new + 1]
         new += 1
 
@@ -123,36 +123,3 @@ def orthonormalise(
     if norm > 0.0:
         w *= 1.0 / norm
     return norm
-
-
-@compiled
-def least_residual(numbers: tuple, new: int, norm: float) -> float:
-    """Norm of the residual with a vector more, of this norm before it was made one."""
-    hessenberg, rotations, right = numbers
-    column = hessenberg[max(new - 1, 0)]
-    if new == 0:
-        right[0] = norm
-        return norm
-    k = new - 1
-    for i in range(k):
-        above, below = column[i], column[i + 1]
-        column[i] = rotations[i, 0] * above + rotations[i, 1] * below
-        column[i + 1] = rotations[i, 0] * below - rotations[i, 1] * above
-    length = np.hypot(column[k], norm)
-    rotations[k, 0], rotations[k, 1] = (column[k] / length, norm / length) if length != 0.0 else (1.0, 0.0)
-    column[k] = length if length != 0.0 else 1.0
-    right[new] = -rotations[k, 1] * right[k]
-    right[k] *= rotations[k, 0]
-    return abs(right[new])
-
-
-@compiled
-def combine(z: np.ndarray, numbers: tuple, number: int, solution: np.ndarray) -> None:
-    """Fill in the sum of so many vectors z that leaves the minimum residual."""
-    hessenberg, _, right = numbers
-    factors = right[:number].copy()
-    for k in range(number - 1, -1, -1):
-        factors[k] /= hessenberg[k, k]
-        for i in range(k):
-            factors[i] -= hessenberg[k, i] * factors[k]
-    np.dot(factors, z[:number], out=solution)
