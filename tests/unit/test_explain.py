@@ -279,6 +279,7 @@ def test_memory_of_a_large_map_is_that_of_reading_it(tmp_path, monkeypatch):
         expected.append(forecast.memory(scales, Roughness.of(ball, scales)))
     assert expected[1] - expected[0] == pytest.approx(70 * 400 * 500)
     assert f"memory: about {1e-6 * expected[1]:.0f} MB" in explain(ball)
+    assert expected[0] == pytest.approx(230e6 + 2000 * scales.grid.n)  # without heat
 
 
 def test_explain_refuses_what_a_run_refuses(capsys):

@@ -46,7 +46,8 @@ class Overhead(NamedTuple):
 
 
 OVERHEADS = {"line": Overhead(1600.0, 2400.0), "plane": Overhead(0.0, 6250.0)}
-START_MEMORY, NODE_MEMORY = 230e6, 5.5e3  # at the start and for each node [bytes]
+START_MEMORY, NODE_MEMORY = 230e6, 2.0e3  # at the start and for each node [bytes]
+HEAT_MEMORY = 6.0e3  # for each node with temperatures [bytes]
 POINT_MEMORY = 70  # of a measured map, while it is read, for each point [bytes]
 COMPRESSED = 0.6  # of the size of the fields
 
@@ -74,11 +75,12 @@ def expected_work(case: Case, s: Scales, rough: Roughness | None) -> float:
     return passes * work(case.kind, s.grid.n, iterations(case, s, rough), count)
 
 
-def memory(s: Scales, rough: Roughness | None) -> float:
+def memory(s: Scales, rough: Roughness | None, is_heated: bool = False) -> float:
     """Expected memory of a run on one rank [bytes], while it reads the largest measured map or profile."""
     given = [surface.given for surface in (rough.sides.values() if rough else ())]
     points = max((samples.z.size for samples in given if samples.measured), default=0)
-    return START_MEMORY + NODE_MEMORY * s.grid.n + POINT_MEMORY * points
+    of_node = NODE_MEMORY + (HEAT_MEMORY if is_heated else 0.0)
+    return START_MEMORY + of_node * s.grid.n + POINT_MEMORY * points
 
 
 def iterations(case: Case, s: Scales, rough: Roughness | None) -> float:

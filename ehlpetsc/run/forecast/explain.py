@@ -200,7 +200,7 @@ def _size(case: Case, s: Scales, rough: Roughness | None) -> list[str]:
         f"Mesh: {nodes} nodes {extent}, spacing {spacing} um; {2 * s.grid.n + 1} unknowns",
         f"Run time on one rank: {_time(case.kind, expected_work(case, s, rough), about)}; "
         f"result file: {about} {_file_size(file_size(case, s))}{each}; "
-        f"memory: about {1e-6 * memory(s, rough):.0f} MB",
+        f"memory: about {1e-6 * memory(s, rough, case.heat is not None):.0f} MB",
     ]
 
 
