@@ -83,7 +83,7 @@ def test_omitted_column_is_constant_and_a_table_begins_at_its_first_time(with_ta
         (TABLE.replace("527e3", "lots"), 'line 3: "lots" is not a number; '),
         (TABLE.replace("speed 1", "velocity"), "column 'velocity'"),
         (TABLE.replace("radius [m]", "load"), "column 'load': allowed: one each"),
-        (TABLE.replace("radius [m]", "radius [s]"), r"column 'radius \[s\]': .* one of m$"),
+        (TABLE.replace("radius [m]", "radius [s]"), r"column 'radius \[s\]': .* a unit of m$"),
         ("time, load\n0, 1e5\n", "two times"),
         ("time\n0\n1\n", ": load, radius, speed 1, speed 2,"),
         ("load\n1e5\n1e5\n", "no column time;"),
