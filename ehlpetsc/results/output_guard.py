@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from ehlpetsc.case.loading import Case
 
-TEMPORARY = ".tmp.{}.{}"  # process, and name of the file that it replaces
+TEMPORARY = ".tmp.{}@{}.{}"  # process, its machine, and name of the file that it replaces
 OVERWRITE_ADVICE = "give another -o, or --overwrite to replace it"
 PICTURES = (".png", ".svg", ".pdf", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 PAGES = (".html", ".htm")
@@ -172,7 +172,7 @@ def put(text: str, chosen: argparse.Namespace, inputs: Iterable[Path] = ()) -> N
 
 
 def _temporary(target: Path) -> Path:
-    return target.with_name(TEMPORARY.format(os.getpid(), target.name))
+    return target.with_name(TEMPORARY.format(os.getpid(), socket.gethostname(), target.name))
 
 
 def _is_alive(process: str) -> bool:
@@ -192,13 +192,14 @@ def replacing(path: Path) -> Iterator[Path]:
 
     It is created within, as a killed process would leave an empty one; that it can be is checked first. An
     error of the system becomes an OutputError. Of processes that write the same file at once the last one
-    replaces it. What killed ones left is removed.
+    replaces it. What killed ones of this machine left is removed.
     """
     target = Path(os.path.realpath(path))
     temporary = _temporary(target)
     try:
-        for old in target.parent.glob(TEMPORARY.format("*", glob.escape(target.name))):
-            if not _is_alive(old.name.split(".")[2]):
+        of_machine = TEMPORARY.format("*", *map(glob.escape, (socket.gethostname(), target.name)))
+        for old in target.parent.glob(of_machine):
+            if not _is_alive(old.name.removeprefix(".tmp.").partition("@")[0]):
                 old.unlink(missing_ok=True)
         temporary.touch()
         temporary.unlink()

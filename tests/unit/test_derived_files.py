@@ -6,6 +6,7 @@ import re
 import resource
 import shutil
 import signal
+import socket
 
 import h5py
 import numpy as np
@@ -89,15 +90,17 @@ def test_temporary_file_exists_while_it_has_content_and_is_removed_after_an_erro
 
 
 def test_two_processes_write_the_same_file_one_after_the_other(tmp_path, monkeypatch):
-    """Each a whole one; what a killed one left is removed."""
-    (tmp_path / ".tmp.99999999.a.csv").write_text("of a killed process")
+    """Each a whole one; what a killed one left is removed, but not what another machine may be writing."""
+    killed, beside = (f".tmp.99999999@{machine}.a.csv" for machine in (socket.gethostname(), "other.host"))
+    for name in (killed, beside):
+        (tmp_path / name).write_text("begun")
     with replacing(tmp_path / "a.csv") as first:
         first.write_text("first")
         monkeypatch.setattr(os, "getpid", os.getppid)
         with replacing(tmp_path / "a.csv") as second:
             second.write_text("second")
         assert (tmp_path / "a.csv").read_text() == "second"
-    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("a.csv", "first")]
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a.csv": "first", beside: "begun"}
 
 
 def test_disk_too_full_for_a_name_in_the_lock_is_locked(tmp_path, monkeypatch):
